@@ -1,4 +1,5 @@
-// formats/base_file.h -- an overlay names the file it changes: keys `base` and `base-digest` (photons.md, section 8; radsamples.md, section 6).
+// formats/base_file.h -- an overlay names the file it changes: keys `base` and `base-digest` (photons.md, section 8;
+// radsamples.md, section 6).
 #pragma once
 
 #include <string>
@@ -24,6 +25,8 @@ inline std::string_view fault_of_base(std::string_view name, std::string_view di
 }
 
 /// The base of the overlay `path`: it lies in the same folder; of a pipe, "-", in the current one.
-inline std::string path_of_base(const std::string& path, const std::string& name) { return path.substr(0, path.rfind('/') + 1) + name; }
+inline std::string path_of_base(const std::string& path, const std::string& name) {
+  return path.substr(0, path.rfind('/') + 1) + name;
+}
 
 }  // namespace tempolux::formats

@@ -13,14 +13,13 @@
 namespace tempolux::formats {
 namespace {
 
-constexpr std::size_t kBufferSize = 32 << 10;   // small: it is copied once more than the large reads
+constexpr std::size_t kBufferSize = 32 << 10;  // small: it is copied once more than the large reads
 
 std::string reason_of(int error) { return std::strerror(error); }
 
 }  // namespace
 
-ByteReader::ByteReader(const std::string& path)
-    : name_(path == "-" ? "<stdin>" : path), buffer_(kBufferSize) {
+ByteReader::ByteReader(const std::string& path) : name_(path == "-" ? "<stdin>" : path), buffer_(kBufferSize) {
   file_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file_ < 0) throw InputError(name_ + ": cannot open: " + reason_of(errno) + "; check the name");
   struct stat info {};
@@ -66,8 +65,7 @@ void ByteReader::read(void* data, std::size_t size, const char* what) {
       done += got;
     }
   }
-  if (done < size)
-    fail(offset_ + done, std::string("ends inside ") + what, "the file is incomplete: make it again");
+  if (done < size) fail(offset_ + done, std::string("ends inside ") + what, "the file is incomplete: make it again");
   offset_ += size;
 }
 

@@ -26,9 +26,7 @@ std::string hex_of(std::span<const double> values) {
 
 void Chain::add(std::uint32_t crc) { crc_ = crc32(&crc, sizeof(crc), crc_); }
 
-std::uint32_t Chain::over(std::string_view end_block) const {
-  return crc32(end_block.data(), end_block.size(), crc_);
-}
+std::uint32_t Chain::over(std::string_view end_block) const { return crc32(end_block.data(), end_block.size(), crc_); }
 
 std::size_t begin_block(std::string& bytes, std::string_view mark, std::span<const std::uint32_t> words) {
   const std::size_t head = bytes.size();
@@ -40,14 +38,12 @@ std::size_t begin_block(std::string& bytes, std::string_view mark, std::span<con
 
 std::uint32_t seal_block(std::string& bytes, std::size_t head, std::size_t word_count) {
   const std::size_t place = head + kMarkSize + 4 * word_count, body = place + 4;
-  const std::uint32_t crc =
-      crc32(bytes.data() + body, bytes.size() - body, crc32(bytes.data() + head, place - head));
+  const std::uint32_t crc = crc32(bytes.data() + body, bytes.size() - body, crc32(bytes.data() + head, place - head));
   std::memcpy(bytes.data() + place, &crc, sizeof(crc));
   return crc;
 }
 
-ContainerWriter::ContainerWriter(Sink sink, const Format& format, std::string_view text)
-    : sink_(std::move(sink)) {
+ContainerWriter::ContainerWriter(Sink sink, const Format& format, std::string_view text) : sink_(std::move(sink)) {
   std::string bytes(format.magic);
   put(bytes, format.major);
   put(bytes, format.minor);
@@ -91,10 +87,8 @@ ContainerReader::ContainerReader(const std::string& path, const Format& format) 
   bytes_.read(fixed.data() + format.magic.size(), kHeaderFixedSize - format.magic.size(), "the header");
   const auto major = get<std::uint16_t>(&fixed[8]), minor = get<std::uint16_t>(&fixed[10]);
   if (major != format.major)
-    bytes_.fail(
-        8,
-        "version " + std::to_string(major) + "." + std::to_string(minor) + " of " + std::string(format.name),
-        "this program reads version " + std::to_string(format.major) + ": make the file again with it");
+    bytes_.fail(8, "version " + std::to_string(major) + "." + std::to_string(minor) + " of " + std::string(format.name),
+                "this program reads version " + std::to_string(format.major) + ": make the file again with it");
   minor_ = minor;
   later_minor_ = minor > format.minor;
   const auto text_size = get<std::uint32_t>(&fixed[12]);
@@ -110,8 +104,7 @@ ContainerReader::ContainerReader(const std::string& path, const Format& format) 
 }
 
 void ContainerReader::expect_good(const std::optional<HeaderError>& error) const {
-  if (error)
-    bytes_.fail(kHeaderFixedSize + error->offset, error->reason, "correct the program that wrote it");
+  if (error) bytes_.fail(kHeaderFixedSize + error->offset, error->reason, "correct the program that wrote it");
 }
 
 std::string ContainerReader::read_mark() {

@@ -24,8 +24,7 @@ constexpr Tables make_tables() {
     tables[0][b] = r;
   }
   for (std::size_t k = 1; k < 16; ++k)
-    for (std::uint32_t b = 0; b < 256; ++b)
-      tables[k][b] = (tables[k - 1][b] >> 8) ^ tables[0][tables[k - 1][b] & 255];
+    for (std::uint32_t b = 0; b < 256; ++b) tables[k][b] = (tables[k - 1][b] >> 8) ^ tables[0][tables[k - 1][b] & 255];
   return tables;
 }
 constexpr Tables kTables = make_tables();
@@ -51,8 +50,7 @@ __attribute__((target("pclmul"))) inline __m128i load(const unsigned char* p) {
 
 /// x moved forward by the distance whose remainders are in k, plus the 16 bytes that lie there.
 __attribute__((target("pclmul"))) inline __m128i fold(__m128i x, __m128i k, __m128i next) {
-  return _mm_xor_si128(_mm_xor_si128(_mm_clmulepi64_si128(x, k, 0x00), _mm_clmulepi64_si128(x, k, 0x11)),
-                       next);
+  return _mm_xor_si128(_mm_xor_si128(_mm_clmulepi64_si128(x, k, 0x00), _mm_clmulepi64_si128(x, k, 0x11)), next);
 }
 
 /// As advance(), for size >= 64.

@@ -33,7 +33,7 @@ double ExactSum::rounded() const {
   int top = int(limbs.size()) - 1;
   while (top > 0 && limbs[std::size_t(top)] == 0) --top;
   const auto limb = [&](int i) { return i >= 0 ? std::uint64_t(limbs[std::size_t(i)]) : 0; };
-  const int gap = std::countl_zero(std::uint32_t(limb(top)));   // 0 .. 32
+  const int gap = std::countl_zero(std::uint32_t(limb(top)));  // 0 .. 32
   std::uint64_t high = (limb(top) << 32) | limb(top - 1);
   if (gap > 0) high = (gap < 64 ? high << gap : 0) | (limb(top - 2) >> (32 - gap));
   bool rest = (limb(top - 2) & ((std::uint64_t(1) << (32 - gap)) - 1)) != 0;

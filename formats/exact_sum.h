@@ -24,7 +24,7 @@ class ExactSum {
   double rounded() const;
 
  private:
-  std::array<std::int64_t, 512> bins_{};   ///< [256 s + e]: multiples of (-1)^s 2^(max(e, 1) - 150)
+  std::array<std::int64_t, 512> bins_{};  ///< [256 s + e]: multiples of (-1)^s 2^(max(e, 1) - 150)
 };
 
 /// One exact sum per channel.

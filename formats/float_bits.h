@@ -16,9 +16,7 @@ inline bool is_negative(float x) { return std::bit_cast<std::uint32_t>(x) > 0x80
 /// +0 or -0, and no denormal number.
 inline bool is_zero(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7fffffffu) == 0; }
 
-inline bool is_finite(const std::array<float, 3>& v) {
-  return is_finite(v[0]) && is_finite(v[1]) && is_finite(v[2]);
-}
+inline bool is_finite(const std::array<float, 3>& v) { return is_finite(v[0]) && is_finite(v[1]) && is_finite(v[2]); }
 inline bool is_negative(const std::array<float, 3>& v) {
   return is_negative(v[0]) || is_negative(v[1]) || is_negative(v[2]);
 }

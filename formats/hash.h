@@ -24,8 +24,7 @@ class Hasher {
   void add(std::string_view text);
   /// A number or plain struct without padding, little-endian as on every machine we build for.
   template <class T>
-    requires(std::is_trivially_copyable_v<T> && !std::is_convertible_v<T, std::string_view>)
-  void add(const T& value) {
+  requires(std::is_trivially_copyable_v<T> && !std::is_convertible_v<T, std::string_view>) void add(const T& value) {
     add_bytes(&value, sizeof(T));
   }
   /// An array with its length.

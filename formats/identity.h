@@ -12,7 +12,7 @@ namespace tempolux::formats {
 /// valid; empty means unknown. Never the camera, seed, options or version.
 struct Identity {
   std::string static_geometry, moving_geometry, materials, lights, media;
-  int first_frame = 0, last_frame = -1;      ///< valid for these frames; last < first: no identity at all
+  int first_frame = 0, last_frame = -1;  ///< valid for these frames; last < first: no identity at all
 
   /// Of photons: hash of the frozen emission table, by which paths were chosen. Light that was recorded holds whatever
   /// it is; an update that replaces some of the paths needs the same.

@@ -13,8 +13,8 @@ namespace tempolux::formats {
 inline std::array<std::uint16_t, 2> encode_normal(std::array<float, 3> n) {
   const double x = n[0], y = n[1], z = n[2], s = std::abs(x) + std::abs(y) + std::abs(z), p = x / s, q = y / s;
   const double below = z < 0, above = 1 - below, a = std::abs(p),
-               b = std::abs(q);                      // one is 1, one is 0: products exact
-  const auto code = [](double size, double sign) {   // + 0: -0 counts as positive
+               b = std::abs(q);                     // one is 1, one is 0: products exact
+  const auto code = [](double size, double sign) {  // + 0: -0 counts as positive
     return std::uint16_t(int(std::floor(32767 * std::copysign(size, sign + 0.0) + 0.5)) + 32767);
   };
   return {code(a * above + (1 - b) * below, p), code(b * above + (1 - a) * below, q)};

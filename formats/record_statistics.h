@@ -60,8 +60,7 @@ struct RecordDifference {
     if (differing++ == 0) first = index;
     const auto in_a = irradiance_of(a), in_b = irradiance_of(b);
     for (std::size_t c = 0; c < 3; ++c) {
-      largest_position[c] =
-          std::max(largest_position[c], std::abs(double(a.position[c]) - double(b.position[c])));
+      largest_position[c] = std::max(largest_position[c], std::abs(double(a.position[c]) - double(b.position[c])));
       largest_irradiance[c] = std::max(largest_irradiance[c], std::abs(double(in_a[c]) - double(in_b[c])));
     }
   }

@@ -59,16 +59,13 @@ std::optional<HeaderError> parse_lines(std::string_view text, bool allow_unknown
                                        std::span<const std::string_view> required,
                                        const std::function<Line(std::string_view, std::string_view)>& take) {
   std::vector<std::string_view> seen;
-  const auto is_seen = [&](std::string_view key) {
-    return std::find(seen.begin(), seen.end(), key) != seen.end();
-  };
+  const auto is_seen = [&](std::string_view key) { return std::find(seen.begin(), seen.end(), key) != seen.end(); };
   for (std::size_t first = 0; first < text.size();) {
     const std::size_t last = text.find('\n', first);
     if (last == text.npos) return HeaderError{first, "header line without LF"};
     const std::string_view line = text.substr(first, last - first);
     const std::size_t colon = line.find(": ");
-    if (colon == line.npos || !is_printable(line))
-      return HeaderError{first, "header line is not \"key: value\""};
+    if (colon == line.npos || !is_printable(line)) return HeaderError{first, "header line is not \"key: value\""};
     const std::string_view key = line.substr(0, colon);
     if (key != "history" && is_seen(key)) return HeaderError{first, "header key twice: " + std::string(key)};
     const Line result = take(key, line.substr(colon + 2));

@@ -1,4 +1,5 @@
-// modules/decode.h -- the three libraries behind tempolux-decode, one file each. What the settings mean: lib/core/unpack.h.
+// modules/decode.h -- the three libraries behind tempolux-decode, one file each. What the settings mean:
+// lib/core/unpack.h.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// EXT_meshopt_compression through meshoptimizer. Its decoders trust counts and sizes, so these are checked as the extension
-// demands them.
+// EXT_meshopt_compression through meshoptimizer. Its decoders trust counts and sizes, so these are checked as the
+// extension demands them.
 #include <meshoptimizer.h>
 
 #include "lib/core/unpack.h"
@@ -12,8 +12,9 @@ namespace {
 std::string decode_indices(bool triangles, std::size_t count, std::size_t size, std::span<const unsigned char> packed,
                            std::span<unsigned char> unpacked) {
   if ((size != 2 && size != 4) || (triangles && count % 3 != 0)) return "got sizes that no index data has";
-  const int result = triangles ? meshopt_decodeIndexBuffer(unpacked.data(), count, size, packed.data(), packed.size())
-                               : meshopt_decodeIndexSequence(unpacked.data(), count, size, packed.data(), packed.size());
+  const int result = triangles
+                         ? meshopt_decodeIndexBuffer(unpacked.data(), count, size, packed.data(), packed.size())
+                         : meshopt_decodeIndexSequence(unpacked.data(), count, size, packed.data(), packed.size());
   if (result == -1) return "does not know this version of meshopt index data";
   return result == 0 ? "" : "cannot decode the index data: it is damaged";
 }

@@ -10,8 +10,7 @@ std::string decode_webp(std::span<const std::uint32_t> settings, std::span<const
   if (settings.size() != 3) return "got a request that is no request for WebP";
   const std::uint64_t width = settings[0], height = settings[1], channels = settings[2];
   constexpr std::uint64_t most = 16384;  // 14 bits for each side
-  if ((channels != 3 && channels != 4) || width > most || height > most ||
-      unpacked.size() != width * height * channels)
+  if ((channels != 3 && channels != 4) || width > most || height > most || unpacked.size() != width * height * channels)
     return "got a size that no WebP image has";
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(packed.data(), packed.size(), &features) != VP8_STATUS_OK)

@@ -29,15 +29,33 @@ namespace tempolux {
 namespace {
 
 /// What needs no look at its arguments: the files are open already, and none of these opens another.
-constexpr int kAllowed[] = {
-    SCMP_SYS(read),          SCMP_SYS(readv),        SCMP_SYS(pread64),       SCMP_SYS(write),
-    SCMP_SYS(writev),        SCMP_SYS(lseek),        SCMP_SYS(fstat),         SCMP_SYS(close),
-    SCMP_SYS(brk),           SCMP_SYS(munmap),       SCMP_SYS(mremap),        SCMP_SYS(madvise),
-    SCMP_SYS(futex),         SCMP_SYS(sched_yield),  SCMP_SYS(clock_gettime), SCMP_SYS(getrandom),
-    SCMP_SYS(rt_sigprocmask), SCMP_SYS(rt_sigaction), SCMP_SYS(rt_sigreturn),  // abort() and handlers of signals
-    SCMP_SYS(getpid),        SCMP_SYS(gettid),       SCMP_SYS(exit),          SCMP_SYS(exit_group),
-    SCMP_SYS(sysinfo),       SCMP_SYS(sched_getaffinity),   // qsort asks for memory, TBB for processors
-    SCMP_SYS(rseq),          SCMP_SYS(set_robust_list)};    // first steps of threads that were started before
+constexpr int kAllowed[] = {SCMP_SYS(read),
+                            SCMP_SYS(readv),
+                            SCMP_SYS(pread64),
+                            SCMP_SYS(write),
+                            SCMP_SYS(writev),
+                            SCMP_SYS(lseek),
+                            SCMP_SYS(fstat),
+                            SCMP_SYS(close),
+                            SCMP_SYS(brk),
+                            SCMP_SYS(munmap),
+                            SCMP_SYS(mremap),
+                            SCMP_SYS(madvise),
+                            SCMP_SYS(futex),
+                            SCMP_SYS(sched_yield),
+                            SCMP_SYS(clock_gettime),
+                            SCMP_SYS(getrandom),
+                            SCMP_SYS(rt_sigprocmask),
+                            SCMP_SYS(rt_sigaction),
+                            SCMP_SYS(rt_sigreturn),  // abort() and handlers of signals
+                            SCMP_SYS(getpid),
+                            SCMP_SYS(gettid),
+                            SCMP_SYS(exit),
+                            SCMP_SYS(exit_group),
+                            SCMP_SYS(sysinfo),
+                            SCMP_SYS(sched_getaffinity),  // qsort asks for memory, TBB for processors
+                            SCMP_SYS(rseq),
+                            SCMP_SYS(set_robust_list)};  // first steps of threads that were started before
 
 using Filter = std::unique_ptr<void, decltype(&seccomp_release)>;
 
@@ -45,7 +63,8 @@ using Filter = std::unique_ptr<void, decltype(&seccomp_release)>;
 int add_rules(scmp_filter_ctx filter) {
   int result = 0;
   const auto allow = [&](int call, auto... conditions) {
-    if (result == 0) result = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, unsigned(sizeof...(conditions)), conditions...);
+    if (result == 0)
+      result = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, unsigned(sizeof...(conditions)), conditions...);
   };
   for (const int call : kAllowed) allow(call);
   // Memory, but none that can be run.

@@ -1,5 +1,5 @@
-// tempolux-decode -- a helper program that lib/core/unpack.cpp starts under limits of memory and time: unpacks what Draco,
-// meshoptimizer or WebP packed. Its input and output are described in lib/core/unpack.h; people do not call it.
+// tempolux-decode -- a helper program that lib/core/unpack.cpp starts under limits of memory and time: unpacks what
+// Draco, meshoptimizer or WebP packed. Its input and output are described in lib/core/unpack.h; people do not call it.
 #include <unistd.h>
 
 #include <algorithm>
@@ -99,8 +99,6 @@ int main() {
     return run();
   } catch (const std::bad_alloc&) {
     std::fputs("needs more memory than it may take for data of this size\n", stderr);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "cannot decode it: %s\n", error.what());
-  }
+  } catch (const std::exception& error) { std::fprintf(stderr, "cannot decode it: %s\n", error.what()); }
   return 2;
 }

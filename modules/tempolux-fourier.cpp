@@ -25,24 +25,19 @@ fftwf_plan plan_for(const FourierRequest& request) {
   if (plan) return plan;
   auto* out = reinterpret_cast<fftwf_complex*>(request.out);
   if (request.kind == tempolux::fourier_forward)
-    plan = fftwf_plan_dft_r2c_2d(request.height, request.width, request.in, out,
-                                 FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
-  else
-    plan = fftwf_plan_dft_2d(request.height, request.width, out, out, FFTW_BACKWARD, FFTW_ESTIMATE);
+    plan = fftwf_plan_dft_r2c_2d(request.height, request.width, request.in, out, FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+  else plan = fftwf_plan_dft_2d(request.height, request.width, out, out, FFTW_BACKWARD, FFTW_ESTIMATE);
   return plan;
 }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) std::int32_t tempolux_fourier(
-    const FourierRequest* request) {
+extern "C" __attribute__((visibility("default"))) std::int32_t tempolux_fourier(const FourierRequest* request) {
   if (request->abi != tempolux::kFourierAbi) return tempolux::fourier_bad_version;
   const fftwf_plan plan = plan_for(*request);
   if (!plan) return tempolux::fourier_no_memory;
   auto* out = reinterpret_cast<fftwf_complex*>(request->out);
-  if (request->kind == tempolux::fourier_forward)
-    fftwf_execute_dft_r2c(plan, request->in, out);
-  else
-    fftwf_execute_dft(plan, out, out);
+  if (request->kind == tempolux::fourier_forward) fftwf_execute_dft_r2c(plan, request->in, out);
+  else fftwf_execute_dft(plan, out, out);
   return tempolux::fourier_ok;
 }

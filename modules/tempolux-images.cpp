@@ -30,9 +30,7 @@ void decode(const PixelsRequest& request) {
 std::array<const std::vector<float>*, 3> colour(const tempolux::Image& image, const char* path) {
   try {
     return image.rgb("");
-  } catch (const tempolux::InputError& e) {
-    throw tempolux::InputError(std::string(path) + ": " + e.what());
-  }
+  } catch (const tempolux::InputError& e) { throw tempolux::InputError(std::string(path) + ": " + e.what()); }
 }
 
 void load(const PixelsRequest& request) {
@@ -62,14 +60,10 @@ extern "C" __attribute__((visibility("default"))) std::int32_t tempolux_read_pix
     return pixels_bad_input;
   }
   try {
-    if (request->path)
-      load(*request);
-    else
-      decode(*request);
+    if (request->path) load(*request);
+    else decode(*request);
     return pixels_ok;
-  } catch (const std::bad_alloc&) {
-    return pixels_no_resource;
-  } catch (const ResourceError& e) {
+  } catch (const std::bad_alloc&) { return pixels_no_resource; } catch (const ResourceError& e) {
     request->say(request->user, e.what());
     return pixels_no_resource;
   } catch (const std::exception& e) {

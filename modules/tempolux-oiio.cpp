@@ -1,8 +1,8 @@
 // tempolux-oiio -- reads one JPEG or TIFF through OpenImageIO and prints its pixels: lib/image/image_pipe.h.
 //
-// A program of its own, started by lib/image/any_io.cpp under limits of memory and time: linking Debian's OpenImageIO costs 0.4 s
-// and 130 MB at every start, and files of strangers reach 261 libraries through it. The file is opened before it is looked at;
-// then modules/guard.h takes away what reading does not need.
+// A program of its own, started by lib/image/any_io.cpp under limits of memory and time: linking Debian's OpenImageIO
+// costs 0.4 s and 130 MB at every start, and files of strangers reach 261 libraries through it. The file is opened
+// before it is looked at; then modules/guard.h takes away what reading does not need.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -73,14 +73,16 @@ void run() {
   const std::unique_ptr<OIIO::ImageInput> input = reader(request);
   std::FILE* const file = std::fopen(request.path.c_str(), "rb");
   if (!file) throw Refused{"cannot be opened"};
-  if (const std::string trouble = tempolux::guard_process(); !trouble.empty()) throw Refused{"tempolux-oiio " + trouble};
+  if (const std::string trouble = tempolux::guard_process(); !trouble.empty())
+    throw Refused{"tempolux-oiio " + trouble};
   OIIO::Filesystem::IOFile bytes(file, OIIO::Filesystem::IOProxy::Read);
   if (!input->set_ioproxy(&bytes)) throw Refused{input->geterror()};
   OIIO::ImageSpec spec;
   if (!input->open(request.path, spec)) throw Refused{input->geterror()};
   const ImagePipeHead head = head_of(spec, request.ask);
   std::vector<float> pixels(std::size_t(head.width) * std::size_t(head.height) * std::size_t(head.channels));
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) throw Refused{input->geterror()};
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
+    throw Refused{input->geterror()};
   std::fwrite(&head, sizeof head, 1, stdout);
   std::fwrite(pixels.data(), sizeof(float), pixels.size(), stdout);
   if (std::fflush(stdout) != 0) throw Refused{"its pixels could not be handed over"};
@@ -92,14 +94,10 @@ int main() {
   std::string words;
   try {
     run();
-    std::_Exit(0);   // at a plain end 261 libraries would put their things away, which the guard need not allow
-  } catch (const Refused& refused) {
-    words = refused.words;
-  } catch (const std::bad_alloc&) {
+    std::_Exit(0);  // at a plain end 261 libraries would put their things away, which the guard need not allow
+  } catch (const Refused& refused) { words = refused.words; } catch (const std::bad_alloc&) {
     words = "needs more memory than reading it may take; convert it to EXR or PNG, or make it smaller";
-  } catch (const std::exception& error) {
-    words = error.what();
-  }
+  } catch (const std::exception& error) { words = error.what(); }
   std::fprintf(stderr, "%s\n", words.substr(0, words.find('\n')).c_str());
   std::_Exit(2);
 }

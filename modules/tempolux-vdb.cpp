@@ -1,9 +1,10 @@
-// tempolux-vdb -- reads one density of each OpenVDB file that it is asked for and prints its voxels: lib/volume/vdb_pipe.h.
+// tempolux-vdb -- reads one density of each OpenVDB file that it is asked for and prints its voxels:
+// lib/volume/vdb_pipe.h.
 //
 // A program of its own, started by lib/volume/vdb_file.cpp under limits of memory and time: damaged files crash or hang
-// OpenVDB 10, and starting with it costs .06 s and 32 MB that scenes without smoke need not pay. All files are opened before the
-// first is looked at; then modules/guard.h takes away what reading does not need. openvdb::io::File opens files by itself, so
-// that its part is done here: finding grids by their descriptors.
+// OpenVDB 10, and starting with it costs .06 s and 32 MB that scenes without smoke need not pay. All files are opened
+// before the first is looked at; then modules/guard.h takes away what reading does not need. openvdb::io::File opens
+// files by itself, so that its part is done here: finding grids by their descriptors.
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -34,7 +35,7 @@ struct Refused {
   std::string words;
 };
 
-constexpr std::size_t kMostNames = 12;   ///< of grids, in a message
+constexpr std::size_t kMostNames = 12;  ///< of grids, in a message
 constexpr std::int32_t kMostGrids = 1024;
 
 /// Refuses what is no VDB by other words than what is damaged. The file is at its beginning before and after.
@@ -47,8 +48,8 @@ void look_at_beginning(std::istream& file) {
   std::uint32_t version = 0;
   std::copy(bytes + 8, bytes + 12, reinterpret_cast<char*>(&version));
   if (version < 213 || version > openvdb::OPENVDB_FILE_VERSION)
-    throw Refused{"has file version " + std::to_string(version) + "; 213 to " + std::to_string(openvdb::OPENVDB_FILE_VERSION) +
-                  " can be read, save it again with a newer program"};
+    throw Refused{"has file version " + std::to_string(version) + "; 213 to " +
+                  std::to_string(openvdb::OPENVDB_FILE_VERSION) + " can be read, save it again with a newer program"};
   file.seekg(0);
 }
 
@@ -60,14 +61,13 @@ std::string printable(std::string text, std::size_t most) {
 }
 
 struct Candidate {
-  openvdb::io::GridDescriptor place;         ///< where the grid lies in the file
+  openvdb::io::GridDescriptor place;  ///< where the grid lies in the file
   std::string name;
-  openvdb::GridBase::Ptr metadata;           ///< the grid: whole, or its description alone
-  bool is_number() const {
-    return metadata->isType<openvdb::FloatGrid>() || metadata->isType<openvdb::DoubleGrid>();
-  }
+  openvdb::GridBase::Ptr metadata;  ///< the grid: whole, or its description alone
+  bool is_number() const { return metadata->isType<openvdb::FloatGrid>() || metadata->isType<openvdb::DoubleGrid>(); }
   bool is_density() const {
-    return is_number() && (metadata->getGridClass() == openvdb::GRID_FOG_VOLUME || metadata->getGridClass() == openvdb::GRID_UNKNOWN);
+    return is_number() &&
+           (metadata->getGridClass() == openvdb::GRID_FOG_VOLUME || metadata->getGridClass() == openvdb::GRID_UNKNOWN);
   }
   std::string kind() const {
     return is_number() ? openvdb::GridBase::gridClassToString(metadata->getGridClass()) : metadata->type();
@@ -156,7 +156,8 @@ class OpenFile : openvdb::io::Archive {
   }
 
   std::istream& file_;
-  openvdb::io::StreamMetadata::Ptr metadata_ = std::make_shared<openvdb::io::StreamMetadata>();   ///< the stream points here
+  openvdb::io::StreamMetadata::Ptr metadata_ =
+      std::make_shared<openvdb::io::StreamMetadata>();  ///< the stream points here
 };
 
 /// The one to read: by name, else "density", else the only density.
@@ -177,21 +178,24 @@ const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& 
       if (grid.is_density()) found.push_back(&grid);
   if (found.empty() && wanted.empty() && grids.size() == 1) found.push_back(&grids.front());
   if (found.empty())
-    throw Refused{"has no grid " + (wanted.empty() ? "density and no other that could be one" : "'" + printable(name, 40) + "'") +
+    throw Refused{"has no grid " +
+                  (wanted.empty() ? "density and no other that could be one" : "'" + printable(name, 40) + "'") +
                   "; it has " + listed(grids)};
-  if (number >= long(found.size())) throw Refused{"has " + std::to_string(found.size()) + " grids '" + printable(name, 40) + "'"};
+  if (number >= long(found.size()))
+    throw Refused{"has " + std::to_string(found.size()) + " grids '" + printable(name, 40) + "'"};
   if (found.size() > 1 && number < 0)
-    throw Refused{"has several grids that could be meant: " + listed(grids) + "; choose one by NAME, or NAME:0, NAME:1 of equal names"};
+    throw Refused{"has several grids that could be meant: " + listed(grids) +
+                  "; choose one by NAME, or NAME:0, NAME:1 of equal names"};
   const Candidate& grid = *found[std::size_t(std::max(0L, number))];
   if (!grid.is_density())
-    throw Refused{"grid '" + printable(grid.name, 40) + "' is not a density but " + printable(grid.kind(), 60) + "; choose from " +
-                  listed(grids)};
+    throw Refused{"grid '" + printable(grid.name, 40) + "' is not a density but " + printable(grid.kind(), 60) +
+                  "; choose from " + listed(grids)};
   return grid;
 }
 
 std::array<double, 12> affine_of(const openvdb::math::Transform& transform) {
   if (!transform.isLinear()) throw Refused{"its grid is bent (a frustum); resample it to a box"};
-  const auto m = transform.baseMap()->getAffineMap()->getMat4();   // of row vectors
+  const auto m = transform.baseMap()->getAffineMap()->getMat4();  // of row vectors
   std::array<double, 12> rows{};
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 4; ++c) rows[std::size_t(4 * r + c)] = m(c, r);
@@ -202,8 +206,8 @@ std::array<double, 12> affine_of(const openvdb::math::Transform& transform) {
 
 void check(double value, const openvdb::Coord& at) {
   if (value >= 0 && value <= 3e38) return;
-  throw Refused{"voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " + std::to_string(at.z()) + ") is " +
-                std::to_string(value) + ": a density is finite and not negative"};
+  throw Refused{"voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " + std::to_string(at.z()) +
+                ") is " + std::to_string(value) + ": a density is finite and not negative"};
 }
 
 /// Tiles (blocks of one value) that are not 0 become voxels.
@@ -228,7 +232,8 @@ void expand_tiles(Tree& tree) {
 template <class Grid>
 void print(Grid& grid, const std::string& name) {
   auto& tree = grid.tree();
-  if (tree.background() != 0) throw Refused{"its density is not 0 outside its voxels (background " + std::to_string(tree.background()) + ")"};
+  if (tree.background() != 0)
+    throw Refused{"its density is not 0 outside its voxels (background " + std::to_string(tree.background()) + ")"};
   expand_tiles(tree);
   VdbPipeHead head;
   head.world_from_index = affine_of(grid.transform());
@@ -246,7 +251,7 @@ void print(Grid& grid, const std::string& name) {
   for (const auto* leaf : leaves) {
     VoxelBlock block;
     block.origin = {leaf->origin().x(), leaf->origin().y(), leaf->origin().z()};
-    for (openvdb::Index i = 0; i < 512; ++i) {   // active or not: what is stored is what is read
+    for (openvdb::Index i = 0; i < 512; ++i) {  // active or not: what is stored is what is read
       check(double(leaf->getValue(i)), leaf->offsetToGlobalCoord(i));
       block.values[i] = float(leaf->getValue(i));
     }
@@ -293,12 +298,13 @@ void write() {
     if (std::fread(to, 1, size, stdin) != size) throw Refused{"was given less than it was promised"};
   };
   take(&head, sizeof head);
-  if (head.magic != tempolux::VdbWriteHead{}.magic || head.name_size > 256) throw Refused{"is of another version than its caller"};
+  if (head.magic != tempolux::VdbWriteHead{}.magic || head.name_size > 256)
+    throw Refused{"is of another version than its caller"};
   std::string name(head.name_size, ' ');
   take(name.data(), name.size());
   auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
   grid->setName(name);
-  openvdb::Mat4d place = openvdb::Mat4d::identity();   // of row vectors
+  openvdb::Mat4d place = openvdb::Mat4d::identity();  // of row vectors
   for (int a = 0; a < 3; ++a) {
     place(a, a) = head.voxel[std::size_t(a)];
     place(3, a) = head.first_centre[std::size_t(a)];
@@ -310,7 +316,8 @@ void write() {
       for (std::int32_t z = 0; z < head.counts[2]; ++z) {
         float rgb[3];
         take(rgb, sizeof rgb);
-        if (rgb[0] != 0 || rgb[1] != 0 || rgb[2] != 0) accessor.setValue({x, y, z}, openvdb::Vec3s(rgb[0], rgb[1], rgb[2]));
+        if (rgb[0] != 0 || rgb[1] != 0 || rgb[2] != 0)
+          accessor.setValue({x, y, z}, openvdb::Vec3s(rgb[0], rgb[1], rgb[2]));
       }
   openvdb::io::Stream(std::cout).write(openvdb::GridCPtrVec{grid});
   if (!std::cout.flush()) throw Refused{"could not hand over the file"};
@@ -327,14 +334,13 @@ void run(bool writes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);   // a guarded process starts no other
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism,
+                                       1);  // a guarded process starts no other
   std::string words;
   try {
     run(argc > 1 && std::string(argv[1]) == "write");
-    std::_Exit(0);   // at a plain end TBB would start threads again, to take things down
-  } catch (const Refused& refused) {
-    words = refused.words;
-  } catch (const std::bad_alloc&) {
+    std::_Exit(0);  // at a plain end TBB would start threads again, to take things down
+  } catch (const Refused& refused) { words = refused.words; } catch (const std::bad_alloc&) {
     words = "does not fit the memory it may use; raise --max-memory, or resample it coarser";
   } catch (const std::exception& error) {
     words = "OpenVDB cannot read it: " + printable(error.what(), 300) + "; is it whole?";

@@ -45,13 +45,13 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("test", o.test, "frame to judge, EXR, or a pattern such as f.####.exr")->required();
   app.add_option("reference", o.reference, "its reference, unless --reference-halves is given");
   app.add_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
-      ->expected(2)->type_name("FILE");
-  app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
-  app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")
-      ->type_name("NAME");
-  app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")
+      ->expected(2)
       ->type_name("FILE");
-  app.add_option("--except", o.except, "EXR; pixels where one of its channels is not 0 do not count: a mask of ibr-warp")
+  app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
+  app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")->type_name("NAME");
+  app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")->type_name("FILE");
+  app.add_option("--except", o.except,
+                 "EXR; pixels where one of its channels is not 0 do not count: a mask of ibr-warp")
       ->type_name("FILE");
   app.add_option("--relative-to", o.smooth,
                  "EXR; stands for the reference in relMSE's denominator, where the reference's noise would count")
@@ -61,24 +61,25 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("{error,aqm}")
       ->capture_default_str();
   tools::declare_vision(tool, o.vision);
-  app.add_flag("--either", o.either, "the two frames err alike, such as one frame warped from two keys: AQM of what either errs by, their difference / sqrt 2");
+  app.add_flag("--either", o.either,
+               "the two frames err alike, such as one frame warped from two keys: AQM of what either errs by, their "
+               "difference / sqrt 2");
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
-  tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)",
-                     "--difference");
+  tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
-      ->type_name("VALUE")->capture_default_str()->check(tools::number_between(0));
+      ->type_name("VALUE")
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   app.add_option("--fail-above", o.fail_above,
                  "exit 1 if the RMSE is above this, or what --fail-by names; 5%: if AQM is")
       ->type_name("VALUE")
       ->check(tools::number_between(0))
       ->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
-  app.add_option("--fail-by", o.fail_by,
-                 "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")
+  app.add_option("--fail-by", o.fail_by, "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")
       ->capture_default_str()
       ->check(CLI::IsMember({"rmse", "relmse", "aqm"}));
-  tool.leave_out_of_history(
-      app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
+  tool.leave_out_of_history(app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
   tool.common_options(tools::uses_frames);
 }
 
@@ -88,17 +89,14 @@ void check(const tools::Tool& tool, const Options& o, bool frames_given) {
   tools::check_vision(o.vision, frames_given && tool.common().frames.size() > 1);
   if (o.reference.empty() == o.halves.empty())
     throw InputError("give the reference either as second file or as --reference-halves A B");
-  if (o.own_halves && !o.halves.empty())
-    throw InputError("--halves: judges two files, without --reference-halves");
+  if (o.own_halves && !o.halves.empty()) throw InputError("--halves: judges two files, without --reference-halves");
   if (!o.halves.empty() && (o.halves[0] == o.halves[1] || o.test == o.halves[0] || o.test == o.halves[1]))
-    throw InputError(
-        "--reference-halves: the same file twice; the halves must be independent of each other and of x");
+    throw InputError("--reference-halves: the same file twice; the halves must be independent of each other and of x");
   if (frames_given && tool.common().frames.size() > 1 && !tools::has_frame_pattern(o.test))
     throw InputError(o.test + ": --frames names several frames; give a pattern such as f.####.exr");
   if (frames_given && tool.common().frames.size() > 1 && !o.difference.empty() &&
       !tools::has_frame_pattern(o.difference))
-    throw InputError("--difference " + o.difference +
-                     ": give a pattern such as d.####.png for several frames");
+    throw InputError("--difference " + o.difference + ": give a pattern such as d.####.png for several frames");
   if (!frames_given && tools::has_frame_pattern(o.test))
     throw InputError(o.test + ": a pattern of frames; say which with --frames, such as 0-47");
   if (!o.difference.empty() && !o.difference.ends_with(".exr") && !o.difference.ends_with(".png"))
@@ -134,7 +132,8 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   return comparison;
 }
 
-/// relMSE as something to judge by: where it does not exist, as the reference is black, 0 of equal frames and infinity of others.
+/// relMSE as something to judge by: where it does not exist, as the reference is black, 0 of equal frames and infinity
+/// of others.
 double relative_error(const Comparison& result) {
   if (const auto& relative = result.total.relative_squared_error) return relative->value;
   return result.total.squared_error.root() > 0 ? INFINITY : 0;
@@ -177,8 +176,7 @@ Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector
                           FrameOutputs& outputs) {
   ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
   tools::IdentityGuard identities(tool, o.allow_stale);
-  const tools::ComparedFiles names{o.test,   o.references(), o.mask,       o.layer_or_rgb(),
-                                   o.smooth, o.except,       o.vision.flow};
+  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth, o.except, o.vision.flow};
   std::optional<VisionOptions> viewing;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");
@@ -234,8 +232,8 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("aqm-compare",
-                   "Say how wrong a frame or a sequence is, and whether a viewer would see it.", argc, argv);
+  tools::Tool tool("aqm-compare", "Say how wrong a frame or a sequence is, and whether a viewer would see it.", argc,
+                   argv);
   Options options;
   declare(tool, options);
   return tool.run([&] { return compare(tool, options, tool.app().get_option("--frames")->count() > 0); });

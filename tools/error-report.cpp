@@ -31,24 +31,29 @@ void declare(tools::Tool& tool, Options& o) {
   CLI::App& app = tool.app();
   app.add_option("manifest", o.manifest, "JSON that lists the runs (formats/report/report.md)");
   app.add_option("--run", o.runs, "a run: KEY=VALUE,... (scene, curve, label, x) STATS+STATS... COMPARISON")
-      ->type_size(3)->allow_extra_args(false)->type_name("WHAT STATS COMPARISON");
+      ->type_size(3)
+      ->allow_extra_args(false)
+      ->type_name("WHAT STATS COMPARISON");
   tool.output_option(o.folder, "folder of report.csv, report.md, index.html, plots")->capture_default_str();
   app.add_option("--title", o.title, "title of the report")->type_name("TEXT");
   app.add_option("--baseline", o.baseline, "curve that speed-ups are over; each scene's first without")
       ->type_name("CURVE");
   app.add_option("--time", o.time, "cpu: processor seconds; wall: elapsed seconds")
-      ->type_name("KIND")->capture_default_str()->check(CLI::IsMember({"cpu", "wall"}));
+      ->type_name("KIND")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"cpu", "wall"}));
   app.add_flag("--no-plots", o.no_plots, "draw nothing, so that gnuplot is not needed");
   app.add_option("--plot-timeout", o.plot_timeout_s, "seconds that gnuplot may take for a plot")
-      ->type_name("SECONDS")->capture_default_str()->check(tools::number_between(0.1, 86400.0));
+      ->type_name("SECONDS")
+      ->capture_default_str()
+      ->check(tools::number_between(0.1, 86400.0));
   tool.common_options(0);
 }
 
 ReportInput read_input(const Options& o) {
   if (o.manifest.empty() && o.runs.empty()) throw InputError("no runs; give a manifest, or --run");
   ReportInput input = o.manifest.empty() ? ReportInput{} : read_manifest(o.manifest);
-  for (std::size_t i = 0; i + 2 < o.runs.size(); i += 3)
-    add_run(input, o.runs[i], o.runs[i + 1], o.runs[i + 2]);
+  for (std::size_t i = 0; i + 2 < o.runs.size(); i += 3) add_run(input, o.runs[i], o.runs[i + 1], o.runs[i + 2]);
   if (input.runs.empty() && input.points.empty()) throw InputError(o.manifest + ": lists no run");
   if (!o.title.empty()) input.title = o.title;
   if (!o.baseline.empty()) input.baseline = o.baseline;
@@ -90,8 +95,7 @@ int report(tools::Tool& tool, const Options& o) {
   tool.stats().phase("write");
   const std::string html = report_html(input, scenes, plots);
   write(tools::Output(folder + "report.csv", keep, tools::Output::Kind::text), report_csv(input));
-  write(tools::Output(folder + "report.md", keep, tools::Output::Kind::text),
-        report_markdown(input, scenes, plots));
+  write(tools::Output(folder + "report.md", keep, tools::Output::Kind::text), report_markdown(input, scenes, plots));
   for (const auto& [name, bytes] : plots) write(tools::Output(folder + name, keep), bytes);
   write(std::move(page), html);
   tool.stats().count("runs", double(input.runs.size()));

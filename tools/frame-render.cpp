@@ -46,10 +46,12 @@ struct Options {
   double pixel_error = -1;
   bool half_float = false, learn_lights = false, keep_outliers = false;
   int width = 640, height = 360;
-  double audit = 0;   ///< share of the frame's rays
+  double audit = 0;  ///< share of the frame's rays
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
-  bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
+  bool traces_paths() const {
+    return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty();
+  }
 };
 
 /// The neighbours in time that motion needs; empty unless it is asked for.
@@ -69,7 +71,8 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   stats.count("camera_rays", double(rendered.rays.camera));
   stats.count("bounce_rays", double(rendered.rays.bounce));
   stats.count("shadow_rays", double(rendered.rays.shadow));
-  stats.count("noise_rays", double(rendered.noise_rays.camera + rendered.noise_rays.bounce + rendered.noise_rays.shadow));
+  stats.count("noise_rays",
+              double(rendered.noise_rays.camera + rendered.noise_rays.bounce + rendered.noise_rays.shadow));
   stats.count("lookups", double(rendered.rays.lookups));
   stats.count("refused_rays", double(tracer.refused_ray_count()));
   stats.count("gathered_in_pixels", double(rendered.rays.gathered));
@@ -80,26 +83,32 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
-/// A reference that cannot hold some light is no measure of frames that do. No path meets a lamp without extent where a mirror sends it.
+/// A reference that cannot hold some light is no measure of frames that do. No path meets a lamp without extent where a
+/// mirror sends it.
 void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
   const std::uint32_t smooth = frame.lights.empty() ? kNone : first_smooth_material(frame);
   if (smooth == kNone) return;
   const std::string& name = frame.materials[smooth].name;
   tool.warn(frame.scene->path + ": materials" + (name.empty() ? "" : " \"" + name + "\"") +
-            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; photons do (--photons)");
+            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; "
+            "photons do (--photons)");
 }
 
-/// Bias of the frame's layers. Half of the effort is photons, the other half paths from the eye, but where paths lack light that the frame has.
-std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene, const EmissionTable& table, const CameraView& view,
-                              const FrameOptions& frame_options, const RenderedFrame& rendered) {
+/// Bias of the frame's layers. Half of the effort is photons, the other half paths from the eye, but where paths lack
+/// light that the frame has.
+std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene,
+                              const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
+                              const RenderedFrame& rendered) {
   if (!(options.audit > 0)) return {};
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
-  const AuditEffort effort = audit_effort(options.audit, rendered.rays, mix64(frame_options.seed + std::uint64_t(scene.frame().frame)));
+  const AuditEffort effort =
+      audit_effort(options.audit, rendered.rays, mix64(frame_options.seed + std::uint64_t(scene.frame().frame)));
   audit.add_photons(scene.tracer, aimed_lights(scene.tracer, table, view), effort);
-  if (frame_options.known && (scene.frame().lights.empty() || first_smooth_material(scene.frame()) == kNone)) audit.add_paths(scene, frame_options, effort);
+  if (frame_options.known && (scene.frame().lights.empty() || first_smooth_material(scene.frame()) == kNone))
+    audit.add_paths(scene, frame_options, effort);
   return audit.entries();
 }
 
@@ -111,7 +120,9 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   if (options.integrator == "path" && number == tool.common().frames.front()) {
     warn_of_missing_light(tool, frame);
     // Other ways need photons or a cache, whose tools have said so.
-    if (const std::string doubt = doubt_of_light_units(input.scene()); tool.common().light_units == "raw" && !doubt.empty()) tool.warn(doubt);
+    if (const std::string doubt = doubt_of_light_units(input.scene());
+        tool.common().light_units == "raw" && !doubt.empty())
+      tool.warn(doubt);
   }
   const int camera = input.scene().camera_node(tool.common().camera);
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
@@ -150,7 +161,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
-  const std::vector<AuditEntry> audited = audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
+  const std::vector<AuditEntry> audited =
+      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
@@ -160,8 +172,13 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
                                                                               : ExrWriteOptions::Compression::zip};
-  const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number), frame.frame, input.time().fps,
-                                            view.world_to_camera(), view.world_to_ndc(), tools::account_of(rendered, audited)};
+  const tools::FrameDescription description{tools::identity_of(frame),
+                                            light.history() + tool.history_line(number),
+                                            frame.frame,
+                                            input.time().fps,
+                                            view.world_to_camera(),
+                                            view.world_to_ndc(),
+                                            tools::account_of(rendered, audited)};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
@@ -169,7 +186,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
 }
 
 constexpr std::size_t kMostViews = 8;
-/// One code of a pixel at the median, .18: its share of the pixel's radiance. The slope of the sRGB curve there is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
+/// One code of a pixel at the median, .18: its share of the pixel's radiance. The slope of the sRGB curve there is 255
+/// x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
 constexpr double kPixelErrorOfCode = 1 / (305 * 0.18);
 
 /// Of all frames named the cameras, kMostViews of them at most, and of the one in the middle the scene.
@@ -200,15 +218,16 @@ void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
   if (std::ranges::any_of(scene.materials, &Material::unlit)) return;
   try {
     require_lights(scene);
-  } catch (const InputError& error) {
-    tool.warn(error.what());
-  }
+  } catch (const InputError& error) { tool.warn(error.what()); }
 }
 
 void check(Options& options, const std::vector<int>& frames) {
   if (options.only_learns() && !options.learn_lights)
-    throw InputError("--output " + options.output + ": what is learned of lights is written with --learn-lights alone; a frame is OpenEXR, name it f.exr");
-  if (options.learn_lights && !options.lights.empty()) throw InputError("--lights and --learn-lights: read or learn; leave out one");
+    throw InputError(
+        "--output " + options.output +
+        ": what is learned of lights is written with --learn-lights alone; a frame is OpenEXR, name it f.exr");
+  if (options.learn_lights && !options.lights.empty())
+    throw InputError("--lights and --learn-lights: read or learn; leave out one");
   if (frames.size() > 1 && !options.only_learns() && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.exr");
   if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
@@ -218,16 +237,23 @@ void check(Options& options, const std::vector<int>& frames) {
                        ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
   if (options.integrator == "photons" && !(options.light.irradcache.empty() && options.light.points.empty()))
     throw InputError("--integrator photons reads no cache and no points; leave them out, or the integrator");
-  if (!options.light.meshirrad.empty() && !(options.light.irradcache.empty() && options.light.points.empty() && options.integrator == "auto"))
-    throw InputError("--meshirrad and --irradcache, --points or --integrator: a light texture is all indirect light by itself; leave out one");
+  if (!options.light.meshirrad.empty() &&
+      !(options.light.irradcache.empty() && options.light.points.empty() && options.integrator == "auto"))
+    throw InputError(
+        "--meshirrad and --irradcache, --points or --integrator: a light texture is all indirect light by itself; "
+        "leave out one");
   if (options.integrator == "photons" && options.light.photons.empty())
     throw InputError("--integrator photons: name the photon map with --photons FILE");
   if (!options.light.dynamic.empty() && options.light.photons.empty())
-    throw InputError("--dynamic: what movers change is nothing alone; name the segment's static map with --photons FILE");
-  if (!options.light.high.empty() && options.light.points.empty() && (options.light.photons.empty() || !options.light.dynamic.empty()))
+    throw InputError(
+        "--dynamic: what movers change is nothing alone; name the segment's static map with --photons FILE");
+  if (!options.light.high.empty() && options.light.points.empty() &&
+      (options.light.photons.empty() || !options.light.dynamic.empty()))
     throw InputError("--high: name the low part of the same map with --points FILE or --photons FILE");
   if (!options.light.high.empty() && !options.light.points.empty() && !options.light.irradcache.empty())
-    throw InputError("--high: records of --irradcache hold the high part; give irradcache-build records --high, and the whole points here");
+    throw InputError(
+        "--high: records of --irradcache hold the high part; give irradcache-build records --high, and the whole "
+        "points here");
   if (options.integrator == "cache" && options.light.irradcache.empty())
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
@@ -248,7 +274,8 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
   if (halves && options.frame.seen_error > 0)
     throw InputError("--seen-error: halves take the same samples everywhere; leave out one");
-  if (options.frame.seen_error > 0 && options.pixel_error < 0) options.frame.pixel_error = options.frame.seen_error * kPixelErrorOfCode;
+  if (options.frame.seen_error > 0 && options.pixel_error < 0)
+    options.frame.pixel_error = options.frame.seen_error * kPixelErrorOfCode;
   if (options.frame.seen_error > 0 && !(options.frame.pixel_error > 0))
     throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
   if (halves) options.frame.pixel_error = 0;
@@ -264,14 +291,17 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
   app.add_option("--photons", options.light.photons,
-                 ".photons file, or a pattern: indirect and caustic light; with --irradcache, or of a map of --kinds caustic, caustic light alone")
+                 ".photons file, or a pattern: indirect and caustic light; with --irradcache, or of a map of --kinds "
+                 "caustic, caustic light alone")
       ->type_name("FILE");
   app.add_option("--dynamic", options.light.dynamic,
-                 ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the segment's static map")
+                 ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the "
+                 "segment's static map")
       ->type_name("FILE");
   app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")
       ->type_name("FILE");
-  app.add_option("--meshirrad", options.light.meshirrad, ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache")
+  app.add_option("--meshirrad", options.light.meshirrad,
+                 ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache")
       ->type_name("FILE");
   app.add_option(
          "--points", options.light.points,
@@ -279,24 +309,29 @@ void add_light_options(tools::Tool& tool, Options& options) {
          "that find no record")
       ->type_name("FILE");
   app.add_option("--high", options.light.high,
-                 "the high part of photonmap-split, or a pattern: --points is then the low one; without --irradcache bright points are sampled "
+                 "the high part of photonmap-split, or a pattern: --points is then the low one; without --irradcache "
+                 "bright points are sampled "
                  "explicitly. Without --points, that of photons: --photons is then the low one")
       ->type_name("FILE");
   app.add_option("--high-samples", options.light.high_samples, "explicit samples of --high for each sample of a pixel")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 16));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 16));
   app.add_option("--neighbours", options.light.photon_light.neighbours,
                  "photons per density estimate of indirect light")
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--max-radius", options.light.photon_light.max_radius,
                  "farthest photon used for it, m; 0: from the photons' spacing")
-      ->capture_default_str()->check(tools::number_between(0));
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
                  "photons per density estimate of caustic light: fewer are sharper, more are smoother")
-      ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
+      ->capture_default_str()
+      ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
                  "farthest caustic photon used, m; 0: from the photons' spacing")
-      ->capture_default_str()->check(tools::number_between(0));
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   tools::influence_options(tool, options.light.influence);
 }
 
@@ -314,37 +349,53 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 20));
   app.add_option("--seen-error", options.frame.seen_error,
-                 "more samples until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that puts its median at .18; --pixel-error then "
+                 "more samples until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that "
+                 "puts its median at .18; --pixel-error then "
                  "only shares them out; 0: off")
-      ->capture_default_str()->check(tools::number_between(0.0, 255.0));
+      ->capture_default_str()
+      ->check(tools::number_between(0.0, 255.0));
   app.add_flag("--for-filter", options.frame.for_filter,
-               "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
+               "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which "
+               "passes it");
   app.add_flag("--keep-outliers", options.keep_outliers,
-               "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels around, which keeps each layer's sum; "
+               "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels "
+               "around, which keeps each layer's sum; "
                "so does --integrator path");
   add_light_options(tool, options);
   app.add_option("--audit", options.audit,
-                 "say how far direct, caustic and indirect light are off, measured by photons and paths of the audit's own, which take about this share of the frame's rays; 0: off")
-      ->capture_default_str()->check(tools::number_between(0.0, 100.0));
+                 "say how far direct, caustic and indirect light are off, measured by photons and paths of the audit's "
+                 "own, which take about this share of the frame's rays; 0: off")
+      ->capture_default_str()
+      ->check(tools::number_between(0.0, 100.0));
   app.add_flag("--learn-lights", options.learn_lights,
-               "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "
+               "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by "
+               "that; with -o FILE.lightgrid "
                "learn for the cameras of all frames named, write that and no frame");
-  app.add_option("--lights", options.lights, ".lightgrid file, or a pattern: what --learn-lights has learned before, in place of learning it for each frame")
+  app.add_option("--lights", options.lights,
+                 ".lightgrid file, or a pattern: what --learn-lights has learned before, in place of learning it for "
+                 "each frame")
       ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
-               "also write NAME_a.exr and NAME_b.exr: halves of spp/2 samples each, independent of each other and of frames without "
+               "also write NAME_a.exr and NAME_b.exr: halves of spp/2 samples each, independent of each other and of "
+               "frames without "
                "--halves, of the same --seed too");
   app.add_option("--target-error", options.frame.target_error,
                  "double the samples until the estimated RMSE is below this fraction of the mean; 0: off")
-      ->capture_default_str()->check(tools::number_between(0));
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   app.add_option("--max-spp", options.frame.max_samples, "never more samples than this for --target-error")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 24));
-  app.add_option("--channels", options.channels,
-                 "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
-                 "coverage, influence, variance, diffuse.variance, samples, halves, seen")
-      ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 24));
+  app.add_option(
+         "--channels", options.channels,
+         "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
+         "coverage, influence, variance, diffuse.variance, samples, halves, seen")
+      ->delimiter(',')
+      ->type_name("NAMES")
+      ->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
       ->type_name("FILE");
   app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit")

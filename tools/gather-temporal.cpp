@@ -1,9 +1,11 @@
-// gather-temporal -- light over time: irradiance records that keep their incoming light from frame to frame, and photons of many frames.
+// gather-temporal -- light over time: irradiance records that keep their incoming light from frame to frame, and
+// photons of many frames.
 //
 //     gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad
-//     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540 -o s.0000.radsamples --cache c.0000.irradcache
-//     gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540 --previous s.0000.radsamples ...
-//     gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540 -o s.####.radsamples --cache c.####.irradcache
+//     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540 -o s.0000.radsamples --cache
+//     c.0000.irradcache gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540 --previous
+//     s.0000.radsamples ... gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540 -o
+//     s.####.radsamples --cache c.####.irradcache
 //
 // Formats: formats/radsamples/radsamples.md, formats/irradcache/irradcache.md.
 #include <CLI/CLI.hpp>
@@ -26,7 +28,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::vector<std::string> inputs;   // final SCENE
+  std::vector<std::string> inputs;  // final SCENE
   std::string points, high, previous, output, cache, dynamic, age_weight = "2", refresh_rule = "adaptive";
   int width = 640, height = 360;
   bool resume = false;
@@ -40,8 +42,8 @@ struct Options {
 /// The frame before, in memory: what was kept, and the scene it was kept of.
 struct Chain {
   KeptHemispheres kept;
-  std::optional<SceneFrame> before;   ///< none: nothing is kept
-  std::string places_hash;            ///< of the points that its anchors name
+  std::optional<SceneFrame> before;  ///< none: nothing is kept
+  std::string places_hash;           ///< of the points that its anchors name
   tools::KeptFiles files;
 
   void follow(SceneFrame frame, const tools::FramePoints& points) {
@@ -53,11 +55,14 @@ struct Chain {
 /// Anchors are numbers of points: these must lie where those of the frame before lay.
 void check_points(const Chain& chain, const std::string& file, const tools::FramePoints& points) {
   if (!chain.before || chain.places_hash.empty() || chain.places_hash == points.places_hash) return;
-  throw InputError(file + ": its " + std::to_string(points.anchored) + " points on what stands still lie elsewhere than those of frame " +
-                   std::to_string(chain.before->frame) + " before it; make the points of all frames of a segment with the same options");
+  throw InputError(file + ": its " + std::to_string(points.anchored) +
+                   " points on what stands still lie elsewhere than those of frame " +
+                   std::to_string(chain.before->frame) +
+                   " before it; make the points of all frames of a segment with the same options");
 }
 
-void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history, tools::Output& output) {
+void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history,
+                 tools::Output& output) {
   formats::IrradcacheHeader header;
   header.identity = tools::identity_of(frame);
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
@@ -66,7 +71,8 @@ void write_cache(const Options& options, const SceneFrame& frame, const RecordSt
   header.error_bound = double(options.placement.error_bound);
   header.least_cosine = double(store.least_cosine());
   for (const IrradianceRecord& record : store.records()) {
-    header.min_radius = header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
+    header.min_radius =
+        header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
     header.max_radius = std::max(header.max_radius, double(record.radius));
   }
   header.placed_frames = {{frame.frame, frame.frame}};
@@ -100,26 +106,31 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
   set("near_hits", counts.birth.near_hits + counts.update.near_hits);
   set("unanswered", counts.birth.unanswered + counts.update.unanswered);
   double cells = 0, ages = 0;
-  for (std::size_t age = 0; age < counts.ages.size(); ++age) cells += double(counts.ages[age]), ages += double(age) * double(counts.ages[age]);
+  for (std::size_t age = 0; age < counts.ages.size(); ++age)
+    cells += double(counts.ages[age]), ages += double(age) * double(counts.ages[age]);
   if (cells > 0) tool.stats().set("mean_age." + std::to_string(frame), ages / cells);
   if (!first && counts.cells > 0)
-    tool.stats().set("retraced_share." + std::to_string(frame),
-                     double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
+    tool.stats().set(
+        "retraced_share." + std::to_string(frame),
+        double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
 }
 
 /// One frame, after that in `chain`, which receives it.
-void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing, Chain& chain,
-                  bool resume) {
+void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number,
+                  StandingTree& standing, Chain& chain, bool resume) {
   const bool single = !options.previous.empty();
-  const std::string samples = tools::frame_name(options.output, number), cache = tools::frame_name(options.cache, number);
+  const std::string samples = tools::frame_name(options.output, number),
+                    cache = tools::frame_name(options.cache, number);
   tool.stats().phase("evaluate");
   SceneFrame frame = input.at(number);
   tool.stats().phase("read points");
-  tools::FramePoints points = tools::read_frame_points(tool, tools::frame_name(options.points, number),
-                                                       options.high.empty() ? "" : tools::frame_name(options.high, number), frame);
+  tools::FramePoints points =
+      tools::read_frame_points(tool, tools::frame_name(options.points, number),
+                               options.high.empty() ? "" : tools::frame_name(options.high, number), frame);
   const std::string history = points.read.history + tool.history_line(number);
   if (resume && std::filesystem::is_regular_file(cache))
-    if (std::optional<KeptHemispheres> found = chain.files.find(samples, frame, points, history, tools::nothing_kept(tool, samples))) {
+    if (std::optional<KeptHemispheres> found =
+            chain.files.find(samples, frame, points, history, tools::nothing_kept(tool, samples))) {
       chain.kept = std::move(*found);
       chain.follow(std::move(frame), points);
       tool.say("frame " + std::to_string(number) + ": found");
@@ -138,14 +149,22 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   const PointLookup lookup(points.read.points, points.read.spacing, point_clearance(tracer));
-  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
+  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width,
+                        options.height);
   const auto eye = [&](Vec3 place) -> std::optional<Vec3> {
     const auto at = view.project(place);
     if (!at) return std::nullopt;
     return view.ray(float((*at)[0]), float((*at)[1])).origin;
   };
-  const TemporalScene scene{tracer, lights, lookup, points.read.points, points.anchored, chain.before ? &*chain.before : nullptr,
-                            points.high_shares, points.high_hash, eye};
+  const TemporalScene scene{tracer,
+                            lights,
+                            lookup,
+                            points.read.points,
+                            points.anchored,
+                            chain.before ? &*chain.before : nullptr,
+                            points.high_shares,
+                            points.high_hash,
+                            eye};
   GatherOptions rays = options.gather;
   rays.seed = tool.common().seed_for_frame(number);
   std::optional<BrightPoints> bright;
@@ -159,7 +178,8 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   TemporalCounts counts;
   if (chain.before) gather.advance(chain.kept, counts);
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
-  gather.place(seen, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
+  gather.place(seen, options.width, options.height, chain.kept, store, counts,
+               [&](double done) { tool.progress(done); });
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
   chain.files.write(chain.kept, frame, points, history, kept_output);
@@ -172,50 +192,79 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (options.inputs.size() != 2 || options.inputs[0] != "final")
     throw InputError("'" + options.inputs[0] + "' is not a way to gather over time: final, then the scene");
   if (!options.dynamic.empty())
-    throw InputError("--dynamic: what movers change of the light is in the frame's points; make them with irradcache-build points --update .. --dynamic " + options.dynamic);
-  if (app.get_option("--high-samples")->count() > 0 && options.high.empty()) throw InputError("--high-samples: a run without --high does not read it; leave it out");
+    throw InputError(
+        "--dynamic: what movers change of the light is in the frame's points; make them with irradcache-build points "
+        "--update .. --dynamic " +
+        options.dynamic);
+  if (app.get_option("--high-samples")->count() > 0 && options.high.empty())
+    throw InputError("--high-samples: a run without --high does not read it; leave it out");
   if (frames.size() > 1) {
-    if (!options.previous.empty()) throw InputError("--previous: of one frame; with --frames each follows the one before");
+    if (!options.previous.empty())
+      throw InputError("--previous: of one frame; with --frames each follows the one before");
     for (const std::string* name : {&options.output, &options.cache, &options.points, &options.high})
-      if (!name->empty() && !tools::has_frame_pattern(*name)) throw InputError("'" + *name + "': several frames need a pattern, for example f.####.irradcache");
-    if (!std::is_sorted(frames.begin(), frames.end())) throw InputError("--frames: each frame follows the one before; name them upwards");
+      if (!name->empty() && !tools::has_frame_pattern(*name))
+        throw InputError("'" + *name + "': several frames need a pattern, for example f.####.irradcache");
+    if (!std::is_sorted(frames.begin(), frames.end()))
+      throw InputError("--frames: each frame follows the one before; name them upwards");
   }
-  if (options.resume && options.previous.empty() == false) throw InputError("--resume: of a range; with --previous a frame is made anew");
+  if (options.resume && options.previous.empty() == false)
+    throw InputError("--resume: of a range; with --previous a frame is made anew");
 }
 
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
-  app.add_option("scene", options.inputs, "final, and a glTF 2.0 scene")->required()->expected(1, 2)->type_name("final SCENE");
-  app.add_option("--points", options.points, ".irradpoints file of the frame, or a pattern")->required()->type_name("FILE");
+  app.add_option("scene", options.inputs, "final, and a glTF 2.0 scene")
+      ->required()
+      ->expected(1, 2)
+      ->type_name("final SCENE");
+  app.add_option("--points", options.points, ".irradpoints file of the frame, or a pattern")
+      ->required()
+      ->type_name("FILE");
   app.add_option("--high", options.high,
-                 ".irradpoints file of photonmap-split, the high part, or a pattern; --points is then the low one: samples hold what rays bring of it, bright points are "
+                 ".irradpoints file of photonmap-split, the high part, or a pattern; --points is then the low one: "
+                 "samples hold what rays bring of it, bright points are "
                  "sampled explicitly in each frame")
       ->type_name("FILE");
   app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
-  app.add_option("--dynamic", options.dynamic)->group("");   // not in the help: refused with the reason
-  tool.leave_out_of_history(app.add_option("--previous", options.previous,
-                                           ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
-                                           "without it the frame is gathered anew")->type_name("FILE"));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 20));
+  app.add_option("--dynamic", options.dynamic)->group("");  // not in the help: refused with the reason
+  tool.leave_out_of_history(
+      app.add_option("--previous", options.previous,
+                     ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
+                     "without it the frame is gathered anew")
+          ->type_name("FILE"));
   app.add_option("--rays", options.gather.rays,
                  "gather rays per record, one a cell; up to 9 times as many cells where neighbours found light uneven")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
-  app.add_option("--refresh", options.temporal.refresh, "share of the cells of records whose light changed that get a ray in a frame: what moves comes first, the others are drawn by age, "
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 20));
+  app.add_option("--refresh", options.temporal.refresh,
+                 "share of the cells of records whose light changed that get a ray in a frame: what moves comes first, "
+                 "the others are drawn by age, "
                  "a quarter of this share at least (--refresh-rule)")
-      ->capture_default_str()->check(tools::number_between(0, 1));
-  app.add_option("--refresh-rule", options.refresh_rule, "adaptive: cells traced for a reason count towards --refresh; fixed: that share of the others is drawn by age, whatever moves")
-      ->capture_default_str()->check(CLI::IsMember({"adaptive", "fixed"}));
-  app.add_option("--age-weight", options.age_weight, "cells get new rays with probability as their age, 1, or its square, 2; or the oldest first")
-      ->capture_default_str()->check(CLI::IsMember({"1", "2", "oldest"}));
+      ->capture_default_str()
+      ->check(tools::number_between(0, 1));
+  app.add_option("--refresh-rule", options.refresh_rule,
+                 "adaptive: cells traced for a reason count towards --refresh; fixed: that share of the others is "
+                 "drawn by age, whatever moves")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"adaptive", "fixed"}));
+  app.add_option("--age-weight", options.age_weight,
+                 "cells get new rays with probability as their age, 1, or its square, 2; or the oldest first")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"1", "2", "oldest"}));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer")
-      ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
+      ->capture_default_str()
+      ->check(tools::number_between(1e-3, 2.0));
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
-      ->capture_default_str()->check(tools::number_above(0));
-  app.add_option("--min-weight", options.placement.min_weight,
-                 "sum of records' weights at which a pixel is covered")
-      ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
-  tool.leave_out_of_history(app.add_flag("--resume", options.resume, "take frames that an earlier run of this command has finished as they are"));
+      ->capture_default_str()
+      ->check(tools::number_above(0));
+  app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
+      ->capture_default_str()
+      ->check(tools::number_between(1e-6, 0.99));
+  tool.leave_out_of_history(app.add_flag("--resume", options.resume,
+                                         "take frames that an earlier run of this command has finished as they are"));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
   tool.output_option(options.output, ".radsamples file, or a pattern: what the next frame needs")->required();
@@ -225,7 +274,8 @@ void add_options(tools::Tool& tool, Options& options) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "density") return tools::photon_windows(argc - 1, argv + 1);
-  tools::Tool tool("gather-temporal", "Gather indirect light in records that keep their incoming light from frame to frame.", argc, argv);
+  tools::Tool tool("gather-temporal",
+                   "Gather indirect light in records that keep their incoming light from frame to frame.", argc, argv);
   Options options;
   add_options(tool, options);
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
@@ -242,9 +292,7 @@ int main(int argc, char** argv) {
     StandingTree standing;
     Chain chain;
     bool resume = options.resume;
-    for (const int frame : frames) {
-      gather_frame(tool, input, options, frame, standing, chain, resume);
-    }
+    for (const int frame : frames) { gather_frame(tool, input, options, frame, standing, chain, resume); }
     return tools::exit_ok;
   });
 }

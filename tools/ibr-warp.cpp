@@ -1,8 +1,8 @@
 // ibr-warp -- make a frame from key frames: warp their pixels by depth, say where pixels move and which must be traced.
 //
-//     ibr-warp key.0008.exr key.0016.exr --scene room.glb --frame 12 -o f.0012.exr --flow flow.0012.exr --mask why.0012.exr
-//     frame-render room.glb --frame 12 --base f.0012.exr --mask why.0012.exr -o f.0012.exr ...
-//     ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr
+//     ibr-warp key.0008.exr key.0016.exr --scene room.glb --frame 12 -o f.0012.exr --flow flow.0012.exr --mask
+//     why.0012.exr frame-render room.glb --frame 12 --base f.0012.exr --mask why.0012.exr -o f.0012.exr ... ibr-warp
+//     left.exr --view right.exr -o warped.exr --mask why.exr
 //
 // docs/methods/warping.md; formats/flow/flow.md, formats/mask/mask.md.
 #include <CLI/CLI.hpp>
@@ -123,8 +123,9 @@ void add_data(const Options& options, tools::SceneInput& input, tools::FramesOfS
   add_data_channels({tracer, lights}, frames.view(number), options.channels, next, previous, image);
 }
 
-void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& input, const std::vector<tools::LoadedKey>& keys,
-                tools::FramesOfScene& frames, StandingTree& standing, int number) {
+void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& input,
+                const std::vector<tools::LoadedKey>& keys, tools::FramesOfScene& frames, StandingTree& standing,
+                int number) {
   Outputs outputs(options, number, tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame& frame = frames.at(number, true);
@@ -141,13 +142,16 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
   VisionOptions viewer{vision::display_named("office")};
   viewer.display.pixels_per_degree = options.pixels_per_degree;
   viewer.frames_per_second = input.time().fps;
-  target.see_gloss = [&](const GlossInDoubt& doubt) { return error_probability(doubt.picture, doubt.error, doubt.counted, flow, viewer); };
+  target.see_gloss = [&](const GlossInDoubt& doubt) {
+    return error_probability(doubt.picture, doubt.error, doubt.counted, flow, viewer);
+  };
   target.look = [&](std::span<const RasterPoint> at, FacePoint* points) { seen.look(at, points); };
   if (!has_layer(*keys[0].key, "specular")) {
     target.gloss = seen.gloss();
     if (std::find(target.gloss.begin(), target.gloss.end(), 1) != target.gloss.end())
-      tool.warn(keys[0].file + ": has no layer specular: everything that mirrors, shines or lets through is masked; render keys "
-                               "with --channels RGBA,specular,Z,N,id");
+      tool.warn(keys[0].file +
+                ": has no layer specular: everything that mirrors, shines or lets through is masked; render keys "
+                "with --channels RGBA,specular,Z,N,id");
   }
   WarpedFrame warped = warp(target, placed.get(), options.warp);
 
@@ -189,7 +193,8 @@ void warp_view(tools::Tool& tool, const Options& options, const std::vector<tool
 
 void check(const tools::Tool& tool, Options& options, bool several) {
   if (options.scene.empty() == options.view.empty())
-    throw InputError("say what to make: a frame of a scene by --scene SCENE --frame F, or what another frame shows by --view FILE");
+    throw InputError(
+        "say what to make: a frame of a scene by --scene SCENE --frame F, or what another frame shows by --view FILE");
   if (options.keys.size() > 2) throw InputError("more than two keys; give the one before and the one after the frame");
   if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
   if (!options.view.empty() && (several || !options.flow.empty()))
@@ -199,46 +204,64 @@ void check(const tools::Tool& tool, Options& options, bool several) {
       throw InputError(*name + ": several frames need a pattern, for example f.####.exr");
   for (const std::string& group : options.channels)
     if (group == "RGBA" || group == "layers" || has_layer_name(group))
-      throw InputError("--channels: '" + group + "' is colour, which comes from the keys; name data: Z, N, P, id, albedo, motion");
+      throw InputError("--channels: '" + group +
+                       "' is colour, which comes from the keys; name data: Z, N, P, id, albedo, motion");
   check_channels(options.channels);
   if (options.warp.slow_deg_per_s < 0) options.warp.slow_deg_per_s = slow_speed(options.pixels_per_degree);
 }
 
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
-  app.add_option("keys", options.keys, "one or two rendered frames, EXR with RGBA, Z and their camera; with N and id better")
-      ->type_name("KEY")->required();
-  app.add_option("--scene", options.scene, "glTF 2.0 scene of the keys: the frame to make is --frame of it")->type_name("FILE");
+  app.add_option("keys", options.keys,
+                 "one or two rendered frames, EXR with RGBA, Z and their camera; with N and id better")
+      ->type_name("KEY")
+      ->required();
+  app.add_option("--scene", options.scene, "glTF 2.0 scene of the keys: the frame to make is --frame of it")
+      ->type_name("FILE");
   app.add_option("--view", options.view, "EXR file that shows what to make: its camera and Z count")->type_name("FILE");
   tool.output_option(options.flow, "pixel flow, EXR, or a pattern", "--flow");
   tool.output_option(options.mask, "which pixels must be traced and why, EXR, or a pattern", "--mask");
   app.add_flag("--separate", options.warp.separate, "also write NAME_1.exr and NAME_2.exr: what each key alone gives");
   app.add_option("--channels", options.channels, "data beside the keys' colour: Z, N, P, id, albedo, motion")
-      ->delimiter(',')->type_name("NAMES")->default_str("Z,N,id");
+      ->delimiter(',')
+      ->type_name("NAMES")
+      ->default_str("Z,N,id");
   app.add_option("--specular-share", options.warp.specular_share,
-                 "mirrors, glass and gloss that one key alone shows are masked where they give more than this share of the light; where both do, a viewer decides")
-      ->capture_default_str()->check(tools::number_between(0, 1));
+                 "mirrors, glass and gloss that one key alone shows are masked where they give more than this share of "
+                 "the light; where both do, a viewer decides")
+      ->capture_default_str()
+      ->check(tools::number_between(0, 1));
   app.add_option("--edge-share", options.warp.edge_share,
                  "edges are masked where the keys differ by more than this share of the light")
-      ->capture_default_str()->check(tools::number_between(0));
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   app.add_option("--light-share", options.warp.light_share, "changed light is masked from this share of the light on")
-      ->capture_default_str()->check(tools::number_between(0));
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   app.add_option("--slow", options.warp.slow_deg_per_s,
                  "pixels that move slower are masked, degrees/s; -1: as --pixels-per-degree says")
-      ->capture_default_str()->check(tools::number_between(-1));
-  app.add_option("--pixels-per-degree", options.pixels_per_degree, "of the display: at 30, slow is below 1.41 degrees/s")
-      ->capture_default_str()->check(tools::number_between(1, 1000));
-  app.add_option("--magnified", options.warp.most_magnified, "masked where every key shows a surface so many times smaller, by area")
-      ->capture_default_str()->check(tools::number_between(1, 64));
+      ->capture_default_str()
+      ->check(tools::number_between(-1));
+  app.add_option("--pixels-per-degree", options.pixels_per_degree,
+                 "of the display: at 30, slow is below 1.41 degrees/s")
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1000));
+  app.add_option("--magnified", options.warp.most_magnified,
+                 "masked where every key shows a surface so many times smaller, by area")
+      ->capture_default_str()
+      ->check(tools::number_between(1, 64));
   app.add_option("--compression", options.compression, "EXR compression")
-      ->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zip", "none"}));
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("ibr-warp", "Make a frame from key frames by depth, with pixel flow and a mask of what must be traced.", argc, argv);
+  tools::Tool tool("ibr-warp",
+                   "Make a frame from key frames by depth, with pixel flow and a mask of what must be traced.", argc,
+                   argv);
   Options options;
   add_options(tool, options);
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);

@@ -26,7 +26,7 @@ using namespace tempolux;
 
 namespace {
 
-constexpr std::uint64_t kMaxPoints = 1 << 28;   ///< per side of all surfaces
+constexpr std::uint64_t kMaxPoints = 1 << 28;  ///< per side of all surfaces
 
 using Options = tools::CacheOptions;
 
@@ -47,17 +47,22 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
   if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records", "--high"});
   if (!options.high.empty() && (!options.update.empty() || options.map == "static"))
-    throw InputError("--high: parts of light are those of a whole scene's map; leave out --update and --map static, or give the whole");
+    throw InputError(
+        "--high: parts of light are those of a whole scene's map; leave out --update and --map static, or give the "
+        "whole");
   if (options.high.empty()) refuse_unread(app, "a run without --high", {"--high-samples"});
-  if (mode == "points" && options.dynamic.size() > 1) throw InputError("--dynamic: points take one map, that of their frame");
+  if (mode == "points" && options.dynamic.size() > 1)
+    throw InputError("--dynamic: points take one map, that of their frame");
   tools::check_influence(options.influence);
   if (options.update.empty() != options.dynamic.empty())
     throw InputError("--update and --dynamic go together: points of what stands, and what movers change");
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high-samples", "--records", "--rays", "--error-bound",
-                                  "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
+    refuse_unread(
+        app, "points",
+        {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high-samples", "--records",
+         "--rays", "--error-bound", "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
                   {"--photons", "--importance", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
@@ -71,51 +76,64 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.inputs, "glTF 2.0 scene, after the word points or records if only that is wanted")
-      ->required()->expected(1, 2)->type_name("[points|records] SCENE");
+      ->required()
+      ->expected(1, 2)
+      ->type_name("[points|records] SCENE");
   app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light")
       ->type_name("FILE");
   app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
       ->type_name("FILE");
   app.add_option("--high", options.high,
-                 "the high part of photonmap-split, --points or --photons then the low one and this of the same format: records sample what is "
+                 "the high part of photonmap-split, --points or --photons then the low one and this of the same "
+                 "format: records sample what is "
                  "bright explicitly; points are those of both parts together")
       ->type_name("FILE");
   app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 20));
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
-  tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces that stand; what moves gets as many per area");
-  app.add_option("--importance", options.importance,
-                 tools::kImportanceHelp)
-      ->type_name("FILE");
+  tool.count_option("--point-count", options.point_count,
+                    "irradiance points per side of all surfaces that stand; what moves gets as many per area");
+  app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("--map", options.map,
-                 "global, or static: points and records of the scene without what moves in the frame's segment, from its static "
+                 "global, or static: points and records of the scene without what moves in the frame's segment, from "
+                 "its static "
                  "map and points")
-      ->capture_default_str()->check(CLI::IsMember({"global", "static"}));
-  app.add_option("--update", options.update,
-                 "file of --map static: .irradpoints, from which with --photons (that static map) and --dynamic points of this "
-                 "frame follow; .irradcache, from which with --points and --dynamic records of this frame follow")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"global", "static"}));
+  app.add_option(
+         "--update", options.update,
+         "file of --map static: .irradpoints, from which with --photons (that static map) and --dynamic points of this "
+         "frame follow; .irradcache, from which with --points and --dynamic records of this frame follow")
       ->type_name("FILE");
   app.add_option("--dynamic", options.dynamic,
-                 "of --update: .photons file of this frame, photon-trace --map dynamic; records take those of the frames before "
+                 "of --update: .photons file of this frame, photon-trace --map dynamic; records take those of the "
+                 "frames before "
                  "after it, where they mattered records are made anew, too")
       ->type_name("FILE...");
   tools::influence_options(tool, options.influence);
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
-      ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
+      ->capture_default_str()
+      ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
-      ->capture_default_str()->check(tools::number_between(1, 4096));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 4096));
   app.add_option("--rays", options.gather.rays,
                  "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
-  app.add_option("--error-bound", options.placement.error_bound,
-                 "radius of a record / harmonic mean distance to what it sees: smaller is finer; records count where normals "
-                 "differ by less than 50 degrees times this, from 5 to 20")
-      ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
+  app.add_option(
+         "--error-bound", options.placement.error_bound,
+         "radius of a record / harmonic mean distance to what it sees: smaller is finer; records count where normals "
+         "differ by less than 50 degrees times this, from 5 to 20")
+      ->capture_default_str()
+      ->check(tools::number_between(1e-3, 2.0));
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
-      ->capture_default_str()->check(tools::number_above(0));
+      ->capture_default_str()
+      ->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
-      ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
+      ->capture_default_str()
+      ->check(tools::number_between(1e-6, 0.99));
   app.add_option("--mask", options.mask,
                  "EXR file, or a pattern: records only where pixels look at which a channel is not 0, as of ibr-warp")
       ->type_name("FILE");
@@ -140,13 +158,14 @@ int main(int argc, char** argv) {
     options.point.count = std::uint32_t(options.point_count);
     const bool makes_points = options.mode() == "points" || !options.photons.empty();
     std::optional<tools::Importance> importance;
-    const auto seeded = [&](int frame) -> const Options& {   // for a file of this frame, alone or of a range
+    const auto seeded = [&](int frame) -> const Options& {  // for a file of this frame, alone or of a range
       options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
       if (makes_points) options.view = importance->at(frame);
       return options;
     };
     tool.stats().phase("load");
-    const unsigned camera = options.mode() == "points" && !options.importance.empty() ? tools::SceneInput::nothing : tools::SceneInput::a_camera;
+    const unsigned camera = options.mode() == "points" && !options.importance.empty() ? tools::SceneInput::nothing
+                                                                                      : tools::SceneInput::a_camera;
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
     importance.emplace(tool, input, options.importance);
     StandingTree standing;
@@ -159,8 +178,7 @@ int main(int argc, char** argv) {
       tools::build_updated_records(tool, input, seeded(frames.front()), frames, standing);
     else if (!options.update.empty())
       for (int frame : frames) tools::build_updated_records(tool, input, seeded(frame), {frame}, standing);
-    else
-      tools::build_records(tool, input, seeded(frames.front()), frames);
+    else tools::build_records(tool, input, seeded(frames.front()), frames);
     return tools::exit_ok;
   });
 }

@@ -4,7 +4,8 @@
 //     photon-trace room.glb --frames 0-47 --photons 1M -o photons.####.photons
 //     photon-trace room.glb --frame 0 --map static --photons 1M -o s.photons --paths s.paths
 //     photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons
-//     photon-trace room.glb --frames 1-23 --majorants m --update p.####.photons --share 10% --strategy census -o p.####.photons
+//     photon-trace room.glb --frames 1-23 --majorants m --update p.####.photons --share 10% --strategy census -o
+//     p.####.photons
 //
 // Formats: formats/photons/photons.md, formats/paths/paths.md. Method: docs/methods/dynamic.md.
 #include <CLI/CLI.hpp>
@@ -35,7 +36,7 @@ namespace {
 
 struct Options {
   std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", map = "global",
-              importance, paths, static_paths;
+                             importance, paths, static_paths;
   float volume_share = PhotonOptions{}.volume_share;
   tools::UpdateArguments updating;
 };
@@ -57,10 +58,11 @@ void warn_of_few(tools::Tool& tool, const Lights& lights, const PhotonMapResult&
   const std::uint64_t needed = kNeededPerSphere * lights.aim().size(), seen = result.seen_count;
   tool.stats().count("photons_seen", double(seen));
   if (seen >= needed) return;
-  tool.warn("frame " + std::to_string(frame_number) + ": only " + std::to_string(seen) + " photons lie where the cameras look, " +
-            std::to_string(needed) + " are needed: indirect light will be rough; " +
-            (seen == 0 ? "start more with --photons"
-                       : "start " + std::to_string((result.path_count * needed + seen - 1) / seen) + " with --photons"));
+  tool.warn(
+      "frame " + std::to_string(frame_number) + ": only " + std::to_string(seen) +
+      " photons lie where the cameras look, " + std::to_string(needed) + " are needed: indirect light will be rough; " +
+      (seen == 0 ? "start more with --photons"
+                 : "start " + std::to_string((result.path_count * needed + seen - 1) / seen) + " with --photons"));
 }
 
 void count(tools::Tool& tool, const PhotonMapResult& result, const tools::Output& output, std::uint64_t refused) {
@@ -77,7 +79,8 @@ auto sink_of(tools::Output& output) {
   return [&output](const void* data, std::size_t size) { output.write(data, size); };
 }
 
-formats::PhotonHeader header_of(const tools::Tool& tool, const SceneFrame& frame, const EmissionTable& emission, int number) {
+formats::PhotonHeader header_of(const tools::Tool& tool, const SceneFrame& frame, const EmissionTable& emission,
+                                int number) {
   formats::PhotonHeader header;
   header.history = tool.history_line(number);
   header.identity = tools::identity_of(frame);
@@ -115,8 +118,8 @@ std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const st
 }
 
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
-                 const std::vector<formats::ViewSphere>& view, int frame_number,
-                 StandingTree& standing, tools::KeptMap& kept) {
+                 const std::vector<formats::ViewSphere>& view, int frame_number, StandingTree& standing,
+                 tools::KeptMap& kept) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
@@ -139,7 +142,8 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
                        {frame, photons, photon_options, header, tools::frame_name(options.output, frame.frame),
                         [&](int other) { return tracer_at(input, view, photon_options, other); }},
                        sink_of(output), kept)
-          : write_photon_map(photons, photon_options, header, sink_of(output), [&](double fraction) { tool.progress(fraction); });
+          : write_photon_map(photons, photon_options, header, sink_of(output),
+                             [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
@@ -173,11 +177,13 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
                     const std::vector<formats::ViewSphere>& view, int frame_number) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   std::optional<tools::Output> paths_output;
-  if (!options.paths.empty()) paths_output.emplace(tools::frame_name(options.paths, frame_number), tool.common().no_clobber);
+  if (!options.paths.empty())
+    paths_output.emplace(tools::frame_name(options.paths, frame_number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = standing_scene(input.at(frame_number));
   const Segment& segment = frame.segment;
-  const std::size_t intervals = std::min<std::size_t>(formats::kMostIntervals, std::size_t(segment.last - segment.first + 1));
+  const std::size_t intervals =
+      std::min<std::size_t>(formats::kMostIntervals, std::size_t(segment.last - segment.first + 1));
   std::vector<MovingBoxes> boxes;
   std::vector<std::string> hashes;
   for (std::size_t i = 0; paths_output && i < intervals; ++i) {
@@ -227,22 +233,25 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
 }
 
 /// Refuses paths that were found for another segment, other things that stand or other movers.
-void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string& file, const formats::PathsHeader& paths,
-                 const SceneFrame& standing, const std::string& emission, int frame) {
+void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string& file,
+                 const formats::PathsHeader& paths, const SceneFrame& standing, const std::string& emission,
+                 int frame) {
   const Segment segment = standing.segment;
   if (paths.identity.first_frame != segment.first || paths.identity.last_frame != segment.last)
     throw InputError(file + ": holds for the segment of frames " + std::to_string(paths.identity.first_frame) + " to " +
                      std::to_string(paths.identity.last_frame) + ", and frame " + std::to_string(frame) + " lies in " +
-                     std::to_string(segment.first) + " to " + std::to_string(segment.last) + "; trace the static map of that one");
+                     std::to_string(segment.first) + " to " + std::to_string(segment.last) +
+                     "; trace the static map of that one");
   tools::check_identity(tool, file, paths.identity, standing);
   std::string stale;
-  if (!paths.identity.emission.empty() && paths.identity.emission != emission) stale = "emission (lights, or what --importance aims at)";
+  if (!paths.identity.emission.empty() && paths.identity.emission != emission)
+    stale = "emission (lights, or what --importance aims at)";
   const std::size_t interval = formats::interval_of(frame, segment.first, segment.last, paths.movers.size());
   if (movers_in(input, segment, interval, paths.movers.size()).hash != paths.movers[interval])
     stale += (stale.empty() ? "" : ", ") + std::string("what moves");
   if (!stale.empty())
-    throw InputError(file + ": made for another state of the scene: " + stale + " differ at frame " + std::to_string(frame) +
-                     "; trace the static map again");
+    throw InputError(file + ": made for another state of the scene: " + stale + " differ at frame " +
+                     std::to_string(frame) + "; trace the static map again");
 }
 
 /// What movers change at a frame: the paths that they touch, with and without them.
@@ -260,9 +269,11 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   emission.aim = spheres_in_scene(view, frame.origin);
   check_paths(tool, input, file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
   if (tool.app().get_option("--seed")->count() > 0 && tool.common().seed != paths.header.seed)
-    throw InputError("--seed " + std::to_string(tool.common().seed) + ": of --map dynamic the static map has it: " + std::to_string(paths.header.seed));
+    throw InputError("--seed " + std::to_string(tool.common().seed) +
+                     ": of --map dynamic the static map has it: " + std::to_string(paths.header.seed));
   const Segment& segment = frame.segment;
-  const std::uint64_t bit = std::uint64_t(1) << formats::interval_of(frame.frame, segment.first, segment.last, paths.header.movers.size());
+  const std::uint64_t bit =
+      std::uint64_t(1) << formats::interval_of(frame.frame, segment.first, segment.last, paths.header.movers.size());
   std::vector<std::uint64_t> touched;
   for (const formats::TouchedPath& path : paths.paths)
     if (path.intervals & bit) touched.push_back(path.path);
@@ -296,7 +307,8 @@ void check(const CLI::App& app, const Options& options) {
   if (options.static_paths.empty())
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
   for (const char* name : {"--photons", "--kinds", "--groups", "--volume-share"})
-    if (app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": of --map dynamic the static map has it");
+    if (app.get_option(name)->count() > 0)
+      throw InputError(std::string(name) + ": of --map dynamic the static map has it");
 }
 
 }  // namespace
@@ -310,18 +322,21 @@ int main(int argc, char** argv) {
   app.add_option("--photons", options.photons,
                  "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")
       ->capture_default_str();
-  app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")->capture_default_str();
+  app.add_option(
+         "--kinds", options.kinds,
+         "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")
+      ->capture_default_str();
   app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")
       ->capture_default_str();
-  app.add_option("--importance", options.importance,
-                 tools::kImportanceHelp)
-      ->type_name("FILE");
+  app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
-  app.add_option("--map", options.map,
-                 "global: the scene at the frame; static: without what moves in the frame's segment; dynamic: the difference, "
-                 "of paths that movers touch")
-      ->capture_default_str()->check(CLI::IsMember({"global", "static", "dynamic"}));
+  app.add_option(
+         "--map", options.map,
+         "global: the scene at the frame; static: without what moves in the frame's segment; dynamic: the difference, "
+         "of paths that movers touch")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"global", "static", "dynamic"}));
   tool.output_option(options.paths, "of --map static: also write which paths movers can touch, .paths", "--paths");
   app.add_option("--static", options.static_paths, "of --map dynamic: the .paths file of the segment's static map")
       ->type_name("FILE");
@@ -341,7 +356,8 @@ int main(int argc, char** argv) {
     const unsigned camera = options.importance.empty() ? tools::SceneInput::a_camera : tools::SceneInput::nothing;
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | camera);
     if (options.map != "global" && input.has_media())
-      throw InputError(options.scene + ": has media, which all light meets: --map " + options.map + " cannot be told from the rest; trace the global map");
+      throw InputError(options.scene + ": has media, which all light meets: --map " + options.map +
+                       " cannot be told from the rest; trace the global map");
     StandingTree standing;
     tools::Importance importance(tool, input, options.importance);
     tools::KeptMap kept;

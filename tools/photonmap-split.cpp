@@ -169,7 +169,8 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
   cells.close(options.energy_limit());
   tool.stats().phase("divide");
   const DividedPoints parts = divide(file.records, cells);
-  const auto write = [&](tools::Output& output, const char* part, const std::vector<formats::IrradiancePointRecord>& points) {
+  const auto write = [&](tools::Output& output, const char* part,
+                         const std::vector<formats::IrradiancePointRecord>& points) {
     formats::IrradpointsHeader header = file.header;
     header.history += tool.history_line();
     header.part = part;
@@ -214,7 +215,8 @@ void choose_photons(tools::Tool& tool, const std::string& path, const Options& o
   formats::PhotonReader reader(path, {.digest = false});
   const KindLists kinds = kinds_of(options, reader.header().kinds);
   unsigned bits = 0;
-  for (unsigned k = 0; k < kKinds.size(); ++k) bits |= unsigned(!names_in(kinds.chosen, {kKinds[k]}, true).empty()) << k;
+  for (unsigned k = 0; k < kKinds.size(); ++k)
+    bits |= unsigned(!names_in(kinds.chosen, {kKinds[k]}, true).empty()) << k;
   formats::PhotonHeader header = part_header(tool, reader.header(), "");
   header.kinds = kinds.chosen;
   formats::PhotonWriter chosen(sink_of(outputs.first), header);
@@ -278,7 +280,8 @@ void run(tools::Tool& tool, const Options& options) {
   const std::string head = tools::head_of(path);
   const bool points = head.starts_with("\x89TIRPT");
   if (!points && !head.starts_with("\x89TPHOT"))
-    throw InputError(options.input + ": holds neither photons nor irradiance points; give a .photons or .irradpoints file");
+    throw InputError(options.input +
+                     ": holds neither photons nor irradiance points; give a .photons or .irradpoints file");
   Outputs outputs{tools::Output(by_kind ? options.output : options.low, keep), std::nullopt};
   const std::string& second = by_kind ? options.rest : options.high;
   if (!second.empty()) outputs.second.emplace(second, keep);
@@ -294,18 +297,22 @@ void run(tools::Tool& tool, const Options& options) {
 
 int main(int argc, char** argv) {
   tools::Tool tool("photonmap-split",
-                   "Divide light in two files: a low and a high part by brightness, or by kind of path.",
-                   argc, argv);
+                   "Divide light in two files: a low and a high part by brightness, or by kind of path.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")->required()->type_name("FILE");
+  app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")
+      ->required()
+      ->type_name("FILE");
   tool.output_option(options.low, "what is left of bright cells, and all other cells", "--low");
   tool.output_option(options.high, "what bright cells have above their limit", "--high");
-  app.add_option("--energy", options.energy, "a cell keeps at most this multiple of the mean irradiance in the low part")
-      ->capture_default_str()->check(tools::number_between(0));
+  app.add_option("--energy", options.energy,
+                 "a cell keeps at most this multiple of the mean irradiance in the low part")
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   app.add_option("--cell", options.cell,
                  "edge of a cell, metres; auto: four mean distances of points, 16 of photons (256 photons in the mean)")
-      ->capture_default_str()->type_name("METRES");
+      ->capture_default_str()
+      ->type_name("METRES");
   app.add_option("--limit", options.limit, "instead of --energy: a cell keeps at most the energy of N mean records")
       ->type_name("N");
   app.add_option("--kind", options.kinds, "divide by kind of light instead: some of direct,caustic,indirect,volume")

@@ -2,8 +2,8 @@
 //
 //     scene-plan room.glb --frames 0-47 -o out
 //
-// Writes out/plan.json, out/plan.mk and out/state/*. If neither the scene nor the options nor the programs have changed it
-// only looks and writes nothing. Format: formats/plan/plan.md.
+// Writes out/plan.json, out/plan.mk and out/state/*. If neither the scene nor the options nor the programs have changed
+// it only looks and writes nothing. Format: formats/plan/plan.md.
 //
 //     scene-plan --tidy out
 #include <CLI/CLI.hpp>
@@ -29,7 +29,8 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, folder = "out", tidy_folder, samples, estimate, quality = "final", method = "frames", filter = "auto", report;
+  std::string scene, folder = "out", tidy_folder, samples, estimate, quality = "final", method = "frames",
+                     filter = "auto", report;
   std::vector<std::string> recipes;
   double tidy_hours = 24;
   Wish wish;
@@ -58,9 +59,15 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
   for (const CLI::Option* option : tool.app().get_options())
     if (const auto& shared = tools::kSharedWords; std::ranges::find(shared, option->get_name()) != shared.end())
       for (const std::string& word : option->results()) wish.common += option->get_name() + ' ' + word + '\n';
-  for (const auto& [name, words] : {std::pair{"--point-words", wish.points}, {"--record-words", wish.records}, {"--pixel-words", wish.pixels},
-                                    {"--channels", wish.channels}, {"--texture-words", wish.texture_words}, {"--smoke-words", wish.smoke_words},
-                                    {"--update", wish.update}, {"--refine", wish.refine}, {"--strategy", wish.strategy}})
+  for (const auto& [name, words] : {std::pair{"--point-words", wish.points},
+                                    {"--record-words", wish.records},
+                                    {"--pixel-words", wish.pixels},
+                                    {"--channels", wish.channels},
+                                    {"--texture-words", wish.texture_words},
+                                    {"--smoke-words", wish.smoke_words},
+                                    {"--update", wish.update},
+                                    {"--refine", wish.refine},
+                                    {"--strategy", wish.strategy}})
     tools::check_words(name, words);
   const std::vector<int>& frames = tool.common().frames;
   if (options.report == "ends") wish.report = {frames.front(), frames.back()};
@@ -83,31 +90,53 @@ void plan_range(tools::Tool& tool, const Options& options, const std::string& ar
   folder->write(planner.planned(), planner.tool_hash(), arguments, tool.history_line());
   for (const PlannedSegment& segment : planner.planned().plan.segments)
     for (const Reason& reason : segment.decisions.reasons)
-      tool.say("frames " + std::to_string(segment.first) + "-" + std::to_string(segment.last) + ": " + reason.stage + ": " + reason.because);
+      tool.say("frames " + std::to_string(segment.first) + "-" + std::to_string(segment.last) + ": " + reason.stage +
+               ": " + reason.because);
 }
 
 void add_wishes(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   Wish& wish = options.wish;
-  const auto choice = [&](const char* name, std::string& value, const char* help, const std::vector<std::string>& values) {
+  const auto choice = [&](const char* name, std::string& value, const char* help,
+                          const std::vector<std::string>& values) {
     app.add_option(name, value, help)->capture_default_str()->check(CLI::IsMember(values));
   };
-  const auto words = [&](const char* name, std::string& value, const char* help) { app.add_option(name, value, help)->type_name("WORDS"); };
+  const auto words = [&](const char* name, std::string& value, const char* help) {
+    app.add_option(name, value, help)->type_name("WORDS");
+  };
   choice("--quality", options.quality, "draft: rougher, in less than half of the time; final", {"draft", "final"});
-  choice("--method", options.method, "frames: each rendered; walkthrough: key frames, those between warped; auto: where it pays; preview: quick, indirect light by light textures from the photons of many frames", {"frames", "walkthrough", "auto", "preview"});
-  choice("--filter", options.filter, "filter frames where the halves of their samples show that it helps: frames of the window, 1: each alone; none; "
-         "auto: 1, unless --pixel-words are given", {"auto", "none", "1", "3", "5", "7", "9"});
-  choice("--indirect", wish.indirect, "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
+  choice("--method", options.method,
+         "frames: each rendered; walkthrough: key frames, those between warped; auto: where it pays; preview: quick, "
+         "indirect light by light textures from the photons of many frames",
+         {"frames", "walkthrough", "auto", "preview"});
+  choice(
+      "--filter", options.filter,
+      "filter frames where the halves of their samples show that it helps: frames of the window, 1: each alone; none; "
+      "auto: 1, unless --pixel-words are given",
+      {"auto", "none", "1", "3", "5", "7", "9"});
+  choice("--indirect", wish.indirect,
+         "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
          {"auto", "records", "gather", "paths"});
-  choice("--moving", wish.moving, "what of a frame's light follows from that of what stands: anew (nothing), light (photons and points), records (they, too), "
-         "time (photons and points; records keep their incoming light from frame to frame); auto: the cheapest by a pilot",
-         {"auto", "anew", "light", "records", "time"});
-  choice("--split", wish.split, "are bright points divided from the others and sampled explicitly; auto: where a pilot finds that it pays", {"auto", "on", "off"});
+  choice(
+      "--moving", wish.moving,
+      "what of a frame's light follows from that of what stands: anew (nothing), light (photons and points), records "
+      "(they, too), "
+      "time (photons and points; records keep their incoming light from frame to frame); auto: the cheapest by a pilot",
+      {"auto", "anew", "light", "records", "time"});
+  choice("--split", wish.split,
+         "are bright points divided from the others and sampled explicitly; auto: where a pilot finds that it pays",
+         {"auto", "on", "off"});
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
-  app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")->capture_default_str();
-  tool.count_option("--photons", wish.photons, "paths of light of a photon map (preview: of a frame), up to 16 times as many where few of them arrive; 0: the preset's");
-  app.add_option("--rays", wish.rays, "gather rays of a record at most; 0: the preset's")->capture_default_str()->check(tools::number_between(0, 1 << 20));
-  app.add_option("--pixel-error", wish.pixel_error, "of the frames, as frame-render --pixel-error; 0: the preset's")->capture_default_str()
+  app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")
+      ->capture_default_str();
+  tool.count_option("--photons", wish.photons,
+                    "paths of light of a photon map (preview: of a frame), up to 16 times as many where few of them "
+                    "arrive; 0: the preset's");
+  app.add_option("--rays", wish.rays, "gather rays of a record at most; 0: the preset's")
+      ->capture_default_str()
+      ->check(tools::number_between(0, 1 << 20));
+  app.add_option("--pixel-error", wish.pixel_error, "of the frames, as frame-render --pixel-error; 0: the preset's")
+      ->capture_default_str()
       ->check(tools::number_between(0, 10));
   words("--point-words", wish.points, "options of irradcache-build points instead of the preset's");
   words("--record-words", wish.records, "options of irradcache-build records instead of the preset's");
@@ -115,49 +144,78 @@ void add_wishes(tools::Tool& tool, Options& options) {
   words("--texture-words", wish.texture_words, "options of st-filter mesh");
   words("--smoke-words", wish.smoke_words, "options of volume-compose");
   app.add_flag("--textures", wish.textures, "in smoke: indirect light of surfaces by light textures");
-  app.add_option("--update", wish.update, "in smoke: trace this share of each photon map anew, keep the rest, such as 10%")->type_name("SHARE");
-  app.add_option("--refine", wish.refine, "in smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%")
+  app.add_option("--update", wish.update,
+                 "in smoke: trace this share of each photon map anew, keep the rest, such as 10%")
       ->type_name("SHARE");
-  app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")->capture_default_str();
-  app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")->capture_default_str()->check(tools::number_between(2, 1000));
-  app.add_option("--halve-above", wish.threshold, "an interval between keys is halved if a viewer sees in more than this share of its pixels, such as 5%, that "
-                 "they are wrong (AQM)")->capture_default_str()->check(tools::number_between(0, 1))->transform(tools::percent([] {}));
-  app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")->type_name("FRAMES");
-  app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")->capture_default_str()
+  app.add_option(
+         "--refine", wish.refine,
+         "in smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%")
+      ->type_name("SHARE");
+  app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")
+      ->capture_default_str();
+  app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")
+      ->capture_default_str()
+      ->check(tools::number_between(2, 1000));
+  app.add_option(
+         "--halve-above", wish.threshold,
+         "an interval between keys is halved if a viewer sees in more than this share of its pixels, such as 5%, that "
+         "they are wrong (AQM)")
+      ->capture_default_str()
+      ->check(tools::number_between(0, 1))
+      ->transform(tools::percent([] {}));
+  app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")
+      ->type_name("FRAMES");
+  app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")
+      ->capture_default_str()
       ->check(tools::number_between(2, 1 << 20));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("scene-plan", "Decide what a range of frames needs, and say from which files each picture is made.", argc, argv);
+  tools::Tool tool("scene-plan", "Decide what a range of frames needs, and say from which files each picture is made.",
+                   argc, argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; needed but for --tidy and --estimate");
-  tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")->capture_default_str();
+  tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")
+      ->capture_default_str();
   add_wishes(tool, options);
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;
   };
-  add(app.add_option("--recipes", options.recipes, "files that hold the rules: a change of theirs is a change of all that they make"))->type_name("FILE");
-  add(app.add_option("--samples", options.samples, "instead of a plan: two small ones in this folder, for make to make and --estimate to read"))
+  add(app.add_option("--recipes", options.recipes,
+                     "files that hold the rules: a change of theirs is a change of all that they make"))
+      ->type_name("FILE");
+  add(app.add_option("--samples", options.samples,
+                     "instead of a plan: two small ones in this folder, for make to make and --estimate to read"))
       ->type_name("FOLDER");
-  add(app.add_option("--estimate", options.estimate, "instead: print what a run will cost, CPU seconds and bytes of each stage, from the samples in this folder "
-                     "(make -f Makefile.example estimate)"))->type_name("FOLDER");
+  add(app.add_option(
+          "--estimate", options.estimate,
+          "instead: print what a run will cost, CPU seconds and bytes of each stage, from the samples in this folder "
+          "(make -f Makefile.example estimate)"))
+      ->type_name("FOLDER");
   add(app.add_option("--tidy", options.tidy_folder,
-                     "instead: remove unfinished files of killed runs from this folder and those in it"))->type_name("FOLDER");
-  add(app.add_option("--tidy-hours", options.tidy_hours, "unfinished files of other hosts count as left over after so many hours"))
-      ->type_name("HOURS")->capture_default_str()->check(tools::number_between(0));
+                     "instead: remove unfinished files of killed runs from this folder and those in it"))
+      ->type_name("FOLDER");
+  add(app.add_option("--tidy-hours", options.tidy_hours,
+                     "unfinished files of other hosts count as left over after so many hours"))
+      ->type_name("HOURS")
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   std::string arguments = std::filesystem::current_path().string();
   for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
   return tool.run([&] {
     const bool plans = options.tidy_folder.empty() && options.estimate.empty();
-    if (plans == options.scene.empty()) throw InputError(plans ? "scene is required; see scene-plan --help" : "--tidy and --estimate need no scene; leave it out");
+    if (plans == options.scene.empty())
+      throw InputError(plans ? "scene is required; see scene-plan --help"
+                             : "--tidy and --estimate need no scene; leave it out");
     if (plans) plan_range(tool, options, hash_hex(arguments));
-    else if (!options.estimate.empty()) std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
+    else if (!options.estimate.empty())
+      std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
     else remove_left_overs(tool, options);
     return int(tools::exit_ok);
   });

@@ -4,7 +4,8 @@
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
 //     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/stages/filter_mesh.h)
 //
-// Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
+// Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How:
+// docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
@@ -37,7 +38,7 @@ struct Options {
 
 /// A frame's files.
 struct Names {
-  std::string frame, flow;   ///< flow "": in the frame itself, if anywhere
+  std::string frame, flow;  ///< flow "": in the frame itself, if anywhere
 };
 
 /// A frame that is read, with what the filter needs of it.
@@ -66,16 +67,15 @@ class FilterRun {
     tool_.stats().phase("filter", true);
     Image image;
     naming(name, [&] {
-      if (first == last)
-        image = filter_alone(std::move(middle.image), options_.filter);
-      else
-        image = filter_window(first, at, last, middle);
+      if (first == last) image = filter_alone(std::move(middle.image), options_.filter);
+      else image = filter_window(first, at, last, middle);
       if (!options_.channels.empty()) keep_channels(options_.channels, image);
     });
     image.text["tempolux:history"] += tool_.history_line(number);
     tool_.stats().phase("write");
     save_exr(output.temporary_path(), image,
-             {false, options_.compression == "none" ? ExrWriteOptions::Compression::none : ExrWriteOptions::Compression::zip});
+             {false,
+              options_.compression == "none" ? ExrWriteOptions::Compression::none : ExrWriteOptions::Compression::zip});
     output.commit();
     tool_.stats().end_phase();
     tool_.stats().count("frames", 1);
@@ -101,12 +101,11 @@ class FilterRun {
   static void naming(const std::string& file, const Body& body) {
     try {
       body();
-    } catch (const InputError& error) {
-      throw InputError(file + ": " + error.what());
-    }
+    } catch (const InputError& error) { throw InputError(file + ": " + error.what()); }
   }
 
-  /// to_filter: the frame is filtered itself, now or later; else no more of it is read and kept than others take from it.
+  /// to_filter: the frame is filtered itself, now or later; else no more of it is read and kept than others take from
+  /// it.
   LoadedFrame& load(std::size_t index, bool to_filter) {
     const auto [found, is_new] = loaded_.try_emplace(index);
     LoadedFrame& loaded = found->second;
@@ -129,10 +128,12 @@ class FilterRun {
     return loaded;
   }
 
-  /// colour: pixels may hold no numbers, they are filled from those around. all: every channel, or those that --channels and the filter need.
+  /// colour: pixels may hold no numbers, they are filled from those around. all: every channel, or those that
+  /// --channels and the filter need.
   Image read(const std::string& file, bool colour, bool all) {
     const auto is_named = [&](const std::string& channel) {
-      return std::any_of(options_.channels.begin(), options_.channels.end(), [&](const std::string& group) { return is_in_group(channel, group); });
+      return std::any_of(options_.channels.begin(), options_.channels.end(),
+                         [&](const std::string& group) { return is_in_group(channel, group); });
     };
     const auto wanted = [&](const std::string& channel) {
       if (all && (options_.channels.empty() || is_named(channel))) return true;
@@ -146,14 +147,20 @@ class FilterRun {
   /// Warnings once per run, in the words of the first file that they are about.
   void explain(const Names& names, const LoadedFrame& loaded) {
     if (options_.width > 1 && names_.size() > 1 && loaded.flow.empty())
-      warn("motion", names.frame + ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
+      warn("motion",
+           names.frame +
+               ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
     else if (!loaded.flow.empty() && !(loaded.flow.has_forward() && loaded.flow.has_backward()))
-      warn("direction", (names.flow.empty() ? names.frame : names.flow) + ": flow in one direction only; the other is taken for its opposite");
+      warn("direction", (names.flow.empty() ? names.frame : names.flow) +
+                            ": flow in one direction only; the other is taken for its opposite");
     if (!knows_noise(loaded.image))
-      warn("noise", names.frame + ": no noise, variance or albedo; noise cannot be told from texture, so the light stays as it is");
+      warn("noise",
+           names.frame +
+               ": no noise, variance or albedo; noise cannot be told from texture, so the light stays as it is");
     if (!loaded.image.find("Z") && !loaded.image.find("id.object"))
       warn("surfaces", names.frame + ": neither Z nor id.object; surfaces cannot be told apart");
-    if (!identity_in(loaded.image).known()) warn("identity", names.frame + ": does not say which scene it shows; taken as it is");
+    if (!identity_in(loaded.image).known())
+      warn("identity", names.frame + ": does not say which scene it shows; taken as it is");
   }
   void warn(const std::string& about, const std::string& message) {
     if (!std::exchange(warned_[about], true)) tool_.warn(message);
@@ -163,7 +170,7 @@ class FilterRun {
   const Options& options_;
   std::vector<Names> names_;
   bool sequence_, windowed_;
-  std::map<std::size_t, LoadedFrame> loaded_;   ///< of the current window
+  std::map<std::size_t, LoadedFrame> loaded_;  ///< of the current window
   std::map<std::string, bool> warned_;
 };
 
@@ -175,7 +182,8 @@ void filter_files(tools::Tool& tool, const Options& options) {
   if (options.position < 0 || std::size_t(options.position) > count)
     throw InputError("--position: there are " + std::to_string(count) + " frames; the first is 1");
   std::vector<Names> names;
-  for (std::size_t i = 0; i < count; ++i) names.push_back({options.frames[i], options.flow.empty() ? "" : options.flow[i]});
+  for (std::size_t i = 0; i < count; ++i)
+    names.push_back({options.frames[i], options.flow.empty() ? "" : options.flow[i]});
   const std::size_t at = options.position > 0 ? std::size_t(options.position) - 1 : (count - 1) / 2;
   FilterRun(tool, options, std::move(names), false).run(0, at, count - 1, options.output, std::nullopt);
 }
@@ -183,13 +191,15 @@ void filter_files(tools::Tool& tool, const Options& options) {
 void filter_range(tools::Tool& tool, const Options& options) {
   if (options.frames.size() != 1 || !tools::has_frame_pattern(options.frames[0]) || options.flow.size() > 1)
     throw InputError("--frames: name the frames, and their flow, by one pattern each, for example f.####.exr");
-  if (!tools::has_frame_pattern(options.output)) throw InputError("--output: several frames need a pattern, for example f.####.exr");
+  if (!tools::has_frame_pattern(options.output))
+    throw InputError("--output: several frames need a pattern, for example f.####.exr");
   if (options.position != 0) throw InputError("--position: is for frames named one by one; leave it out, or --frames");
   std::vector<int> numbers = tools::parse_frames(options.range);
   std::sort(numbers.begin(), numbers.end());
   std::vector<Names> names;
   for (const int number : numbers)
-    names.push_back({tools::frame_name(options.frames[0], number), options.flow.empty() ? "" : tools::frame_name(options.flow[0], number)});
+    names.push_back({tools::frame_name(options.frames[0], number),
+                     options.flow.empty() ? "" : tools::frame_name(options.flow[0], number)});
   FilterRun run(tool, options, std::move(names), true);
   const int reach = (options.width - 1) / 2;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -206,26 +216,39 @@ void filter_range(tools::Tool& tool, const Options& options) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
-  tools::Tool tool("st-filter", "Filter frames in space and along the pixel flow; by halves of their samples, where that pays.", argc, argv);
+  tools::Tool tool("st-filter",
+                   "Filter frames in space and along the pixel flow; by halves of their samples, where that pays.",
+                   argc, argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("input", options.frames, "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")
-      ->required()->type_name("FILE");
-  app.add_option("--flow", options.flow, "their pixel flow, EXR, as many, or a pattern; without: the frames' own forward and backward")
+  app.add_option("input", options.frames,
+                 "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")
+      ->required()
       ->type_name("FILE");
-  app.add_option("--frames", options.range, "filter these frames, each with those around it in this range: 0-47")->type_name("SPEC");
+  app.add_option("--flow", options.flow,
+                 "their pixel flow, EXR, as many, or a pattern; without: the frames' own forward and backward")
+      ->type_name("FILE");
+  app.add_option("--frames", options.range, "filter these frames, each with those around it in this range: 0-47")
+      ->type_name("SPEC");
   app.add_option("--width", options.width, "with --frames: frames that a frame is filtered with, itself included; odd")
-      ->capture_default_str()->check(tools::number_between(1, 63));
-  app.add_option("--position", options.position, "which of the frames named is filtered, 1: the first; 0: the one in the middle")
-      ->capture_default_str()->check(tools::number_between(0, 1 << 20));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 63));
+  app.add_option("--position", options.position,
+                 "which of the frames named is filtered, 1: the first; 0: the one in the middle")
+      ->capture_default_str()
+      ->check(tools::number_between(0, 1 << 20));
   app.add_option("--scales", options.filter.scales,
                  "windows of 5 and of 15 pixels: how many of them, the smallest first; 0: filter in time alone")
       ->capture_default_str()
       ->check(tools::number_between(0, kMostScales));
   app.add_option("--channels", options.channels,
-                 "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; without: all that the frame has")
-      ->delimiter(',')->type_name("NAMES");
-  app.add_option("--compression", options.compression, "EXR compression")->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
+                 "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; without: all that the "
+                 "frame has")
+      ->delimiter(',')
+      ->type_name("NAMES");
+  app.add_option("--compression", options.compression, "EXR compression")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zip", "none"}));
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
   tool.common_options(0);
   return tool.run([&] {

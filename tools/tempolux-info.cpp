@@ -28,10 +28,8 @@ struct Request {
 };
 
 void print(const Facts& facts, bool as_json) {
-  if (as_json)
-    std::cout << facts.dump(2, ' ', false, Facts::error_handler_t::replace) << '\n';
-  else
-    std::cout << tools::facts_as_text(facts);
+  if (as_json) std::cout << facts.dump(2, ' ', false, Facts::error_handler_t::replace) << '\n';
+  else std::cout << tools::facts_as_text(facts);
 }
 
 /// Exit 1 if one is not valid; a file that is not there is an error of the command.
@@ -54,14 +52,10 @@ int print_files(const Request& request) {
   Facts all = Facts::array();
   for (const std::string& file : request.files) {
     const Facts facts = tools::facts_of(file, true);
-    if (request.digest && !request.json)
-      std::cout << facts["digest"].get<std::string>() << "  " << file << '\n';
-    else if (request.digest)
-      all.push_back({{"file", file}, {"digest", facts["digest"]}});
-    else if (request.json)
-      all.push_back(facts);
-    else
-      print(facts, false);
+    if (request.digest && !request.json) std::cout << facts["digest"].get<std::string>() << "  " << file << '\n';
+    else if (request.digest) all.push_back({{"file", file}, {"digest", facts["digest"]}});
+    else if (request.json) all.push_back(facts);
+    else print(facts, false);
   }
   if (request.json) print(all.size() == 1 ? all[0] : all, true);
   return tools::exit_ok;
@@ -132,28 +126,25 @@ int main(int argc, char** argv) {
                  "files; - is one of ours on standard input: .photons, .irradpoints or .irradcache")
       ->type_name("FILE")
       ->required();
-  CLI::Option* check =
-      app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
-  CLI::Option* digest =
-      app.add_flag("--digest", request.digest, "hash of the data, without header and history");
-  CLI::Option* diff =
-      app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
-  CLI::Option* account = app.add_flag("--account", request.account, "of frames together: how far their light is off, as their audits have it");
+  CLI::Option* check = app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
+  CLI::Option* digest = app.add_flag("--digest", request.digest, "hash of the data, without header and history");
+  CLI::Option* diff = app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
+  CLI::Option* account = app.add_flag("--account", request.account,
+                                      "of frames together: how far their light is off, as their audits have it");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* format =
       app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
           ->type_name("FORMAT")
           ->check(CLI::IsMember({"ply", "csv"}));
   CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
-  CLI::Option* groups = tool.output_option(request.groups, "of .photons: a line of CSV for each group: frame, paths, photons; - is standard output", "--groups");
+  CLI::Option* groups = tool.output_option(
+      request.groups, "of .photons: a line of CSV for each group: frame, paths, photons; - is standard output",
+      "--groups");
   CLI::Option* png = tool.output_option(request.png, "the image as a picture", "--png");
-  CLI::Option* sheet =
-      tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
-  app.add_option("--layer", request.picture.layer,
-                 "layer or channel to show, such as indirect, Z, N; none: R, G, B")
+  CLI::Option* sheet = tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
+  app.add_option("--layer", request.picture.layer, "layer or channel to show, such as indirect, Z, N; none: R, G, B")
       ->type_name("NAME");
-  app.add_option("--exposure", request.exposure,
-                 "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
+  app.add_option("--exposure", request.exposure, "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
       ->type_name("STOPS")
       ->capture_default_str();
   app.add_option("--columns", request.picture.columns, "of --sheet; 0: about square")

@@ -39,8 +39,8 @@ constexpr const char* kColours[3] = {"R", "G", "B"};
 /// What a base is to the frame's smoke.
 struct Base {
   Image image;
-  bool attenuated = true;                    ///< its light has passed the smoke already
-  bool of_this_scene = true;                 ///< the scene's surfaces are those it shows
+  bool attenuated = true;     ///< its light has passed the smoke already
+  bool of_this_scene = true;  ///< the scene's surfaces are those it shows
 };
 
 bool is_smoky(const Image& image) {
@@ -51,19 +51,25 @@ bool is_smoky(const Image& image) {
   return false;
 }
 
-Base check_base(tools::Tool& tool, const std::string& path, Image read, const SceneFrame& frame, const CameraView& view) {
+Base check_base(tools::Tool& tool, const std::string& path, Image read, const SceneFrame& frame,
+                const CameraView& view) {
   Base base{std::move(read), true, true};
   tool.depends_on(path, tools::InputRole::replaceable);
   const Image& image = base.image;
   for (const char* name : kColours)
     if (!image.find(name)) throw InputError(path + ": has no channels R, G, B; a base is a frame in colour");
-  if (is_smoky(image)) throw InputError(path + ": has smoke in its layer volume already; give a frame without, as frame-render --irradcache makes it");
+  if (is_smoky(image))
+    throw InputError(
+        path + ": has smoke in its layer volume already; give a frame without, as frame-render --irradcache makes it");
   const formats::Identity identity = identity_in(image);
   if (!identity.known()) {
     base.attenuated = base.of_this_scene = false;
-    tool.warn(path + ": does not say which scene it shows: its channel Z is where smoke ends, and it is taken as not yet dimmed by the "
+    tool.warn(path +
+              ": does not say which scene it shows: its channel Z is where smoke ends, and it is taken as not yet "
+              "dimmed by the "
               "smoke; approximate at edges");
-    if (!image.find("Z")) throw InputError(path + ": has no channel Z; without it nobody knows what lies before the smoke");
+    if (!image.find("Z"))
+      throw InputError(path + ": has no channel Z; without it nobody knows what lies before the smoke");
     return base;
   }
   formats::Identity without_media = identity;
@@ -71,20 +77,25 @@ Base check_base(tools::Tool& tool, const std::string& path, Image read, const Sc
   tools::check_identity(tool, path, without_media, frame);
   if (!identity.media.empty() && identity.media != frame.hashes.media) {
     base.attenuated = false;
-    tool.warn(path + ": was made without this smoke: it is dimmed here, a pixel at a time, and nothing in it is shaded by the smoke");
+    tool.warn(path +
+              ": was made without this smoke: it is dimmed here, a pixel at a time, and nothing in it is shaded by the "
+              "smoke");
   }
-  for (const auto& [name, matrix] : {std::pair{"worldToCamera", view.world_to_camera()}, std::pair{"worldToNDC", view.world_to_ndc()}}) {
+  for (const auto& [name, matrix] :
+       {std::pair{"worldToCamera", view.world_to_camera()}, std::pair{"worldToNDC", view.world_to_ndc()}}) {
     const auto found = image.matrices.find(name);
     if (found == image.matrices.end()) continue;
     for (std::size_t i = 0; i < 16; ++i)
       if (float(found->second[i]) != float(matrix[i]))
-        throw InputError(path + ": seen by another camera than that of frame " + std::to_string(frame.frame) + "; give a base of this view");
+        throw InputError(path + ": seen by another camera than that of frame " + std::to_string(frame.frame) +
+                         "; give a base of this view");
   }
   return base;
 }
 
 /// Reads the photons of the frame into the volume.
-std::string read_photons(tools::Tool& tool, const std::string& path, const SceneFrame& frame, const Options& options, MediaLight& light) {
+std::string read_photons(tools::Tool& tool, const std::string& path, const SceneFrame& frame, const Options& options,
+                         MediaLight& light) {
   formats::PhotonReader reader(path, {.digest = false});
   tool.depends_on(path);
   tools::check_identity(tool, path, reader.header().identity, frame);
@@ -109,7 +120,8 @@ void put_smoke(const std::vector<SmokePixel>& smoke, const Base& base, Image& im
     if (left != 1)
       for (Channel& channel : image.channels) {
         const char last = channel.name.back();
-        const bool colour = !channel.values.empty() && (channel.name.size() == 1 || channel.name[channel.name.size() - 2] == '.') &&
+        const bool colour = !channel.values.empty() &&
+                            (channel.name.size() == 1 || channel.name[channel.name.size() - 2] == '.') &&
                             (last == 'R' || last == 'G' || last == 'B') && !channel.name.starts_with("albedo");
         if (colour) channel.values[p] *= left;
       }
@@ -117,7 +129,8 @@ void put_smoke(const std::vector<SmokePixel>& smoke, const Base& base, Image& im
       image.find(kVolumeChannels[c])->values[p] = smoke[p].light[int(c)];
       image.find(kColours[c])->values[p] += smoke[p].light[int(c)];
     }
-    if (Channel* alpha = image.find("A"); alpha && !base.attenuated) alpha->values[p] = 1 - left * (1 - alpha->values[p]);
+    if (Channel* alpha = image.find("A"); alpha && !base.attenuated)
+      alpha->values[p] = 1 - left * (1 - alpha->values[p]);
   }
 }
 
@@ -148,8 +161,10 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
     const Rgbd flux = lights.total_flux();
     tool.stats().phase("photons");
     MediaLight::Options light_options = options.light;
-    if (!options.points.empty() && options.compose.sample_lights) light_options.rays = options.compose.samples * options.compose.light_samples;
-    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame), channel_sum(flux), light_options);
+    if (!options.points.empty() && options.compose.sample_lights)
+      light_options.rays = options.compose.samples * options.compose.light_samples;
+    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame), channel_sum(flux),
+                     light_options);
     history += read_photons(tool, tools::frame_name(options.photons, number), frame, options, light);
     tool.stats().phase("filter", true);
     light.finish();
@@ -164,8 +179,8 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
     const IncomingRadiance incoming(tracer, lights, lookup);
     compose_options.incoming = &incoming;
     const Channel* const depth = base.image.find("Z");
-    const std::vector<SmokePixel> smoke =
-        compose_media({tracer, lights}, view, light, depth ? depth->values : std::vector<float>{}, compose_options, counts);
+    const std::vector<SmokePixel> smoke = compose_media(
+        {tracer, lights}, view, light, depth ? depth->values : std::vector<float>{}, compose_options, counts);
     put_smoke(smoke, base, base.image);
     tool.stats().count("photons", double(light.sums().front().photons()));
     tool.stats().count("filter_width_cells", double(light.volume().width()));
@@ -192,7 +207,8 @@ void write_radiance(tools::Tool& tool, tools::SceneInput& input, const Options& 
   if (frame.media) {
     tool.stats().phase("photons");
     const Lights lights(frame, input.emission(frame.frame));
-    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame), channel_sum(lights.total_flux()), options.light);
+    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame),
+                     channel_sum(lights.total_flux()), options.light);
     read_photons(tool, tools::frame_name(options.photons, number), frame, options, light);
     tool.stats().phase("filter", true);
     light.finish();
@@ -209,20 +225,27 @@ void write_radiance(tools::Tool& tool, tools::SceneInput& input, const Options& 
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  app.add_option("--photons", options.photons, ".photons file with photons in media, or a pattern")->type_name("FILE")->required();
+  app.add_option("--photons", options.photons, ".photons file with photons in media, or a pattern")
+      ->type_name("FILE")
+      ->required();
   app.add_option("--points", options.points,
-                 ".irradpoints file, or a pattern: what lies in a peak of the phase function is found by rays from the eye, which end at these points; "
-                 "without them by photons, with more noise. Read only for |g| from about .7")->type_name("FILE");
+                 ".irradpoints file, or a pattern: what lies in a peak of the phase function is found by rays from the "
+                 "eye, which end at these points; "
+                 "without them by photons, with more noise. Read only for |g| from about .7")
+      ->type_name("FILE");
   app.add_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")->type_name("FILE");
   app.add_option("--direct", options.direct,
                  "light straight from lamps: rays: sampled, with shadows; photons: by density, as all other light")
       ->capture_default_str()
       ->check(CLI::IsMember({"rays", "photons"}));
-  app.add_option("--spp", options.compose.samples, "rays per pixel")->capture_default_str()->check(tools::number_between(1, 4096));
+  app.add_option("--spp", options.compose.samples, "rays per pixel")
+      ->capture_default_str()
+      ->check(tools::number_between(1, 4096));
   app.add_option("--light-samples", options.compose.light_samples, "samples of the lamps for each ray")
       ->capture_default_str()
       ->check(tools::number_between(1, 4096));
-  app.add_option("--cell", options.light.cell, "edge of the cells in which photons are summed, m; 0: that of the finest voxel")
+  app.add_option("--cell", options.light.cell,
+                 "edge of the cells in which photons are summed, m; 0: that of the finest voxel")
       ->capture_default_str()
       ->check(tools::number_between(0));
   app.add_option("--filter", options.filter, "how cells are smoothed")
@@ -234,14 +257,18 @@ void add_options(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(0, 64));
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr");
-  tool.output_option(options.radiance, "OpenVDB file, or a pattern: instead of a frame the light in the smoke, grid `radiance`, W/m^2/sr scattered "
-                                       "towards the camera over extinction; of photons alone, with --direct photons all", "--radiance-only");
+  tool.output_option(
+      options.radiance,
+      "OpenVDB file, or a pattern: instead of a frame the light in the smoke, grid `radiance`, W/m^2/sr scattered "
+      "towards the camera over extinction; of photons alone, with --direct photons all",
+      "--radiance-only");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("volume-compose", "Put the smoke of a scene into a frame, lit by photons and sampled lamps.", argc, argv);
+  tools::Tool tool("volume-compose", "Put the smoke of a scene into a frame, lit by photons and sampled lamps.", argc,
+                   argv);
   Options options;
   add_options(tool, options);
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
@@ -257,8 +284,10 @@ int main(int argc, char** argv) {
     options.light.direct = options.direct == "photons";
     options.compose.sample_lights = !options.light.direct;
     using Kind = FluenceFilter::Kind;
-    options.light.filter.kind = options.filter == "none" ? Kind::none : options.filter == "box" ? Kind::box
-                                : options.filter == "bilateral" ? Kind::bilateral : Kind::gaussian;
+    options.light.filter.kind = options.filter == "none"        ? Kind::none
+                                : options.filter == "box"       ? Kind::box
+                                : options.filter == "bilateral" ? Kind::bilateral
+                                                                : Kind::gaussian;
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
     StandingTree standing;

@@ -41,8 +41,7 @@ bool parse_ranges(std::string_view text, std::vector<std::array<std::int32_t, 2>
 Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, IrradcacheHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "columns") {
-    h.columns =
-        std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
+    h.columns = std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
     return result(!(h.columns & column_clearance) || minor >= kClearanceSince);
   }
   if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);

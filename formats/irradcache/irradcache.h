@@ -41,7 +41,7 @@ struct IrradianceCacheRecord {
   float influence = 0;            ///< W/m^2, >= 0: change by what moves; 0 without column_influence
   std::array<float, 3> update{};  ///< W/m^2: E_t of this frame; may be < 0; 0 without column_update
   float clearance_reach = 0;      ///< m, > 0 or +inf: how far was looked around the record; 0 without column_clearance
-  std::array<std::uint8_t, 16> clearance{};   ///< by spoke, in 1/255 of clearance_reach; 0 without
+  std::array<std::uint8_t, 16> clearance{};  ///< by spoke, in 1/255 of clearance_reach; 0 without
 
   bool operator==(const IrradianceCacheRecord&) const = default;
 };
@@ -57,8 +57,8 @@ struct IrradcacheHeader {
   std::array<double, 3> origin{};  ///< m, world space
   std::uint32_t columns = 0;       ///< IrradcacheColumns
   // How it was gathered, for whoever extends it. 0: not known.
-  std::uint32_t rays = 0;                 ///< gather rays per record
-  double error_bound = 0;                 ///< accuracy that set the radii; its meaning is the maker's
+  std::uint32_t rays = 0;  ///< gather rays per record
+  double error_bound = 0;  ///< accuracy that set the radii; its meaning is the maker's
   /// n . n_i above which a record counts, [0, 1): what it was placed for, and what to interpolate with.
   double least_cosine = kLeastCosine;
   double min_radius = 0, max_radius = 0;  ///< m: limits that radii were clamped to; max 0: not known

@@ -53,8 +53,7 @@ IrradcacheFile load_irradcache(const std::string& path) {
   file.records.reserve(in.bytes().size() / record_size(columns));
   RecordSums sums;
   std::vector<char> body;
-  while (in.read_records(kBlockMark, record_size(columns), body))
-    append_records(body, columns, in, file.records, sums);
+  while (in.read_records(kBlockMark, record_size(columns), body)) append_records(body, columns, in, file.records, sums);
   file.totals = read_totals(in, sums.totals());
   return file;
 }

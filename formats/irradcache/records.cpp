@@ -25,18 +25,17 @@ std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t col
   if (!is_finite(record.irradiance)) return "irradiance is not finite";
   if (is_negative(record.irradiance)) return "irradiance is negative";
   for (std::size_t c = 0; c < 3; ++c)
-    if (!is_finite(record.rotational[c]) || !is_finite(record.translational[c]))
-      return "a gradient is not finite";
+    if (!is_finite(record.rotational[c]) || !is_finite(record.translational[c])) return "a gradient is not finite";
   if (!is_finite(record.radius) || is_negative(record.radius) || is_zero(record.radius))
     return "radius is not a length above 0";
   const bool unlimited = record.radius_unclamped == std::numeric_limits<float>::infinity();
   if (!unlimited && (!is_finite(record.radius_unclamped) || is_negative(record.radius_unclamped)))
     return "unclamped radius is not a number or is negative";
-  if (!is_finite(record.influence) || is_negative(record.influence))
-    return "influence is not finite or is negative";
+  if (!is_finite(record.influence) || is_negative(record.influence)) return "influence is not finite or is negative";
   if (!is_finite(record.update)) return "update is not finite";
   if (columns & column_clearance && !(record.clearance_reach > 0)) return "clearance does not reach anywhere";
-  if ((!(columns & column_clearance) && (!is_zero(record.clearance_reach) || record.clearance != std::array<std::uint8_t, 16>{})) ||
+  if ((!(columns & column_clearance) &&
+       (!is_zero(record.clearance_reach) || record.clearance != std::array<std::uint8_t, 16>{})) ||
       (!(columns & column_influence) && !is_zero(record.influence)) ||
       (!(columns & column_update) && !is_zero(record.update)))
     return "a value of a column that the header does not name";
@@ -64,9 +63,8 @@ std::string digest_of(const IrradcacheFile& file) {
     return file.header.columns & bit ? "#" + hash.hex() : std::string("none");
   };
   return hash_hex("irradcache: 1\norigin: " + hex_of(file.header.origin) +
-                  "\nrecords: " + std::to_string(file.records.size()) + " #" + records.hex() +
-                  "\ninfluence: " + column(column_influence, influences) +
-                  "\nupdate: " + column(column_update, updates) + "\n" +
+                  "\nrecords: " + std::to_string(file.records.size()) + " #" + records.hex() + "\ninfluence: " +
+                  column(column_influence, influences) + "\nupdate: " + column(column_update, updates) + "\n" +
                   (file.header.columns & column_clearance ? "clearance: #" + clearances.hex() + "\n" : ""));
 }
 

@@ -40,8 +40,7 @@ void IrradcacheWriter::State::write_block(std::span<const IrradianceCacheRecord>
   out.write_block(kBlockMark, {std::uint32_t(records.size())}, body);
 }
 
-IrradcacheWriter::IrradcacheWriter(std::function<void(const void*, std::size_t)> sink,
-                                   const IrradcacheHeader& header)
+IrradcacheWriter::IrradcacheWriter(std::function<void(const void*, std::size_t)> sink, const IrradcacheHeader& header)
     : state_(std::make_unique<State>(std::move(sink), header)) {}
 IrradcacheWriter::~IrradcacheWriter() = default;
 

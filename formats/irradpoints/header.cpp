@@ -57,8 +57,7 @@ std::string header_text(const IrradpointsHeader& h) {
   return text.finish();
 }
 
-std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor,
-                                             IrradpointsHeader& h) {
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradpointsHeader& h) {
   h = IrradpointsHeader();
   constexpr std::array<std::string_view, 4> required{"kinds", "origin", "spacing", "emitted"};
   const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };

@@ -46,8 +46,7 @@ std::string header_text(const IrradpointsHeader& header);
 
 /// Parses the text of a file of version 1.minor; keys that we do not know pass if it is later than ours. Nothing if the
 /// header is good.
-std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor,
-                                             IrradpointsHeader& header);
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradpointsHeader& header);
 
 /// Why a point is refused (irradpoints.md, section 3); "" if it is good. The predicate of the format.
 std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds);

@@ -43,8 +43,8 @@ IrradpointsTotals read_totals(ContainerReader& in, const IrradpointsTotals& sums
                                           " points, the file has " + std::to_string(sums.point_count));
   for (std::size_t k = 0; k < kKinds.size(); ++k)
     if (totals.*kKinds[k].total != sums.*kKinds[k].total)
-      in.bytes().fail(in.body_offset() + 8 + 24 * k, "total of kind " + std::string(kKinds[k].name) +
-                                                         " is not the sum of the points' irradiance");
+      in.bytes().fail(in.body_offset() + 8 + 24 * k,
+                      "total of kind " + std::string(kKinds[k].name) + " is not the sum of the points' irradiance");
   in.bytes().expect_end();
   return totals;
 }
@@ -59,8 +59,7 @@ IrradpointsFile load_irradpoints(const std::string& path) {
   file.records.reserve(in.bytes().size() / point_size(kinds));
   PointSums sums;
   std::vector<char> body;
-  while (in.read_records(kBlockMark, point_size(kinds), body))
-    append_points(body, kinds, in, file.records, sums);
+  while (in.read_records(kBlockMark, point_size(kinds), body)) append_points(body, kinds, in, file.records, sums);
   file.totals = read_totals(in, sums.totals());
   return file;
 }

@@ -15,8 +15,7 @@ std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds) {
     const std::array<float, 3>& irradiance = point.*kKinds[k].irradiance;
     if (!is_finite(irradiance)) return "irradiance is not finite";
     if (is_negative(irradiance)) return "irradiance is negative";
-    if (!((kinds >> k) & 1) && !is_zero(irradiance))
-      return "irradiance of a kind that the header does not name";
+    if (!((kinds >> k) & 1) && !is_zero(irradiance)) return "irradiance of a kind that the header does not name";
   }
   return "";
 }
@@ -50,10 +49,7 @@ std::string digest_of(const IrradpointsFile& file) {
                      "\nspacing: " + hex_of({&file.header.spacing, 1}) +
                      "\npoints: " + std::to_string(file.records.size()) + " #" + points.hex() + "\n";
   for (std::size_t k = 0; k < kKinds.size(); ++k)
-    text.append(kKinds[k].name)
-        .append(": ")
-        .append((kinds >> k) & 1 ? "#" + columns[k].hex() : "none")
-        .append("\n");
+    text.append(kKinds[k].name).append(": ").append((kinds >> k) & 1 ? "#" + columns[k].hex() : "none").append("\n");
   return hash_hex(text);
 }
 

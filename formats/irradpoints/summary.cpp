@@ -7,8 +7,7 @@ IrradianceShare share_of(const IrradpointsFile& file, std::array<float, 3> Irrad
                          const std::array<double, 3>& total) {
   IrradianceShare share;
   for (std::size_t c = 0; c < 3; ++c) {
-    for (const IrradiancePointRecord& point : file.records)
-      share.irradiance[c].add(double((point.*irradiance)[c]));
+    for (const IrradiancePointRecord& point : file.records) share.irradiance[c].add(double((point.*irradiance)[c]));
     share.flux[c] = total[c] * file.header.spacing * file.header.spacing;
   }
   return share;

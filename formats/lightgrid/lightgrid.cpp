@@ -13,8 +13,9 @@ namespace {
 
 constexpr Format kFormat{{"\x89TLGRD\r\n", 8}, ".lightgrid", "frame-render --learn-lights"};
 constexpr std::string_view kBlockMark = "CELL";
-constexpr std::size_t kEndBodySize = 8, kCellsInBlock = 1024, kFixedSize = 24;   // of a record: 24 bytes and one float for each part
-constexpr std::uint32_t kMostParts = 256;   ///< across, and down
+constexpr std::size_t kEndBodySize = 8, kCellsInBlock = 1024,
+                      kFixedSize = 24;     // of a record: 24 bytes and one float for each part
+constexpr std::uint32_t kMostParts = 256;  ///< across, and down
 
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const LightgridHeader& h) {
@@ -44,7 +45,8 @@ std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_u
     return take_common_line(key, value, common_keys(h));
   };
   if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
-  if (const std::string_view fault = fault_of(h); !fault.empty()) return HeaderError{0, "header: " + std::string(fault)};
+  if (const std::string_view fault = fault_of(h); !fault.empty())
+    return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;
 }
 
@@ -59,7 +61,8 @@ class Checked {
     for (const std::int32_t x : cell.place)
       if (x < -LightgridCell::kFarthest || x > LightgridCell::kFarthest) return "place is more than 524286 from 0";
     if (cell.facing > 5) return "facing is above 5";
-    if (!is_share(cell.sky) || !is_share(cell.suns) || cell.sky + cell.suns > 1 + 0x1p-20f) return "sky and suns are not probabilities";
+    if (!is_share(cell.sky) || !is_share(cell.suns) || cell.sky + cell.suns > 1 + 0x1p-20f)
+      return "sky and suns are not probabilities";
     if (cell.end.size() != parts_) return "end has not the number of parts";
     for (std::size_t i = 0; i < parts_; ++i)
       if (!is_share(cell.end[i]) || (i > 0 && cell.end[i] < cell.end[i - 1])) return "end does not ascend from 0 to 1";
@@ -103,7 +106,8 @@ LightgridCell cell_of(const char* bytes, std::size_t parts) {
 void write_lightgrid(const std::function<void(const void*, std::size_t)>& sink, const LightgridFile& file) {
   Checked checked(file.header.part_count());
   for (const LightgridCell& cell : file.cells)
-    if (const std::string_view fault = checked.add(cell); !fault.empty()) throw std::invalid_argument("write_lightgrid: " + std::string(fault));
+    if (const std::string_view fault = checked.add(cell); !fault.empty())
+      throw std::invalid_argument("write_lightgrid: " + std::string(fault));
   ContainerWriter out(sink, kFormat, header_text(file.header));
   const std::span<const LightgridCell> all = file.cells;
   for (std::size_t first = 0; first < all.size(); first += kCellsInBlock) {
@@ -131,7 +135,8 @@ LightgridFile load_lightgrid(const std::string& path) {
         in.bytes().fail(in.body_offset() + at, std::string(fault), "correct the program that wrote it");
     }
   const std::string end = in.read_end(kEndBodySize);
-  if (get<std::uint64_t>(end.data()) != checked.count()) in.bytes().fail(in.body_offset(), "end block does not count the file's cells");
+  if (get<std::uint64_t>(end.data()) != checked.count())
+    in.bytes().fail(in.body_offset(), "end block does not count the file's cells");
   in.bytes().expect_end();
   return file;
 }
@@ -142,9 +147,10 @@ std::string digest_of(const LightgridFile& file) {
     const std::string bytes = bytes_of(cell);
     cells.add_bytes(bytes.data(), bytes.size());
   }
-  return hash_hex("lightgrid: 1\norigin: " + hex_of(file.header.origin) + "\nedge: " + hex_of(std::span(&file.header.edge, 1)) +
-                  "\nparts: " + std::to_string(file.header.parts[0]) + " " +
-                  std::to_string(file.header.parts[1]) + "\ncells: " + std::to_string(file.cells.size()) + " #" + cells.hex() + "\n");
+  return hash_hex("lightgrid: 1\norigin: " + hex_of(file.header.origin) +
+                  "\nedge: " + hex_of(std::span(&file.header.edge, 1)) +
+                  "\nparts: " + std::to_string(file.header.parts[0]) + " " + std::to_string(file.header.parts[1]) +
+                  "\ncells: " + std::to_string(file.cells.size()) + " #" + cells.hex() + "\n");
 }
 
 }  // namespace tempolux::formats

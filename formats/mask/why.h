@@ -22,7 +22,7 @@ enum Why : std::uint32_t {
 struct NamedWhy {
   Why bit;
   std::string_view name;
-  std::array<std::uint8_t, 3> color;   ///< sRGB: how tempolux-info draws it
+  std::array<std::uint8_t, 3> color;  ///< sRGB: how tempolux-info draws it
 };
 
 /// All of them, in the order in which a pixel with several is counted (its first cause) and drawn.

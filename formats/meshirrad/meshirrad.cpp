@@ -15,14 +15,15 @@ namespace {
 constexpr Format kFormat{{"\x89TMESH\r\n", 8}, ".meshirrad", "st-filter mesh or gather-temporal density", 1, 1};
 constexpr std::string_view kBlockMark = "MESH";
 constexpr std::size_t kEndBodySize = 16;
-constexpr std::uint16_t kHoldsSince = 1;     // minor version
-constexpr std::array<std::string_view, 3> kHolds{"frame", "counts", "windows"};   // by MeshHolds
+constexpr std::uint16_t kHoldsSince = 1;                                         // minor version
+constexpr std::array<std::string_view, 3> kHolds{"frame", "counts", "windows"};  // by MeshHolds
 
 bool is_kinds(const std::string& list) {
   for (unsigned kinds = 1; kinds < 8; ++kinds) {
     std::string names;
     for (unsigned k = 0; k < 3; ++k)
-      if ((kinds >> k) & 1) names.append(names.empty() ? "" : ",").append(std::array{"direct", "caustic", "indirect"}[k]);
+      if ((kinds >> k) & 1)
+        names.append(names.empty() ? "" : ",").append(std::array{"direct", "caustic", "indirect"}[k]);
     if (names == list) return true;
   }
   return false;
@@ -93,7 +94,8 @@ std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_
   constexpr std::array<std::string_view, 5> required{"kinds", "origin", "cell", "unit", "filter"};
   const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };
   if (auto error = parse_lines(text, minor > kFormat.minor, required, take)) return error;
-  if (const std::string_view fault = fault_of(h); !fault.empty()) return HeaderError{0, "header: " + std::string(fault)};
+  if (const std::string_view fault = fault_of(h); !fault.empty())
+    return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;
 }
 
@@ -118,7 +120,8 @@ class Checked {
     if (holds_ != MeshHolds::windows && (e.before != 0 || e.after != 0)) return "frames before or after are not 0";
     const std::tuple place{e.surface, e.triangle, e.side};
     const bool goes_on = next_cell_ > 0;
-    if (goes_on ? place != last_ || e.cuts != cuts_ || e.cell != next_cell_ : e.cell != 0 || (count_ > 0 && place <= last_))
+    if (goes_on ? place != last_ || e.cuts != cuts_ || e.cell != next_cell_
+                : e.cell != 0 || (count_ > 0 && place <= last_))
       return "elements are not in the order of surfaces, triangles, sides and cells, all cells of a side";
     last_ = place;
     cuts_ = e.cuts;
@@ -164,7 +167,8 @@ std::array<float, 2> mesh_cell_centre(std::uint32_t n, std::uint32_t cell) {
 void write_meshirrad(const std::function<void(const void*, std::size_t)>& sink, const MeshirradFile& file) {
   Checked checked(file.header.holds);
   for (const MeshElement& element : file.elements)
-    if (const std::string_view fault = checked.add(element); !fault.empty()) throw std::invalid_argument("write_meshirrad: " + std::string(fault));
+    if (const std::string_view fault = checked.add(element); !fault.empty())
+      throw std::invalid_argument("write_meshirrad: " + std::string(fault));
   if (!checked.complete()) throw std::invalid_argument("write_meshirrad: cells of the last triangle are missing");
   ContainerWriter out(sink, format_of(file.header), header_text(file.header));
   const std::span<const MeshElement> all = file.elements;
@@ -191,10 +195,12 @@ MeshirradFile load_meshirrad(const std::string& path) {
     for (std::size_t i = 0; i < body.size() / sizeof(MeshElement); ++i) {
       file.elements.push_back(get<MeshElement>(body.data() + i * sizeof(MeshElement)));
       if (const std::string_view fault = checked.add(file.elements.back()); !fault.empty())
-        in.bytes().fail(in.body_offset() + i * sizeof(MeshElement), std::string(fault), "correct the program that wrote it");
+        in.bytes().fail(in.body_offset() + i * sizeof(MeshElement), std::string(fault),
+                        "correct the program that wrote it");
     }
   const std::string end = in.read_end(kEndBodySize);
-  if (!checked.complete()) in.bytes().fail(in.body_offset(), "cells of the last triangle are missing", "correct the program that wrote it");
+  if (!checked.complete())
+    in.bytes().fail(in.body_offset(), "cells of the last triangle are missing", "correct the program that wrote it");
   if (get<std::uint64_t>(end.data()) != checked.count() || get<std::uint64_t>(end.data() + 8) != checked.photons())
     in.bytes().fail(in.body_offset(), "end block does not count the file's elements and photons");
   in.bytes().expect_end();
@@ -207,8 +213,8 @@ std::string digest_of(const MeshirradFile& file) {
   const bool is_frame = file.header.holds == MeshHolds::frame;
   const std::string holds = is_frame ? "" : "holds: " + std::string(kHolds[std::size_t(file.header.holds)]) + "\n";
   const std::string jump = file.header.jump ? "jump: yes\n" : "";
-  return hash_hex("meshirrad: 1\n" + holds + jump +
-                  "origin: " + hex_of(file.header.origin) + "\nunit: " + hex_of(std::span(&file.header.unit, 1)) +
+  return hash_hex("meshirrad: 1\n" + holds + jump + "origin: " + hex_of(file.header.origin) +
+                  "\nunit: " + hex_of(std::span(&file.header.unit, 1)) +
                   "\nelements: " + std::to_string(file.elements.size()) + " #" + elements.hex() + "\n");
 }
 

@@ -79,10 +79,12 @@ Line take_line(std::string_view key, std::string_view value, PathsHeader& h) {
 
 std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, PathsHeader& h) {
   h = PathsHeader();
-  constexpr std::array<std::string_view, 7> required{"kinds", "origin", "groups", "emitted", "seed", "movers", "frames"};
+  constexpr std::array<std::string_view, 7> required{"kinds", "origin", "groups", "emitted",
+                                                     "seed",  "movers", "frames"};
   const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, h); };
   if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
-  if (const std::string_view fault = fault_of(h); !fault.empty()) return HeaderError{0, "header: " + std::string(fault)};
+  if (const std::string_view fault = fault_of(h); !fault.empty())
+    return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;
 }
 
@@ -95,7 +97,8 @@ class Checked {
   /// "" if the path may follow those before.
   std::string_view add(const TouchedPath& path) {
     if (path.path >= emitted_) return "path is not below emitted";
-    if (path.intervals == 0 || (intervals_ < 64 && path.intervals >> intervals_)) return "intervals are none of the file's";
+    if (path.intervals == 0 || (intervals_ < 64 && path.intervals >> intervals_))
+      return "intervals are none of the file's";
     const std::array<std::uint64_t, 2> place{path.path % groups_, path.path / groups_};
     if (count_ > 0 && place <= last_) return "paths are not in the order of their groups";
     last_ = place;
@@ -163,7 +166,8 @@ PathsFile load_paths(const std::string& path) {
     for (std::size_t i = 0; i < body.size() / sizeof(TouchedPath); ++i) {
       file.paths.push_back(get<TouchedPath>(body.data() + i * sizeof(TouchedPath)));
       if (const std::string_view fault = checked.add(file.paths.back()); !fault.empty())
-        in.bytes().fail(in.body_offset() + i * sizeof(TouchedPath), std::string(fault), "correct the program that wrote it");
+        in.bytes().fail(in.body_offset() + i * sizeof(TouchedPath), std::string(fault),
+                        "correct the program that wrote it");
     }
   const std::string end = in.read_end(kEndBodySize);
   if (get<std::uint64_t>(end.data()) != checked.count() || get<std::uint64_t>(end.data() + 8) != checked.bits())
@@ -175,7 +179,8 @@ PathsFile load_paths(const std::string& path) {
 std::string digest_of(const PathsFile& file) {
   Hasher paths;
   paths.add_bytes(file.paths.data(), file.paths.size() * sizeof(TouchedPath));
-  return hash_hex("paths: 1\norigin: " + hex_of(file.header.origin) + "\ngroups: " + std::to_string(file.header.group_count) +
+  return hash_hex("paths: 1\norigin: " + hex_of(file.header.origin) +
+                  "\ngroups: " + std::to_string(file.header.group_count) +
                   "\npaths: " + std::to_string(file.paths.size()) + " #" + paths.hex() + "\n");
 }
 

@@ -19,8 +19,8 @@ namespace tempolux::formats {
 
 /// A photon path of a static map, and when in its segment something that moves can touch it.
 struct TouchedPath {
-  std::uint64_t path = 0;        ///< number of the path: its group is path mod N_g
-  std::uint64_t intervals = 0;   ///< bit i: in interval i of the segment; not 0
+  std::uint64_t path = 0;       ///< number of the path: its group is path mod N_g
+  std::uint64_t intervals = 0;  ///< bit i: in interval i of the segment; not 0
 
   bool operator==(const TouchedPath&) const = default;
 };
@@ -28,14 +28,14 @@ static_assert(sizeof(TouchedPath) == 16);
 
 /// What the header says.
 struct PathsHeader {
-  std::string history;             ///< one line per tool, each ending in LF
-  Identity identity;               ///< of what stands in the segment, and its frames
-  std::array<double, 3> origin{};  ///< m, world space
-  std::uint32_t group_count = 1;   ///< N_g of the map
-  std::uint64_t emitted_count = 0; ///< paths of the map
-  std::uint64_t seed = 0;          ///< of the map's random numbers
+  std::string history;                            ///< one line per tool, each ending in LF
+  Identity identity;                              ///< of what stands in the segment, and its frames
+  std::array<double, 3> origin{};                 ///< m, world space
+  std::uint32_t group_count = 1;                  ///< N_g of the map
+  std::uint64_t emitted_count = 0;                ///< paths of the map
+  std::uint64_t seed = 0;                         ///< of the map's random numbers
   std::string kinds = "direct,caustic,indirect";  ///< kinds of photons in the map
-  std::vector<std::string> movers; ///< by interval, 1 to 64: hash of what moves in its frames
+  std::vector<std::string> movers;                ///< by interval, 1 to 64: hash of what moves in its frames
 };
 inline constexpr std::size_t kMostIntervals = 64;
 

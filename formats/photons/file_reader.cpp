@@ -53,9 +53,7 @@ void FileReader::read_body(PhotonBlock& block, std::size_t count) {
   resize(block.photons, count);
   resize(block.directions, header_.columns & column_direction ? count : 0);
   resize(block.albedos, header_.columns & column_albedo ? count : 0);
-  const auto read = [&](auto& values) {
-    in_.read_body(values.data(), values.size() * sizeof(values[0]), "a block");
-  };
+  const auto read = [&](auto& values) { in_.read_body(values.data(), values.size() * sizeof(values[0]), "a block"); };
   read(block.photons);
   read(block.directions);
   read(block.albedos);
@@ -99,7 +97,8 @@ void FileReader::read_ledger() {
     group.frame = get<std::int32_t>(&entry[76]);
     group.paths = get<std::uint64_t>(&entry[80]);
     group.pilots.resize(header_.pilots);
-    if (header_.pilots > 0) std::memcpy(group.pilots.data(), &entry[kDatedLedgerEntrySize], header_.pilots * sizeof(PhotonPilot));
+    if (header_.pilots > 0)
+      std::memcpy(group.pilots.data(), &entry[kDatedLedgerEntrySize], header_.pilots * sizeof(PhotonPilot));
   }
   in_.end_block("the ledger");
   for (std::size_t i = 0; i < count; ++i) {
@@ -110,7 +109,8 @@ void FileReader::read_ledger() {
     check_flux(ledger_[i].escaped, at + 28, "escaped flux");
     check_flux(ledger_[i].absorbed, at + 52, "absorbed flux");
     for (std::size_t p = 0; p < ledger_[i].pilots.size(); ++p)
-      if (!std::isfinite(ledger_[i].pilots[p].sketch)) in_.bytes().fail(at + kDatedLedgerEntrySize + 32 * p + 24, "a pilot's sum is not finite");
+      if (!std::isfinite(ledger_[i].pilots[p].sketch))
+        in_.bytes().fail(at + kDatedLedgerEntrySize + 32 * p + 24, "a pilot's sum is not finite");
   }
   has_ledger_ = true;
 }
@@ -124,15 +124,16 @@ void FileReader::read_end() {
   std::memcpy(totals_.escaped_flux.data(), &end[56], 24);
   std::memcpy(totals_.absorbed_flux.data(), &end[80], 24);
   if (totals_.photon_count != photon_count_)
-    in_.bytes().fail(start + 4, "end block counts " + std::to_string(totals_.photon_count) +
-                                    " photons, the file has " + std::to_string(photon_count_));
+    in_.bytes().fail(start + 4, "end block counts " + std::to_string(totals_.photon_count) + " photons, the file has " +
+                                    std::to_string(photon_count_));
   if (totals_.stored_flux != stored_flux_.rounded())
     in_.bytes().fail(start + 12, "stored flux is not the sum of the photons' flux");
   check_flux(totals_.emitted_flux, start + 36, "emitted flux");
   check_flux(totals_.escaped_flux, start + 60, "escaped flux");
   check_flux(totals_.absorbed_flux, start + 84, "absorbed flux");
   if (is_overlay() && !has_ledger_) in_.bytes().fail(start, "an overlay without ledger", "make it again");
-  if (has_tentative(header_) && !has_ledger_) in_.bytes().fail(start, "tentative photons without ledger", "make it again");
+  if (has_tentative(header_) && !has_ledger_)
+    in_.bytes().fail(start, "tentative photons without ledger", "make it again");
   if (has_ledger_) {
     PhotonTotals sums = totals_;
     add_up(ledger_, sums);

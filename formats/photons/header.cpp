@@ -28,11 +28,11 @@ constexpr std::uint32_t kTentative = 1u << int(PathKind::tentative);
 
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const PhotonHeader& h) {
-  if (h.map != "global" && h.map != "static" && h.map != "dynamic")
-    return "map is not global, static or dynamic";
+  if (h.map != "global" && h.map != "static" && h.map != "dynamic") return "map is not global, static or dynamic";
   if (parse_kinds(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect, volume, tentative";
   if (!is_part(h.part)) return "part is not low or high";
-  if ((parse_kinds(h.kinds) & kTentative) != 0 && h.majorants.empty()) return "kinds has tentative, but majorants is missing";
+  if ((parse_kinds(h.kinds) & kTentative) != 0 && h.majorants.empty())
+    return "kinds has tentative, but majorants is missing";
   if ((parse_kinds(h.kinds) & kTentative) == 0 && !h.majorants.empty()) return "majorants, but kinds has no tentative";
   if (!h.majorants.empty() && !is_digest(h.majorants)) return "majorants is not 32 hexadecimal digits";
   if (h.pilots > kMostPilots) return "pilots is not in 1 .. 256";
@@ -51,8 +51,7 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
   if (key == "map") return h.map = value, Line::good;
   if (key == "kinds") return h.kinds = value, Line::good;
   if (key == "columns") {
-    h.columns =
-        std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
+    h.columns = std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
     return Line::good;
   }
   if (key == "part" && minor >= kPartSince) return h.part = value, result(!value.empty());
@@ -80,7 +79,11 @@ std::size_t ledger_entry_size(const PhotonHeader& h) {
 
 Format format_of(const PhotonHeader& h) {
   Format format = kFormat;
-  format.minor = h.pilots > 0 ? kPilotsSince : has_tentative(h) ? kTentativeSince : !h.part.empty() ? kPartSince : !h.identity.emission.empty() ? kEmissionSince : 0;
+  format.minor = h.pilots > 0                   ? kPilotsSince
+                 : has_tentative(h)             ? kTentativeSince
+                 : !h.part.empty()              ? kPartSince
+                 : !h.identity.emission.empty() ? kEmissionSince
+                                                : 0;
   return format;
 }
 
@@ -108,20 +111,18 @@ std::string header_text(const PhotonHeader& h) {
 
 std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, PhotonHeader& h) {
   h = PhotonHeader();
-  constexpr std::array<std::string_view, 6> required{"map",    "kinds",  "columns",
-                                                     "origin", "groups", "emitted"};
+  constexpr std::array<std::string_view, 6> required{"map", "kinds", "columns", "origin", "groups", "emitted"};
   auto error = parse_lines(text, minor > kFormat.minor, required, [&](std::string_view key, std::string_view value) {
     return take_line(key, value, minor, h);
   });
   if (error) return error;
   if (const std::string_view fault = fault_of(h); !fault.empty())
     return HeaderError{0, "header: " + std::string(fault)};
-  if (minor < kTentativeSince && has_tentative(h)) return HeaderError{0, "header: kinds has tentative, which is since version 1.3"};
+  if (minor < kTentativeSince && has_tentative(h))
+    return HeaderError{0, "header: kinds has tentative, which is since version 1.3"};
   return std::nullopt;
 }
 
-RecordRules rules_of(const PhotonHeader& header) {
-  return {parse_kinds(header.kinds), header.map == "dynamic"};
-}
+RecordRules rules_of(const PhotonHeader& header) { return {parse_kinds(header.kinds), header.map == "dynamic"}; }
 
 }  // namespace tempolux::formats::photons

@@ -15,8 +15,9 @@ namespace tempolux::formats::photons {
 
 inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 4};
 inline constexpr std::uint32_t kMaxGroupCount = 1u << 24;
-inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG", kDatedLedgerMark = "LEDU", kPilotLedgerMark = "LEDP";
-inline constexpr std::uint32_t kMostPilots = 256;   ///< of a group
+inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG", kDatedLedgerMark = "LEDU",
+                                  kPilotLedgerMark = "LEDP";
+inline constexpr std::uint32_t kMostPilots = 256;  ///< of a group
 inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kDatedLedgerEntrySize = 88, kEndBodySize = 104;
 
 /// Bytes of one photon in a block with these columns.

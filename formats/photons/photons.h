@@ -27,12 +27,12 @@ inline constexpr std::size_t kPathKinds = 5;
 
 /// One photon: a packet of flux that arrived at a point. 32 bytes, in memory as on disk.
 struct Photon {
-  std::array<float, 3> position{};   ///< m; world space minus the header's origin
-  std::array<float, 3> flux{};       ///< W, linear Rec. 709; already divided by the number of emitted paths. Tentative: W m
+  std::array<float, 3> position{};  ///< m; world space minus the header's origin
+  std::array<float, 3> flux{};  ///< W, linear Rec. 709; already divided by the number of emitted paths. Tentative: W m
   std::array<std::uint16_t, 2> normal{};  ///< octahedral: surface normal on the side the light arrived at
-  std::uint16_t object = 0xffff;     ///< id.object; 0xffff in a medium or not known
+  std::uint16_t object = 0xffff;          ///< id.object; 0xffff in a medium or not known
   PathKind kind = PathKind::direct;
-  std::uint8_t bounce = 0;           ///< scattering events since the light, saturating at 255
+  std::uint8_t bounce = 0;  ///< scattering events since the light, saturating at 255
 
   bool operator==(const Photon&) const = default;
 };
@@ -40,41 +40,41 @@ static_assert(sizeof(Photon) == 32);
 
 /// Optional columns: present for every photon of the file or for none.
 enum PhotonColumns : std::uint32_t {
-  column_direction = 1,   ///< 4 bytes, octahedral wi: points back to where the light came from
-  column_albedo = 2,      ///< 4 bytes: reflected share R, G, B in 1/255, then a zero byte
+  column_direction = 1,  ///< 4 bytes, octahedral wi: points back to where the light came from
+  column_albedo = 2,     ///< 4 bytes: reflected share R, G, B in 1/255, then a zero byte
 };
 
 /// What the header says.
 struct PhotonHeader {
-  std::string history;                        ///< one line per tool, each ending in LF
-  Identity identity;                          ///< which scene state this belongs to; may be empty
-  std::array<double, 3> origin{};             ///< m, world space
-  std::uint32_t columns = 0;                  ///< PhotonColumns
-  std::uint32_t group_count = 1;              ///< N_g: photon i is of group i mod N_g
-  std::uint64_t emitted_count = 0;            ///< paths started, over all groups
-  std::string map = "global";                 ///< "global", "static" or "dynamic" (there flux may be < 0)
+  std::string history;                            ///< one line per tool, each ending in LF
+  Identity identity;                              ///< which scene state this belongs to; may be empty
+  std::array<double, 3> origin{};                 ///< m, world space
+  std::uint32_t columns = 0;                      ///< PhotonColumns
+  std::uint32_t group_count = 1;                  ///< N_g: photon i is of group i mod N_g
+  std::uint64_t emitted_count = 0;                ///< paths started, over all groups
+  std::string map = "global";                     ///< "global", "static" or "dynamic" (there flux may be < 0)
   std::string kinds = "direct,caustic,indirect";  ///< which kinds were stored
   std::string part;  ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
   /// Of an overlay: the file it changes, and that file's digest. Groups not in this file come from the base.
   std::string base_name, base_digest;
-  std::string majorants;                      ///< of tentative photons: hash of the majorants they were drawn from
-  std::uint32_t pilots = 0;                   ///< pilots of each group in the ledger; only with tentative photons
+  std::string majorants;     ///< of tentative photons: hash of the majorants they were drawn from
+  std::uint32_t pilots = 0;  ///< pilots of each group in the ledger; only with tentative photons
 };
 
 /// Photons of one group. Blocks of a group follow each other; groups never descend.
 struct PhotonBlock {
   std::uint32_t group = 0;
   std::vector<Photon> photons;
-  std::vector<std::array<std::uint16_t, 2>> directions;   ///< if column_direction
-  std::vector<std::array<std::uint8_t, 4>> albedos;       ///< if column_albedo
+  std::vector<std::array<std::uint16_t, 2>> directions;  ///< if column_direction
+  std::vector<std::array<std::uint8_t, 4>> albedos;      ///< if column_albedo
 };
 
 /// What a pilot path met, to be compared when it is walked again in another frame. 32 bytes, in memory as on disk.
 struct PhotonPilot {
-  std::uint64_t extinctions = 0;             ///< hash of the extinctions that it looked at
-  std::uint64_t collisions = 0;              ///< hash of the places where media scattered or absorbed it
-  std::uint64_t vertices = 0;                ///< hash of its start and of the surfaces that it met, with distances
-  double sketch = 0;                         ///< W: sum over the places looked at of +-1 (drawn for the place) x flux x extinction / majorant
+  std::uint64_t extinctions = 0;  ///< hash of the extinctions that it looked at
+  std::uint64_t collisions = 0;   ///< hash of the places where media scattered or absorbed it
+  std::uint64_t vertices = 0;     ///< hash of its start and of the surfaces that it met, with distances
+  double sketch = 0;  ///< W: sum over the places looked at of +-1 (drawn for the place) x flux x extinction / majorant
 
   bool operator==(const PhotonPilot&) const = default;
 };
@@ -85,9 +85,9 @@ static_assert(sizeof(PhotonPilot) == 32);
 struct GroupFlux {
   std::uint32_t group = 0;
   std::array<double, 3> emitted{}, escaped{}, absorbed{};
-  std::int32_t frame = 0;                    ///< at which it was traced; only in files of version 1.3 with tentative photons
-  std::uint64_t paths = 0;                   ///< that it started; likewise
-  std::vector<PhotonPilot> pilots;           ///< PhotonHeader::pilots of them, of its first paths
+  std::int32_t frame = 0;           ///< at which it was traced; only in files of version 1.3 with tentative photons
+  std::uint64_t paths = 0;          ///< that it started; likewise
+  std::vector<PhotonPilot> pilots;  ///< PhotonHeader::pilots of them, of its first paths
 
   bool operator==(const GroupFlux&) const = default;
 };
@@ -95,10 +95,10 @@ struct GroupFlux {
 /// Closing totals; summed over all groups of the file (of an overlay: over the groups it holds).
 struct PhotonTotals {
   std::uint64_t photon_count = 0;
-  std::array<double, 3> stored_flux{};        ///< W: exact sum of the photons' flux, rounded once
-  std::array<double, 3> emitted_flux{};       ///< W: what left the lights
-  std::array<double, 3> escaped_flux{};       ///< W: left the scene
-  std::array<double, 3> absorbed_flux{};      ///< W: absorbed at surfaces (and by roulette, in the mean)
+  std::array<double, 3> stored_flux{};    ///< W: exact sum of the photons' flux, rounded once
+  std::array<double, 3> emitted_flux{};   ///< W: what left the lights
+  std::array<double, 3> escaped_flux{};   ///< W: left the scene
+  std::array<double, 3> absorbed_flux{};  ///< W: absorbed at surfaces (and by roulette, in the mean)
 
   bool operator==(const PhotonTotals&) const = default;
 };
@@ -131,7 +131,7 @@ class PhotonWriter {
 std::string encode_block(const PhotonBlock& block, std::uint32_t columns);
 
 struct PhotonReadOptions {
-  bool digest = true;   ///< also hash the data: digest() may be called
+  bool digest = true;  ///< also hash the data: digest() may be called
 };
 
 /// Reads one .photons file front to back, one block in memory at a time; "-" is standard input.
@@ -169,7 +169,7 @@ struct PhotonMap {
   PhotonHeader header;
   PhotonTotals totals;
   std::vector<Photon> photons;
-  std::vector<std::array<std::uint16_t, 2>> directions;   ///< of each photon, if the file has that column
+  std::vector<std::array<std::uint16_t, 2>> directions;  ///< of each photon, if the file has that column
 };
 PhotonMap load_photons(const std::string& path);
 /// The same with those photons only that `keep` takes; all of the file is read and checked, and totals are of all.

@@ -31,8 +31,8 @@ class Digest {
     const auto column = [&](PhotonColumns bit, const Hasher& hash) {
       return header.columns & bit ? std::string("#").append(hash.hex()) : std::string("none");
     };
-    return hash_hex("photons: 1\nmap: " + header.map + "\norigin: " + hex_of(header.origin) + "\ngroups: " +
-                    std::to_string(header.group_count) + " #" + groups_.hex() + "\nrecords: #" +
+    return hash_hex("photons: 1\nmap: " + header.map + "\norigin: " + hex_of(header.origin) +
+                    "\ngroups: " + std::to_string(header.group_count) + " #" + groups_.hex() + "\nrecords: #" +
                     records_.hex() + "\ndirection: " + column(column_direction, directions_) +
                     "\nalbedo: " + column(column_albedo, albedos_) + "\n");
   }
@@ -57,8 +57,7 @@ class Digest {
 /// The folder of a path with its slash; "" for a bare name and for "-".
 
 /// The ledger of a map: of two lists, groups ascending, the overlay's entry if both have one.
-std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay,
-                                     const std::vector<GroupFlux>& base) {
+std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay, const std::vector<GroupFlux>& base) {
   std::vector<GroupFlux> merged;
   std::set_union(overlay.begin(), overlay.end(), base.begin(), base.end(), std::back_inserter(merged),
                  [](const GroupFlux& a, const GroupFlux& b) { return a.group < b.group; });
@@ -95,8 +94,7 @@ void PhotonReader::State::open_base(const std::string& path) {
   const PhotonHeader &a = file.header(), &b = base->header();
   if (a.map != b.map || rules_of(a).kinds != rules_of(b).kinds || a.columns != b.columns ||
       a.majorants != b.majorants || a.pilots != b.pilots || a.origin != b.origin || a.group_count != b.group_count)
-    file.fail("its base " + a.base_name + " has another map, kinds, columns, origin or groups",
-              "make it again");
+    file.fail("its base " + a.base_name + " has another map, kinds, columns, origin or groups", "make it again");
   base_digest.emplace();
   has_next = file.read_block(next);
   has_next_base = advance_base();
@@ -174,8 +172,7 @@ const std::vector<GroupFlux>& PhotonReader::ledger() const {
 }
 
 std::string PhotonReader::digest() const {
-  if (!state_->ended || !state_->digest)
-    throw std::logic_error("PhotonReader: digest before the end or not asked for");
+  if (!state_->ended || !state_->digest) throw std::logic_error("PhotonReader: digest before the end or not asked for");
   return state_->digest->hex(header());
 }
 

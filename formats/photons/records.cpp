@@ -29,8 +29,7 @@ std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
 bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
   const int exponent = 0x7f800000, none = 1;  // exponent & anything is never 1
   const __m256i mask = _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, 0, 0);
-  const __m256i infinite =
-      _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, none, none);
+  const __m256i infinite = _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, none, none);
   const int sign = rules.signed_flux ? 0 : -1;
   const __m256i flux = _mm256_setr_epi32(0, 0, 0, sign, sign, sign, 0, 0);
   const __m256i minus_zero = _mm256_set1_epi32(std::numeric_limits<int>::min());
@@ -55,8 +54,7 @@ bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
 std::optional<RecordError> find_bad_photon(std::span<const Photon> photons, const RecordRules& rules) {
   if (!any_bad(photons, rules)) return std::nullopt;
   for (std::size_t i = 0; i < photons.size(); ++i)
-    if (const std::string_view reason = fault_of(photons[i], rules); !reason.empty())
-      return RecordError{i, reason};
+    if (const std::string_view reason = fault_of(photons[i], rules); !reason.empty()) return RecordError{i, reason};
   return std::nullopt;
 }
 

@@ -45,8 +45,7 @@ class PhotonStream {
 };
 
 void widen(std::array<double, 3>& largest, const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  for (std::size_t c = 0; c < 3; ++c)
-    largest[c] = std::max(largest[c], std::abs(double(a[c]) - double(b[c])));
+  for (std::size_t c = 0; c < 3; ++c) largest[c] = std::max(largest[c], std::abs(double(a[c]) - double(b[c])));
 }
 
 }  // namespace
@@ -72,8 +71,7 @@ PhotonSummary summarise(PhotonReader& reader) {
     }
   }
   if (summary.all.count > 0)
-    for (std::size_t c = 0; c < 3; ++c)
-      summary.mean_flux[c] = summary.all.flux[c] / double(summary.all.count);
+    for (std::size_t c = 0; c < 3; ++c) summary.mean_flux[c] = summary.all.flux[c] / double(summary.all.count);
   return summary;
 }
 

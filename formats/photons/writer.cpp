@@ -15,9 +15,7 @@ void put_flux(std::string& bytes, const std::array<double, 3>& flux) {
   for (double x : flux) put(bytes, x);
 }
 
-[[noreturn]] void refuse(const std::string& reason) {
-  throw std::invalid_argument("PhotonWriter: " + reason);
-}
+[[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument("PhotonWriter: " + reason); }
 
 /// Appends one block of at most kMaxBlockCount photons, [first, first + count) of `block`.
 void append_block(std::string& bytes, const PhotonBlock& block, std::uint32_t columns, std::size_t first,
@@ -37,8 +35,7 @@ std::string encode_block(const PhotonBlock& block, std::uint32_t columns) {
   if (block.directions.size() != (columns & column_direction ? count : 0) ||
       block.albedos.size() != (columns & column_albedo ? count : 0))
     throw std::invalid_argument("encode_block: a column has not one entry per photon");
-  if (find_bad_direction(block.directions))
-    throw std::invalid_argument("encode_block: direction is above 65534");
+  if (find_bad_direction(block.directions)) throw std::invalid_argument("encode_block: direction is above 65534");
   std::string bytes;
   bytes.reserve(count * photon_size(columns) + (count / kMaxBlockCount + 1) * kBlockHeadSize);
   std::size_t first = 0;
@@ -69,14 +66,12 @@ struct PhotonWriter::State {
   void write_ledger(std::span<const GroupFlux> ledger);
 };
 
-std::vector<std::uint32_t> PhotonWriter::State::checksums_of(std::string_view bytes,
-                                                             const PhotonBlock& block) const {
+std::vector<std::uint32_t> PhotonWriter::State::checksums_of(std::string_view bytes, const PhotonBlock& block) const {
   std::vector<std::uint32_t> checksums;
   std::size_t photon_total = 0, at = 0;
   while (at < bytes.size()) {
     std::array<std::uint32_t, 4> head{};
-    if (bytes.size() - at < kBlockHeadSize || bytes.substr(at, 4) != kBlockMark)
-      refuse("these are not blocks");
+    if (bytes.size() - at < kBlockHeadSize || bytes.substr(at, 4) != kBlockMark) refuse("these are not blocks");
     std::memcpy(head.data(), bytes.data() + at, kBlockHeadSize);
     if (head[1] != block.group) refuse("a block of another group was encoded");
     checksums.push_back(head[3]);
@@ -91,9 +86,9 @@ void PhotonWriter::State::check_ledger(std::span<const GroupFlux> ledger) const 
   const std::size_t expected = is_overlay() ? groups.size() : header.group_count;
   if (ledger.size() != expected) refuse("the ledger does not have one entry per group");
   for (std::size_t i = 0; i < ledger.size(); ++i) {
-    if (ledger[i].group != (is_overlay() ? groups[i] : i))
-      refuse("the ledger's groups are not those of the file");
-    if (ledger[i].pilots.size() != header.pilots) refuse("a group of the ledger has another number of pilots than the header says");
+    if (ledger[i].group != (is_overlay() ? groups[i] : i)) refuse("the ledger's groups are not those of the file");
+    if (ledger[i].pilots.size() != header.pilots)
+      refuse("a group of the ledger has another number of pilots than the header says");
     for (const PhotonPilot& pilot : ledger[i].pilots)
       if (!std::isfinite(pilot.sketch)) refuse("a pilot's sum is not finite");
   }
@@ -156,8 +151,7 @@ PhotonTotals PhotonWriter::finish(const PhotonTotals& given, std::span<const Gro
   const bool has_ledger = !ledger.empty() || s.is_overlay() || has_tentative(s.header);
   if (has_ledger) {
     s.check_ledger(ledger);
-    for (const GroupFlux& group : ledger)
-      s.check_totals({0, {}, group.emitted, group.escaped, group.absorbed});
+    for (const GroupFlux& group : ledger) s.check_totals({0, {}, group.emitted, group.escaped, group.absorbed});
     add_up(ledger, totals);
   }
   s.check_totals(totals);

@@ -13,8 +13,8 @@ namespace tempolux::formats {
 namespace {
 
 constexpr std::string_view kFirstLine = "tempolux view 1.0";
-constexpr double kFarthest = 1e30;            ///< m: squares stay in a double, and no scene is larger
-constexpr std::size_t kLargestFile = 1 << 14; ///< bytes: 32 lines of five numbers of 24 characters need a quarter
+constexpr double kFarthest = 1e30;             ///< m: squares stay in a double, and no scene is larger
+constexpr std::size_t kLargestFile = 1 << 14;  ///< bytes: 32 lines of five numbers of 24 characters need a quarter
 
 void append(std::string& text, double value, char after) {
   char digits[32];
@@ -60,7 +60,8 @@ std::vector<ViewSphere> parse_view(const std::string& text, const std::string& n
   if (!std::getline(in, line) || line != kFirstLine) refuse(name, 1, "not a view file of version 1");
   std::vector<ViewSphere> spheres;
   for (std::size_t number = 2; std::getline(in, line); ++number) {
-    if (spheres.size() == kMaxViewSpheres) refuse(name, number, "more than " + std::to_string(kMaxViewSpheres) + " spheres");
+    if (spheres.size() == kMaxViewSpheres)
+      refuse(name, number, "more than " + std::to_string(kMaxViewSpheres) + " spheres");
     spheres.push_back(parse_line(line, name, number));
   }
   return spheres;

@@ -9,9 +9,9 @@
 namespace tempolux::formats {
 
 struct ViewSphere {
-  std::array<double, 3> centre{};   ///< world space, m
-  double radius = 0;                ///< m, above 0
-  double weight = 0;                ///< above 0; shares are weight / sum of weights
+  std::array<double, 3> centre{};  ///< world space, m
+  double radius = 0;               ///< m, above 0
+  double weight = 0;               ///< above 0; shares are weight / sum of weights
 };
 
 inline constexpr std::size_t kMaxViewSpheres = 32;

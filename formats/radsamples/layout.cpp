@@ -59,12 +59,14 @@ std::string header_text(const RadsamplesHeader& h) {
   return text.finish();
 }
 
-std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, bool allow_unknown, RadsamplesHeader& h) {
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, bool allow_unknown,
+                                             RadsamplesHeader& h) {
   h = RadsamplesHeader();
   constexpr std::array<std::string_view, 4> required{"columns", "origin", "diagonal", "segment"};
   const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };
   if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
-  if (const std::string_view fault = fault_of(h); !fault.empty()) return HeaderError{0, "header: " + std::string(fault)};
+  if (const std::string_view fault = fault_of(h); !fault.empty())
+    return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;
 }
 
@@ -82,7 +84,8 @@ std::string_view fault_of(const RadsamplesRecord& r) {
       !is_share(r.birth_weight))
     return "a share, a weight or the footprint is not finite or is negative";
   if (!is_length(r.radius)) return "radius is not a length above 0";
-  if (r.radius_unclamped != kInfinity && !is_share(r.radius_unclamped)) return "unclamped radius is not a number or is negative";
+  if (r.radius_unclamped != kInfinity && !is_share(r.radius_unclamped))
+    return "unclamped radius is not a number or is negative";
   if (!is_finite(r.irradiance) || is_negative(r.irradiance)) return "irradiance is not finite or is negative";
   for (std::size_t c = 0; c < 3; ++c)
     if (!is_finite(r.rotational[c]) || !is_finite(r.translational[c])) return "a gradient is not finite";
@@ -107,7 +110,9 @@ std::string_view fault_of(const RadianceSample& s, std::uint32_t anchor, std::si
   return "";
 }
 
-bool is_own(const RadsamplesFile& file, std::size_t record) { return file.kept_from.empty() || file.kept_from[record] == 0; }
+bool is_own(const RadsamplesFile& file, std::size_t record) {
+  return file.kept_from.empty() || file.kept_from[record] == 0;
+}
 std::uint64_t own_samples(const RadsamplesFile& file) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < file.records.size(); ++i)

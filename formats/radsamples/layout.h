@@ -15,15 +15,17 @@
 namespace tempolux::formats::radsamples {
 
 inline constexpr Format kFormat{{"\x89TRADS\r\n", 8}, ".radsamples", "gather-temporal", 1, 2};
-inline constexpr std::uint16_t kBaseSince = 1, kHighSince = 2;   ///< minor versions
+inline constexpr std::uint16_t kBaseSince = 1, kHighSince = 2;  ///< minor versions
 inline constexpr std::string_view kPointsMark = "RADP", kRecordsMark = "RADR", kSamplesMark = "RADS";
 inline constexpr std::size_t kPointSize = 12, kSampleSize = 8, kAnchorSize = 4, kEndBodySize = 48;
 inline constexpr std::uint32_t kNoAnchor = 0xffffffff;
 
 std::string header_text(const RadsamplesHeader& h);
-std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, bool allow_unknown, RadsamplesHeader& h);
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, bool allow_unknown,
+                                             RadsamplesHeader& h);
 
-/// What is wrong with a record or a sample, as the reader and the writer both see it; "" if nothing. anchor: kNoAnchor without the column.
+/// What is wrong with a record or a sample, as the reader and the writer both see it; "" if nothing. anchor: kNoAnchor
+/// without the column.
 std::string_view fault_of(const RadsamplesRecord& r);
 std::string_view fault_of(const RadianceSample& s, std::uint32_t anchor, std::size_t points);
 

@@ -23,7 +23,8 @@ class Blocks {
     if (mark_ != mark) return false;
     std::uint32_t entries = 0;
     in_.read_head(mark_, {&entries, 1}, "the head of a block");
-    if (entries > kMaxBlockCount) in_.bytes().fail(in_.body_offset() - 8, "block of " + std::to_string(entries) + " entries; 65536 at most");
+    if (entries > kMaxBlockCount)
+      in_.bytes().fail(in_.body_offset() - 8, "block of " + std::to_string(entries) + " entries; 65536 at most");
     in_.bytes().expect(std::uint64_t(entries) * size, "a block");
     count = entries;
     body.resize(count * size);
@@ -36,7 +37,8 @@ class Blocks {
     in_.bytes().fail(in_.body_offset() + offset, std::string(fault), "correct the program that wrote it");
   }
   void expect_end() const {
-    if (mark_ != kEndMark) in_.bytes().fail(in_.bytes().offset() - kMarkSize, "unknown mark of a block, or blocks in another order");
+    if (mark_ != kEndMark)
+      in_.bytes().fail(in_.bytes().offset() - kMarkSize, "unknown mark of a block, or blocks in another order");
   }
   std::vector<char> body;
   std::size_t count = 0;
@@ -50,7 +52,7 @@ class Blocks {
 void read_samples(Blocks& blocks, const RadsamplesFile& file, const TakeSamples& take) {
   const std::uint64_t wanted = own_samples(file);
   const std::size_t size = kSampleSize + (file.header.anchors ? kAnchorSize : 0);
-  std::vector<RadianceSample> samples;   // of the record that comes next, as far as they have come
+  std::vector<RadianceSample> samples;  // of the record that comes next, as far as they have come
   std::vector<std::uint32_t> anchors;
   std::size_t next = 0;
   std::uint64_t done = 0;
@@ -60,7 +62,8 @@ void read_samples(Blocks& blocks, const RadsamplesFile& file, const TakeSamples&
       if (!is_own(file, next)) continue;
       const std::size_t count = file.records[next].samples();
       if (samples.size() - first < count) break;
-      take(file, next, std::span(samples).subspan(first, count), file.header.anchors ? std::span(anchors).subspan(first, count) : std::span<std::uint32_t>());
+      take(file, next, std::span(samples).subspan(first, count),
+           file.header.anchors ? std::span(anchors).subspan(first, count) : std::span<std::uint32_t>());
       first += count;
     }
     samples.erase(samples.begin(), samples.begin() + std::ptrdiff_t(first));
@@ -78,7 +81,8 @@ void read_samples(Blocks& blocks, const RadsamplesFile& file, const TakeSamples&
       std::memcpy(anchors.data() + first, blocks.body.data() + blocks.count * kSampleSize, blocks.count * kAnchorSize);
     }
     for (std::size_t i = 0; i < blocks.count; ++i)
-      if (const std::string_view fault = fault_of(samples[first + i], file.header.anchors ? anchors[first + i] : kNoAnchor, file.point_light.size());
+      if (const std::string_view fault = fault_of(
+              samples[first + i], file.header.anchors ? anchors[first + i] : kNoAnchor, file.point_light.size());
           !fault.empty())
         blocks.fail(i * kSampleSize, fault);
     give();
@@ -93,7 +97,7 @@ RadsamplesFile read(const std::string& path, Role role, const TakeSamples& take)
 template <class Fail>
 void take_from_base(const RadsamplesFile& file, const std::string& path, const TakeSamples& take, const Fail& fail) {
   const RadsamplesHeader& a = file.header;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted;   // record of the base, of the overlay
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted;  // record of the base, of the overlay
   for (std::uint32_t i = 0; i < file.records.size(); ++i)
     if (!is_own(file, i)) wanted.emplace_back(file.kept_from[i] - 1, i);
   std::sort(wanted.begin(), wanted.end());
@@ -101,24 +105,29 @@ void take_from_base(const RadsamplesFile& file, const std::string& path, const T
   RadsamplesDigest digest;
   const auto check = [&](const RadsamplesFile& base) {
     const RadsamplesHeader& b = base.header;
-    if (a.anchors != b.anchors || a.points_hash != b.points_hash || a.diagonal != b.diagonal || a.segment != b.segment ||
-        a.high_hash.empty() != b.high_hash.empty() || file.point_light.size() != base.point_light.size())
+    if (a.anchors != b.anchors || a.points_hash != b.points_hash || a.diagonal != b.diagonal ||
+        a.segment != b.segment || a.high_hash.empty() != b.high_hash.empty() ||
+        file.point_light.size() != base.point_light.size())
       fail("its base " + a.base_name + " has other columns, points, segment or diagonal, or another part of the light");
   };
-  const RadsamplesFile base = read(path, Role::base, [&](const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample> samples,
-                                                         std::span<const std::uint32_t> anchors) {
-    check(head);
-    digest.add(samples, anchors);
-    for (; next < wanted.size() && wanted[next].first == record; ++next) {
-      const RadsamplesRecord& own = file.records[wanted[next].second];
-      if (head.records[record].rings != own.rings || head.records[record].sectors != own.sectors) break;
-      take(file, wanted[next].second, samples, anchors);
-    }
-  });
+  const RadsamplesFile base =
+      read(path, Role::base,
+           [&](const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample> samples,
+               std::span<const std::uint32_t> anchors) {
+             check(head);
+             digest.add(samples, anchors);
+             for (; next < wanted.size() && wanted[next].first == record; ++next) {
+               const RadsamplesRecord& own = file.records[wanted[next].second];
+               if (head.records[record].rings != own.rings || head.records[record].sectors != own.sectors) break;
+               take(file, wanted[next].second, samples, anchors);
+             }
+           });
   check(base);
-  if (digest.of(base) != a.base_digest) fail("its base " + a.base_name + " has another digest than when the overlay was written");
+  if (digest.of(base) != a.base_digest)
+    fail("its base " + a.base_name + " has another digest than when the overlay was written");
   if (next < wanted.size())
-    fail("record " + std::to_string(wanted[next].second) + " has samples of a record that its base " + a.base_name + " does not have");
+    fail("record " + std::to_string(wanted[next].second) + " has samples of a record that its base " + a.base_name +
+         " does not have");
 }
 
 RadsamplesFile read(const std::string& path, Role role, const TakeSamples& take) {
@@ -126,7 +135,8 @@ RadsamplesFile read(const std::string& path, Role role, const TakeSamples& take)
   RadsamplesFile file;
   in.expect_good(parse_header_text(in.text(), in.minor(), in.later_minor(), file.header));
   const bool overlay = !file.header.base_name.empty();
-  if (overlay && role == Role::base) in.bytes().fail(kHeaderFixedSize, "it is the base of an overlay and an overlay itself", "make both again");
+  if (overlay && role == Role::base)
+    in.bytes().fail(kHeaderFixedSize, "it is the base of an overlay and an overlay itself", "make both again");
   Blocks blocks(in);
   while (blocks.next(kPointsMark, kPointSize))
     for (std::size_t i = 0; i < blocks.count; ++i) {
@@ -140,7 +150,8 @@ RadsamplesFile read(const std::string& path, Role role, const TakeSamples& take)
       file.records.push_back(get<RadsamplesRecord>(blocks.body.data() + i * sizeof(RadsamplesRecord)));
       const std::uint32_t kept_from = std::exchange(file.records.back().reserved, 0);
       if (overlay) file.kept_from.push_back(kept_from);
-      if (const std::string_view fault = fault_of(file.records.back()); !fault.empty()) blocks.fail(i * sizeof(RadsamplesRecord), fault);
+      if (const std::string_view fault = fault_of(file.records.back()); !fault.empty())
+        blocks.fail(i * sizeof(RadsamplesRecord), fault);
     }
   read_samples(blocks, file, take);
   blocks.expect_end();
@@ -160,24 +171,27 @@ RadsamplesFile read(const std::string& path, Role role, const TakeSamples& take)
 
 }  // namespace
 
-RadsamplesFile read_radsamples(const std::string& path, const TakeSamples& take) { return read(path, Role::whole_or_overlay, take); }
+RadsamplesFile read_radsamples(const std::string& path, const TakeSamples& take) {
+  return read(path, Role::whole_or_overlay, take);
+}
 
 RadsamplesFile load_radsamples(const std::string& path) {
   std::vector<RadianceSample> samples;
   std::vector<std::uint32_t> anchors;
   // Of an overlay records come in another order than they stand.
   std::vector<std::pair<std::vector<RadianceSample>, std::vector<std::uint32_t>>> by_record;
-  RadsamplesFile file = read_radsamples(path, [&](const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample> some,
-                                                  std::span<const std::uint32_t> their_anchors) {
-    if (head.header.base_name.empty()) {
-      samples.insert(samples.end(), some.begin(), some.end());
-      anchors.insert(anchors.end(), their_anchors.begin(), their_anchors.end());
-      return;
-    }
-    by_record.resize(head.records.size());
-    by_record[record].first.assign(some.begin(), some.end());
-    by_record[record].second.assign(their_anchors.begin(), their_anchors.end());
-  });
+  RadsamplesFile file =
+      read_radsamples(path, [&](const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample> some,
+                                std::span<const std::uint32_t> their_anchors) {
+        if (head.header.base_name.empty()) {
+          samples.insert(samples.end(), some.begin(), some.end());
+          anchors.insert(anchors.end(), their_anchors.begin(), their_anchors.end());
+          return;
+        }
+        by_record.resize(head.records.size());
+        by_record[record].first.assign(some.begin(), some.end());
+        by_record[record].second.assign(their_anchors.begin(), their_anchors.end());
+      });
   for (const auto& own : by_record) {
     samples.insert(samples.end(), own.first.begin(), own.first.end());
     anchors.insert(anchors.end(), own.second.begin(), own.second.end());
@@ -203,7 +217,9 @@ void RadsamplesDigest::add(std::span<const RadianceSample> samples, std::span<co
 }
 
 std::string RadsamplesDigest::of(const RadsamplesFile& head) const {
-  const auto line = [](std::uint64_t count, const Hasher& hasher) { return std::to_string(count) + " #" + hasher.hex() + "\n"; };
+  const auto line = [](std::uint64_t count, const Hasher& hasher) {
+    return std::to_string(count) + " #" + hasher.hex() + "\n";
+  };
   const auto hash = [&](const auto& values) {
     Hasher hasher;
     hasher.add_bytes(values.data(), values.size() * sizeof(values[0]));
@@ -211,7 +227,8 @@ std::string RadsamplesDigest::of(const RadsamplesFile& head) const {
   };
   const std::array<double, 1> diagonal{head.header.diagonal};
   return hash_hex("radsamples: 1\norigin: " + hex_of(head.header.origin) + "\ndiagonal: " + hex_of(diagonal) +
-                  "\npoints: " + hash(head.point_light) + "records: " + hash(head.records) + "samples: " + line(state_->sample_count, state_->samples) +
+                  "\npoints: " + hash(head.point_light) + "records: " + hash(head.records) +
+                  "samples: " + line(state_->sample_count, state_->samples) +
                   "anchors: " + line(state_->anchor_count, state_->anchors));
 }
 

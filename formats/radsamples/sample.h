@@ -11,9 +11,9 @@ namespace tempolux::formats {
 
 /// Radiance of one cell, distance to what the ray met, age and what is known of it.
 struct RadianceSample {
-  std::array<std::uint8_t, 4> rgbe{};   ///< three mantissas, exponent
-  std::uint16_t distance = 0;           ///< binary16 of 1024 d / diagonal; 0: nothing was met
-  std::uint16_t flags = 1;              ///< age in the low 11 bits, then SampleFlags
+  std::array<std::uint8_t, 4> rgbe{};  ///< three mantissas, exponent
+  std::uint16_t distance = 0;          ///< binary16 of 1024 d / diagonal; 0: nothing was met
+  std::uint16_t flags = 1;             ///< age in the low 11 bits, then SampleFlags
 
   bool operator==(const RadianceSample&) const = default;
 };
@@ -36,12 +36,13 @@ inline std::array<float, 3> decode_rgbe(const std::array<std::uint8_t, 4>& rgbe)
   return {float(rgbe[0]) * scale, float(rgbe[1]) * scale, float(rgbe[2]) * scale};
 }
 
-/// The largest mantissa is 128 to 255; each is floor(L 2^(136 - e) + u), u in [0, 1): with u uniform the mean of what is read is L.
-/// Values that a file holds come back for any u. What is not finite or below 0 counts as 0, what is above 2^126 as that.
+/// The largest mantissa is 128 to 255; each is floor(L 2^(136 - e) + u), u in [0, 1): with u uniform the mean of what
+/// is read is L. Values that a file holds come back for any u. What is not finite or below 0 counts as 0, what is above
+/// 2^126 as that.
 inline std::array<std::uint8_t, 4> encode_rgbe(std::array<float, 3> radiance, const std::array<float, 3>& u) {
-  for (float& x : radiance) x = x > 0 ? std::min(x, 0x1p126f) : 0.0f;   // NaN compares false
+  for (float& x : radiance) x = x > 0 ? std::min(x, 0x1p126f) : 0.0f;  // NaN compares false
   const float largest = std::max({radiance[0], radiance[1], radiance[2]});
-  int e = int(std::bit_cast<std::uint32_t>(largest) >> 23) - 126 + 128;   // largest is in [2^(e - 129), 2^(e - 128))
+  int e = int(std::bit_cast<std::uint32_t>(largest) >> 23) - 126 + 128;  // largest is in [2^(e - 129), 2^(e - 128))
   if (largest < 0x1p-118f) return {};
   for (;; ++e) {
     const float scale = std::bit_cast<float>(std::uint32_t(127 + 136 - e) << 23);
@@ -51,7 +52,8 @@ inline std::array<std::uint8_t, 4> encode_rgbe(std::array<float, 3> radiance, co
       m[c] = std::uint32_t(x);
       m[c] += (x - float(m[c])) + u[c] >= 1;
     }
-    if (m[0] < 256 && m[1] < 256 && m[2] < 256) return {std::uint8_t(m[0]), std::uint8_t(m[1]), std::uint8_t(m[2]), std::uint8_t(e)};
+    if (m[0] < 256 && m[1] < 256 && m[2] < 256)
+      return {std::uint8_t(m[0]), std::uint8_t(m[1]), std::uint8_t(m[2]), std::uint8_t(e)};
   }
 }
 

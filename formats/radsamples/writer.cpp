@@ -10,15 +10,18 @@ using namespace radsamples;
 namespace {
 
 [[noreturn]] void refuse(std::string_view what, std::size_t i, std::string_view fault) {
-  throw std::invalid_argument("write_radsamples: " + std::string(what) + " " + std::to_string(i) + ": " + std::string(fault));
+  throw std::invalid_argument("write_radsamples: " + std::string(what) + " " + std::to_string(i) + ": " +
+                              std::string(fault));
 }
 
 void refuse_bad(const RadsamplesFile& file) {
   for (std::size_t i = 0; i < file.point_light.size(); ++i)
-    if (!is_finite(file.point_light[i]) || is_negative(file.point_light[i])) refuse("point", i, "light is not finite or is negative");
+    if (!is_finite(file.point_light[i]) || is_negative(file.point_light[i]))
+      refuse("point", i, "light is not finite or is negative");
   for (std::size_t i = 0; i < file.records.size(); ++i)
     if (const std::string_view fault = fault_of(file.records[i]); !fault.empty()) refuse("record", i, fault);
-  if (file.kept_from.size() != (file.header.base_name.empty() ? 0 : file.records.size())) refuse("records", file.kept_from.size(), "are not told from the base's");
+  if (file.kept_from.size() != (file.header.base_name.empty() ? 0 : file.records.size()))
+    refuse("records", file.kept_from.size(), "are not told from the base's");
 }
 
 Format format_of(const RadsamplesHeader& header) {
@@ -67,7 +70,8 @@ struct RadsamplesWriter::State {
 
 RadsamplesWriter::RadsamplesWriter(std::function<void(const void*, std::size_t)> sink, const RadsamplesFile& head) {
   refuse_bad(head);
-  state_ = std::make_unique<State>(State{head, ContainerWriter(std::move(sink), format_of(head.header), header_text(head.header)), 0, {}, {}});
+  state_ = std::make_unique<State>(
+      State{head, ContainerWriter(std::move(sink), format_of(head.header), header_text(head.header)), 0, {}, {}});
   write_blocks<std::array<float, 3>>(state_->out, kPointsMark, head.point_light);
   write_blocks<RadsamplesRecord>(state_->out, kRecordsMark, with_their_base(head));
 }
@@ -78,11 +82,14 @@ void RadsamplesWriter::write(std::span<const RadianceSample> samples, std::span<
   State& s = *state_;
   const RadsamplesFile& head = s.head;
   if (s.next == head.records.size()) refuse("samples", samples.size(), "are of no record");
-  if (samples.size() != head.records[s.next].samples()) refuse("samples", samples.size(), "are not those of the records");
-  if (anchors.size() != (head.header.anchors ? samples.size() : 0)) refuse("anchors", anchors.size(), "are not one a sample");
+  if (samples.size() != head.records[s.next].samples())
+    refuse("samples", samples.size(), "are not those of the records");
+  if (anchors.size() != (head.header.anchors ? samples.size() : 0))
+    refuse("anchors", anchors.size(), "are not one a sample");
   if (!is_own(head, s.next++)) return;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (const auto fault = fault_of(samples[i], head.header.anchors ? anchors[i] : kNoAnchor, head.point_light.size()); !fault.empty())
+    if (const auto fault = fault_of(samples[i], head.header.anchors ? anchors[i] : kNoAnchor, head.point_light.size());
+        !fault.empty())
       refuse("sample", i, fault);
   s.samples.insert(s.samples.end(), samples.begin(), samples.end());
   s.anchors.insert(s.anchors.end(), anchors.begin(), anchors.end());
@@ -113,7 +120,8 @@ void write_radsamples(const std::function<void(const void*, std::size_t)>& sink,
     writer.write(samples.subspan(begin, std::min(record.samples(), samples.size() - begin)),
                  anchors.subspan(from, std::min(record.samples(), anchors.size() - from)));
   }
-  if (samples.size() > first || anchors.size() > first) refuse("samples", samples.size(), "are not those of the records");
+  if (samples.size() > first || anchors.size() > first)
+    refuse("samples", samples.size(), "are not those of the records");
   writer.finish();
 }
 

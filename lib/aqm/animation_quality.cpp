@@ -66,12 +66,11 @@ JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const Visio
   check_colour(pair, name);
   if (flow && (flow->width != pair.width || flow->height != pair.height))
     throw InputError(name + ": " + std::to_string(pair.width) + "x" + std::to_string(pair.height) +
-                     " pixels, but its flow has " + std::to_string(flow->width) + "x" +
-                     std::to_string(flow->height) + "; give the flow of this frame");
+                     " pixels, but its flow has " + std::to_string(flow->width) + "x" + std::to_string(flow->height) +
+                     "; give the flow of this frame");
   const double exposure = std::exp2(options.exposure_stops), ppd = options.display.pixels_per_degree;
   const double share = options.of_either ? 0.5 + 0.5 * std::numbers::sqrt2 / 2 : 1;
-  const vision::DisplayedPair shown{pair.width, pair.height,
-                                    shown_luminance(pair, share, options.display, exposure),
+  const vision::DisplayedPair shown{pair.width, pair.height, shown_luminance(pair, share, options.display, exposure),
                                     shown_luminance(pair, 1 - share, options.display, exposure), pair.counted};
   const std::vector<float> speed =
       flow ? vision::display_speed(*flow, ppd, options.frames_per_second) : std::vector<float>();
@@ -82,9 +81,11 @@ JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const Visio
   return judged;
 }
 
-std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture, const std::array<std::vector<float>, 3>& error,
-                                     const std::vector<std::uint8_t>& counted, const PixelFlow& flow, VisionOptions options) {
-  std::array<Image, 3> images;   // the picture, more, less
+std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture,
+                                     const std::array<std::vector<float>, 3>& error,
+                                     const std::vector<std::uint8_t>& counted, const PixelFlow& flow,
+                                     VisionOptions options) {
+  std::array<Image, 3> images;  // the picture, more, less
   for (std::size_t k = 0; k < images.size(); ++k) {
     images[k].width = flow.width;
     images[k].height = flow.height;
@@ -122,8 +123,7 @@ Picture heat_map(const JudgedFrame& judged, const Image& frame, const PreviewOpt
     const double grey = 0.7 * (0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2]),
                  p = double(judged.probability[i]);
     // yellow to P = 1/2, red from where a difference counts as seen
-    const double green =
-        255 * std::clamp((vision::kSeenProbability - p) / (vision::kSeenProbability - 0.5), 0.0, 1.0);
+    const double green = 255 * std::clamp((vision::kSeenProbability - p) / (vision::kSeenProbability - 0.5), 0.0, 1.0);
     const double heat[3] = {255, green, 0};
     for (int c = 0; c < 3; ++c) pixel[c] = std::uint8_t(std::lround((1 - p) * grey + p * heat[c]));
   }

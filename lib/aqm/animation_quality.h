@@ -54,15 +54,18 @@ struct JudgedFrame {
 double shared_exposure_stops(const ComparedInputs& inputs);
 
 /// Judges a frame as a viewer would who sees it and its reference one after the other. The reference in
-/// halves is their mean. Without flow a still picture is judged, in which eyes look around. `name` begins messages. Throws InputError if
-/// the layer is no colour or the flow has another size.
+/// halves is their mean. Without flow a still picture is judged, in which eyes look around. `name` begins messages.
+/// Throws InputError if the layer is no colour or the flow has another size.
 JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const VisionOptions& options,
                         const std::string& name);
 
-/// The probability by pixel that a viewer sees that a picture errs by `error`: judged is picture + error / 2 beside picture - error / 2, at the exposure that
-/// suits the picture. Planes are R, G, B; pixels where `counted` is 0 are taken for right.
-std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture, const std::array<std::vector<float>, 3>& error,
-                                     const std::vector<std::uint8_t>& counted, const PixelFlow& flow, VisionOptions options);
+/// The probability by pixel that a viewer sees that a picture errs by `error`: judged is picture + error / 2 beside
+/// picture - error / 2, at the exposure that suits the picture. Planes are R, G, B; pixels where `counted` is 0 are
+/// taken for right.
+std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture,
+                                     const std::array<std::vector<float>, 3>& error,
+                                     const std::vector<std::uint8_t>& counted, const PixelFlow& flow,
+                                     VisionOptions options);
 
 /// The probabilities as an image of one channel, P.
 Image probability_image(const JudgedFrame& judged, int width, int height);

@@ -16,8 +16,7 @@ std::string what_is_there(const Image& image) {
   std::set<std::string> in_layers;
   for (const std::string& layer : image.layers()) {
     layers += (layers.empty() ? "" : ", ") + (layer.empty() ? "RGB" : layer);
-    for (const char* suffix : {"R", "G", "B"})
-      in_layers.insert(layer.empty() ? suffix : layer + "." + suffix);
+    for (const char* suffix : {"R", "G", "B"}) in_layers.insert(layer.empty() ? suffix : layer + "." + suffix);
   }
   for (const Channel& channel : image.channels)
     if (!in_layers.contains(channel.name)) channels += (channels.empty() ? "" : ", ") + channel.name;
@@ -30,8 +29,8 @@ std::string layer_name(const std::string& layer) { return layer.empty() ? "RGB" 
 void check_size(const NamedImage& image, const NamedImage& test) {
   const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
   if (image.image->width == test.image->width && image.image->height == test.image->height) return;
-  throw InputError(image.name + ": " + size(*image.image) + " pixels, but " + test.name + " has " +
-                   size(*test.image) + "; compare frames of one size");
+  throw InputError(image.name + ": " + size(*image.image) + " pixels, but " + test.name + " has " + size(*test.image) +
+                   "; compare frames of one size");
 }
 
 /// The planes of `image` in the order of `like`.
@@ -41,9 +40,8 @@ std::vector<const std::vector<float>*> planes_like(const NamedImage& image, cons
   if (found.suffixes == like) return found.planes;
   std::string wanted;
   for (const std::string& suffix : like) wanted += (wanted.empty() ? "" : ", ") + suffix;
-  throw InputError(image.name + ": layer " + layer_name(layer) +
-                   " has other channels than the test frame's (" + wanted + "); " +
-                   what_is_there(*image.image));
+  throw InputError(image.name + ": layer " + layer_name(layer) + " has other channels than the test frame's (" +
+                   wanted + "); " + what_is_there(*image.image));
 }
 
 std::vector<std::uint8_t> pixels_of_mask(const NamedImage& mask) {
@@ -66,8 +64,8 @@ void leave_out(const NamedImage& except, std::vector<std::uint8_t>& counted) {
     throw InputError(except.name + ": leaves no pixel to compare; it is other than 0 everywhere that counts");
 }
 
-void check_finite(const Compared& pair, const std::vector<const std::vector<float>*>& planes,
-                  const std::string& name, const std::string& layer) {
+void check_finite(const Compared& pair, const std::vector<const std::vector<float>*>& planes, const std::string& name,
+                  const std::string& layer) {
   for (std::size_t c = 0; c < planes.size(); ++c)
     for (std::size_t i = 0; i < planes[c]->size(); ++i)
       if (!std::isfinite((*planes[c])[i]) && pair.counts(i))

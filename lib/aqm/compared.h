@@ -29,12 +29,12 @@ LayerPlanes layer_planes(const NamedImage& image, const std::string& layer);
 /// A frame x, its reference r and what of them counts. References are views of images that outlive it.
 struct Compared {
   int width = 0, height = 0;
-  std::vector<std::string> channels;                  ///< suffixes of the planes
+  std::vector<std::string> channels;  ///< suffixes of the planes
   std::vector<const std::vector<float>*> test, reference;
-  std::vector<const std::vector<float>*> second;  ///< the other half of the reference; empty: one reference
-  std::vector<const std::vector<float>*> smooth;  ///< stands for r in relMSE's denominator; empty: r itself
+  std::vector<const std::vector<float>*> second;        ///< the other half of the reference; empty: one reference
+  std::vector<const std::vector<float>*> smooth;        ///< stands for r in relMSE's denominator; empty: r itself
   const std::vector<std::uint32_t>* objects = nullptr;  ///< id.object of x, else of r; nullptr: unknown
-  std::vector<std::uint8_t> counted;                  ///< per pixel; empty: all count
+  std::vector<std::uint8_t> counted;                    ///< per pixel; empty: all count
 
   bool halves() const { return !second.empty(); }
   bool counts(std::size_t pixel) const { return counted.empty() || counted[pixel] != 0; }
@@ -56,9 +56,9 @@ struct ComparedInputs {
   NamedImage smooth = {}, except = {};
 };
 
-/// Lays a frame beside its reference. Pixels where all channels of `mask` are 0, or one of `except` is not, do not count. Throws
-/// InputError, naming file and remedy, if sizes or channels differ, the layer is missing, no pixel counts, or
-/// a sample that counts is infinite or not a number.
+/// Lays a frame beside its reference. Pixels where all channels of `mask` are 0, or one of `except` is not, do not
+/// count. Throws InputError, naming file and remedy, if sizes or channels differ, the layer is missing, no pixel
+/// counts, or a sample that counts is infinite or not a number.
 Compared compare_layers(const ComparedInputs& inputs);
 
 }  // namespace tempolux

@@ -17,8 +17,7 @@ int padded(int n) { return 8 * fast_transform_size((n + 2 * kBorder + 7) / 8); }
 
 /// Which of n values stands at place `at` of a period of `period`: reflected at both ends.
 int reflected(int at, int n, int period) {
-  const int place =
-      at - n < period - at ? at : at - period;  // nearer to the right end, or before the left one
+  const int place = at - n < period - at ? at : at - period;  // nearer to the right end, or before the left one
   const int folded = ((place % (2 * n)) + 2 * n) % (2 * n);
   return folded < n ? folded : 2 * n - 1 - folded;
 }
@@ -28,27 +27,21 @@ double upper_edge(int band) { return band == kBaseBand ? 1.0 / 24 : 4.0 / 3 * st
 
 }  // namespace
 
-ChannelGrid::ChannelGrid(int w, int h)
-    : width(w), height(h), padded_width(padded(w)), padded_height(padded(h)) {}
+ChannelGrid::ChannelGrid(int w, int h) : width(w), height(h), padded_width(padded(w)), padded_height(padded(h)) {}
 
 int ChannelGrid::step(int band) {
   constexpr std::array<int, kBands> steps{1, 1, 2, 4, 8, 8};
   return steps[std::size_t(band - 1)];
 }
 
-int ChannelGrid::columns(int band) const {
-  return std::min((width - 1) / step(band) + 2, padded_width / step(band));
-}
-int ChannelGrid::rows(int band) const {
-  return std::min((height - 1) / step(band) + 2, padded_height / step(band));
-}
+int ChannelGrid::columns(int band) const { return std::min((width - 1) / step(band) + 2, padded_width / step(band)); }
+int ChannelGrid::rows(int band) const { return std::min((height - 1) / step(band) + 2, padded_height / step(band)); }
 
 FourierArray<Complex> padded_spectrum(const FourierTransform& transform, const ChannelGrid& grid,
                                       const std::vector<float>& values) {
   FourierArray<float> picture(grid.padded_count());
   std::vector<int> column(std::size_t(grid.padded_width));
-  for (int x = 0; x < grid.padded_width; ++x)
-    column[std::size_t(x)] = reflected(x, grid.width, grid.padded_width);
+  for (int x = 0; x < grid.padded_width; ++x) column[std::size_t(x)] = reflected(x, grid.width, grid.padded_width);
   for (int y = 0; y < grid.padded_height; ++y) {
     const float* from =
         values.data() + std::size_t(reflected(y, grid.height, grid.padded_height)) * std::size_t(grid.width);
@@ -61,13 +54,13 @@ FourierArray<Complex> padded_spectrum(const FourierTransform& transform, const C
 std::vector<ChannelName> channel_names() {
   std::vector<ChannelName> names;
   for (int band = 1; band < kBands; ++band)
-    for (int orientation = 1; orientation <= kOrientations; ++orientation)
-      names.push_back({band, orientation});
+    for (int orientation = 1; orientation <= kOrientations; ++orientation) names.push_back({band, orientation});
   names.push_back({kBaseBand, 0});
   return names;
 }
 
-ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree, const std::function<double(double)>& still)
+ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree,
+                               const std::function<double(double)>& still)
     : grid_(grid), pixels_per_degree_(pixels_per_degree), radial_(kBands) {
   for (int band = 1; band <= kBands; ++band) {
     std::vector<double> seen(kTableSteps + 1);
@@ -77,8 +70,7 @@ ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree
     }
     const double most = std::ranges::max(seen);
     most_[std::size_t(band - 1)] = most;
-    for (const double value : seen)
-      radial_[std::size_t(band - 1)].push_back(most > 0 ? float(value / most) : 0);
+    for (const double value : seen) radial_[std::size_t(band - 1)].push_back(most > 0 ? float(value / most) : 0);
   }
 }
 
@@ -143,15 +135,13 @@ struct ChannelFilters::Lobe {
     for (int v = -most_y; v <= most_y; ++v) {
       const std::size_t row = std::size_t(((v % rows) + rows) % rows) * std::size_t(columns);
       for (int u = no_left ? 0 : -most_x; u <= most_x; ++u)
-        if (const float w = weight(u, v))
-          add(row + std::size_t(((u % columns) + columns) % columns), u, v, w);
+        if (const float w = weight(u, v)) add(row + std::size_t(((u % columns) + columns) % columns), u, v, w);
     }
   }
 };
 
 ChannelPair ChannelFilters::channel(const FourierTransform& transform, ChannelName name,
-                                    const FourierArray<Complex>& first,
-                                    const FourierArray<Complex>& second) const {
+                                    const FourierArray<Complex>& first, const FourierArray<Complex>& second) const {
   const Lobe lobe(*this, name);
   const int columns = lobe.width / lobe.step, rows = lobe.height / lobe.step;
   const std::size_t count = std::size_t(columns) * std::size_t(rows);

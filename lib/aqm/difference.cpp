@@ -11,8 +11,7 @@ namespace {
 double mean_difference(const Compared& pair, std::size_t i) {
   if (!pair.counts(i)) return 0;
   double sum = 0;
-  for (std::size_t c = 0; c < pair.test.size(); ++c)
-    sum += double((*pair.test[c])[i]) - pair.reference_at(c, i);
+  for (std::size_t c = 0; c < pair.test.size(); ++c) sum += double((*pair.test[c])[i]) - pair.reference_at(c, i);
   return sum / double(pair.test.size());
 }
 

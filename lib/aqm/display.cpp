@@ -42,8 +42,7 @@ Display display_named(const std::string& name) {
   throw InputError("--display " + name + ": unknown; there are: " + names);
 }
 
-std::vector<float> displayed_luminance(const Display& display,
-                                       const std::vector<const std::vector<float>*>& planes,
+std::vector<float> displayed_luminance(const Display& display, const std::vector<const std::vector<float>*>& planes,
                                        double exposure) {
   constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
   constexpr std::array<double, 3> kGrey{1, 0, 0};

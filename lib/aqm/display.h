@@ -26,7 +26,7 @@ Display display_named(const std::string& name);
 /// black + (white - black) Y, at most peak; Y the luminance of linear Rec. 709 values times `exposure`, each
 /// clipped at 0 and at what the display can show. `planes` are R, G, B or one plane of grey, of equal size.
 /// Infinite values are clipped; not-a-number gives black.
-std::vector<float> displayed_luminance(const Display& display,
-                                       const std::vector<const std::vector<float>*>& planes, double exposure);
+std::vector<float> displayed_luminance(const Display& display, const std::vector<const std::vector<float>*>& planes,
+                                       double exposure);
 
 }  // namespace tempolux::vision

@@ -25,11 +25,9 @@ FourierTransform::FourierTransform()
           "tempolux-fourier.so", kFourierSymbol, default_module_folders(), "the model of vision",
           "install all of tempolux together, or leave out --metric aqm and --flow for the error figures"))) {}
 
-FourierArray<std::complex<float>> FourierTransform::forward(FourierArray<float>& picture, int width,
-                                                            int height) const {
+FourierArray<std::complex<float>> FourierTransform::forward(FourierArray<float>& picture, int width, int height) const {
   FourierArray<std::complex<float>> spectrum(std::size_t(width / 2 + 1) * std::size_t(height));
-  run({kFourierAbi, fourier_forward, width, height, picture.data(),
-       reinterpret_cast<float*>(spectrum.data())});
+  run({kFourierAbi, fourier_forward, width, height, picture.data(), reinterpret_cast<float*>(spectrum.data())});
   return spectrum;
 }
 
@@ -40,12 +38,10 @@ void FourierTransform::inverse(FourierArray<std::complex<float>>& spectrum, int 
 
 void FourierTransform::run(const FourierRequest& request) const {
   switch (entry_(&request)) {
-    case fourier_ok:
-      return;
+    case fourier_ok: return;
     case fourier_bad_version:
       throw InputError("tempolux-fourier.so is of another version than the tool; install both together");
-    default:
-      throw std::bad_alloc();
+    default: throw std::bad_alloc();
   }
 }
 

@@ -51,8 +51,7 @@ void note_extremes(const Compared& pair, int frame, int x, int y, ErrorSums& sum
   for (std::size_t c = 0; c < pair.test.size(); ++c) {
     const double r = pair.reference_at(c, i), difference = double((*pair.test[c])[i]) - r;
     sums.peak = std::max(sums.peak, r);
-    if (std::abs(difference) > std::abs(sums.largest.value))
-      sums.largest = {difference, x, y, frame, pair.channels[c]};
+    if (std::abs(difference) > std::abs(sums.largest.value)) sums.largest = {difference, x, y, frame, pair.channels[c]};
   }
 }
 
@@ -65,8 +64,7 @@ void add_block(ErrorSums::Block& to, const ErrorSums::Block& from) {
 }
 
 /// Quotient over the blocks that have pixels.
-std::optional<Estimate> over_blocks(const std::vector<ErrorSums::Block>& blocks,
-                                    double ErrorSums::Block::*numerator,
+std::optional<Estimate> over_blocks(const std::vector<ErrorSums::Block>& blocks, double ErrorSums::Block::*numerator,
                                     double ErrorSums::Block::*denominator) {
   std::vector<BlockQuotient> used;
   for (const ErrorSums::Block& block : blocks)
@@ -74,8 +72,7 @@ std::optional<Estimate> over_blocks(const std::vector<ErrorSums::Block>& blocks,
   return quotient_of_sums(used);
 }
 
-std::vector<ObjectError> object_errors(const ErrorSums& sums, double squared_total,
-                                       std::uint64_t min_pixels) {
+std::vector<ObjectError> object_errors(const ErrorSums& sums, double squared_total, std::uint64_t min_pixels) {
   std::vector<ObjectError> objects;
   for (const auto& [id, by_block] : sums.objects) {
     std::vector<ErrorSums::Block> blocks;
@@ -123,8 +120,7 @@ ErrorSums sum_errors(const Compared& pair, int frame) {
       if (!pair.counts(i)) continue;
       const PixelError error = pixel_error(pair, i);
       ErrorSums::Block pixel{1, error.squared, 0, error.difference, error.reference};
-      if (sums.relative_known)
-        pixel.relative = error.squared / (error.scale_squared + softening * softening);
+      if (sums.relative_known) pixel.relative = error.squared / (error.scale_squared + softening * softening);
       const std::size_t block = sums.grid.block_of(x, y);
       add_block(sums.blocks[block], pixel);
       if (pair.objects) add_block(sums.objects[(*pair.objects)[i]][block], pixel);
@@ -154,13 +150,11 @@ FrameError figures_of(const ErrorSums& sums, std::uint64_t min_object_pixels) {
   FrameError error;
   error.pixels = std::uint64_t(total.pixels);
   error.halves = sums.halves;
-  error.squared_error.squared =
-      over_blocks(sums.blocks, &Block::squared, &Block::pixels).value_or(Estimate{});
+  error.squared_error.squared = over_blocks(sums.blocks, &Block::squared, &Block::pixels).value_or(Estimate{});
   error.mean_difference = over_blocks(sums.blocks, &Block::difference, &Block::pixels).value_or(Estimate{});
   error.mean_reference = total.reference / total.pixels;
   error.mean_test = error.mean_reference + error.mean_difference.value;
-  if (sums.relative_known)
-    error.relative_squared_error = over_blocks(sums.blocks, &Block::relative, &Block::pixels);
+  if (sums.relative_known) error.relative_squared_error = over_blocks(sums.blocks, &Block::relative, &Block::pixels);
   error.bias = over_blocks(sums.blocks, &Block::difference, &Block::reference);
   const double squared = error.squared_error.squared.value;
   if (sums.peak > 0 && squared > 0) error.psnr_db = 10 * std::log10(sums.peak * sums.peak / squared);
@@ -178,8 +172,7 @@ SquaredFigure noise_of_mean(const FrameError& a_against_b) {
 }
 
 void FlickerMeter::add(const Compared& frame) {
-  const std::size_t pixels = std::size_t(frame.width) * std::size_t(frame.height),
-                    channels = frame.test.size();
+  const std::size_t pixels = std::size_t(frame.width) * std::size_t(frame.height), channels = frame.test.size();
   const bool first = previous_.empty();
   if (first) {
     grid_ = BlockGrid(frame.width, frame.height);

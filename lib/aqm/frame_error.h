@@ -20,7 +20,7 @@ namespace tempolux {
 
 /// A mean square and its root.
 struct SquaredFigure {
-  Estimate squared;                                   ///< may be negative with halves
+  Estimate squared;  ///< may be negative with halves
   /// Root of the mean square; 0 where that is not positive.
   double root() const;
   /// standard_error / (2 root); nothing where the root is 0 or the standard error is unknown.
@@ -31,38 +31,38 @@ struct SquaredFigure {
 
 /// Where x and r differ most, over channels.
 struct LargestDifference {
-  double value = 0;                                   ///< x - r, signed
-  int x = 0, y = 0, frame = 0;                        ///< column and row from the top left
+  double value = 0;             ///< x - r, signed
+  int x = 0, y = 0, frame = 0;  ///< column and row from the top left
   std::string channel;
 };
 
 struct ObjectError {
-  std::uint32_t id = 0;                               ///< id.object
-  std::uint64_t pixels = 0;                           ///< over all frames
-  std::optional<Estimate> bias;  ///< mean(x-r)/mean(r) over its pixels; nothing if mean(r) = 0
-  double share_of_squared_error = 0;                  ///< of the image's sum; 0 where that is not positive
-  bool few_pixels = false;                            ///< fewer than asked for: noise, not a finding
+  std::uint32_t id = 0;               ///< id.object
+  std::uint64_t pixels = 0;           ///< over all frames
+  std::optional<Estimate> bias;       ///< mean(x-r)/mean(r) over its pixels; nothing if mean(r) = 0
+  double share_of_squared_error = 0;  ///< of the image's sum; 0 where that is not positive
+  bool few_pixels = false;            ///< fewer than asked for: noise, not a finding
 };
 
 /// All figures of a frame, or of a sequence taken together. Units are those of the layer (radiance), squared
 /// where the name says so. Figures that do not exist are absent, never NaN.
 struct FrameError {
-  std::uint64_t pixels = 0;                           ///< that count, over all frames
+  std::uint64_t pixels = 0;  ///< that count, over all frames
   bool halves = false;
-  SquaredFigure squared_error;                        ///< mean over pixels and channels of (x-r)^2
+  SquaredFigure squared_error;  ///< mean over pixels and channels of (x-r)^2
   /// Mean over pixels of |x-r|^2 / (|r|^2 + (0.1 mean r)^2), |.|^2 the mean over channels, mean r that of the
   /// frame. r in the denominator is the mean of the halves, whose noise moves the figure by up to 6 s^4 where s is the
   /// noise in it over sqrt(r^2 + (0.1 mean r)^2): give Compared::smooth where that counts. Nothing if mean r is
   /// 0 (black reference).
   std::optional<Estimate> relative_squared_error;
-  std::optional<Estimate> bias;                       ///< mean(x-r)/mean(r); nothing if mean r is 0
-  std::optional<double> psnr_db;                      ///< 10 log10(peak^2 / mean square), peak the largest r;
-                                                      ///< nothing if either is not positive
-  Estimate mean_difference;                           ///< mean(x-r)
+  std::optional<Estimate> bias;   ///< mean(x-r)/mean(r); nothing if mean r is 0
+  std::optional<double> psnr_db;  ///< 10 log10(peak^2 / mean square), peak the largest r;
+                                  ///< nothing if either is not positive
+  Estimate mean_difference;       ///< mean(x-r)
   double mean_test = 0, mean_reference = 0;
   LargestDifference largest;
   std::optional<double> reference_noise;  ///< RMS of (r1-r2)/2: the noise left in the mean of the halves
-  std::vector<ObjectError> objects;                   ///< by id; empty without id.object
+  std::vector<ObjectError> objects;       ///< by id; empty without id.object
 };
 
 /// Sums over a frame by block; frames of one size add up to a sequence, whose relative error is the mean over
@@ -74,9 +74,9 @@ struct ErrorSums {
   BlockGrid grid;
   bool halves = false, relative_known = true;
   std::vector<Block> blocks;
-  std::map<std::uint32_t, std::map<std::size_t, Block>> objects;   ///< by id and block
+  std::map<std::uint32_t, std::map<std::size_t, Block>> objects;  ///< by id and block
   double half_difference_squared = 0;  ///< sum over pixels of mean over channels of ((r1-r2)/2)^2
-  double peak = 0;                                    ///< largest r
+  double peak = 0;                     ///< largest r
   LargestDifference largest;
 };
 

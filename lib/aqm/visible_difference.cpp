@@ -33,12 +33,10 @@ Responses responses_of(const DisplayedPair& pair) {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < out.first.size(); ++i)
-    if (pair.counted.empty() || pair.counted[i])
-      sum += double(out.first[i]) + double(out.second[i]), count += 2;
+    if (pair.counted.empty() || pair.counted[i]) sum += double(out.first[i]) + double(out.second[i]), count += 2;
   out.mean = count ? sum / double(count) : 0;
   for (std::vector<float>* picture : {&out.first, &out.second})
-    for (float& value : *picture)
-      value -= float(out.mean);  // digits: the channels hold nothing of frequency 0
+    for (float& value : *picture) value -= float(out.mean);  // digits: the channels hold nothing of frequency 0
   return out;
 }
 
@@ -82,14 +80,12 @@ BandGains band_gains(const ChannelGrid& grid, const ChannelFilters& filters, con
                      double response_per_contrast) {
   BandGains gains;
   const double scale = kHalfSeen / response_per_contrast;
-  const SquareMeans means =
-      speed.empty() ? SquareMeans({}, 0, 0) : SquareMeans(speed, grid.width, grid.height);
+  const SquareMeans means = speed.empty() ? SquareMeans({}, 0, 0) : SquareMeans(speed, grid.width, grid.height);
   for (int band = 1; band <= kBands; ++band) {
     const int columns = grid.columns(band), rows = grid.rows(band), step = ChannelGrid::step(band);
     const int radius = int(0.5 / band_frequency(band));  // half a period
     std::vector<float>& gain = gains[std::size_t(band - 1)];
-    gain.assign(std::size_t(columns) * std::size_t(rows),
-                float(scale * filters.sensitivity(band, kDriftSpeed)));
+    gain.assign(std::size_t(columns) * std::size_t(rows), float(scale * filters.sensitivity(band, kDriftSpeed)));
     if (speed.empty()) continue;
     parallel_chunks(std::size_t(rows), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; ++y)
@@ -128,8 +124,7 @@ std::vector<float> channel_terms(const ChannelGrid& grid, ChannelName name, cons
                         to = std::size_t(y) * std::size_t(columns) + std::size_t(x);
       const std::complex<float> a = pair.first[from], b = pair.second[from];
       const float difference = gains[to] * std::sqrt(std::norm(a - b));
-      const float mask =
-          gains[to] * std::sqrt(std::min(std::norm(a), std::norm(b)));  // the weaker of both hides
+      const float mask = gains[to] * std::sqrt(std::min(std::norm(a), std::norm(b)));  // the weaker of both hides
       const float ratio = difference / elevation(mask, slope);
       terms[to] = ratio * ratio * ratio * std::sqrt(ratio);
     }
@@ -200,8 +195,7 @@ Detection detection_map(const DisplayedPair& pair, const std::vector<float>& spe
         if (!pair.counted.empty() && !pair.counted[i]) continue;
         if (std::abs(double(pair.first[i]) - double(pair.second[i])) < kLeastDifference) continue;
         float sum = 0;
-        for (int band = 1; band <= kBands; ++band)
-          sum += term_at(grid, band, terms[std::size_t(band - 1)], x, int(y));
+        for (int band = 1; band <= kBands; ++band) sum += term_at(grid, band, terms[std::size_t(band - 1)], x, int(y));
         result.probability[i] = float(detection_probability(double(sum)));
       }
   });

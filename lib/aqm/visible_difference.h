@@ -29,14 +29,13 @@ struct Viewing {
 
 /// What detection_map() finds.
 struct Detection {
-  std::vector<float> probability;  ///< of seeing a difference, per pixel; 0 where pixels do not count
-  double adaptation_luminance =
-      0;  ///< cd/m2; its response is the mean response to what counts in both pictures
+  std::vector<float> probability;   ///< of seeing a difference, per pixel; 0 where pixels do not count
+  double adaptation_luminance = 0;  ///< cd/m2; its response is the mean response to what counts in both pictures
 };
 
 /// The probability that a viewer sees a difference at each pixel. `speed` is display_speed(), deg/s; empty:
-/// nothing is known of motion, and eyes look around in a still picture (static_contrast_sensitivity). Equal pictures give 0 everywhere, and the order of the two does not matter. The
-/// same bytes for any number of threads.
+/// nothing is known of motion, and eyes look around in a still picture (static_contrast_sensitivity). Equal pictures
+/// give 0 everywhere, and the order of the two does not matter. The same bytes for any number of threads.
 Detection detection_map(const DisplayedPair& pair, const std::vector<float>& speed, const Viewing& viewing);
 
 }  // namespace tempolux::vision

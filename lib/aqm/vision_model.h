@@ -28,8 +28,9 @@ double retinal_speed(double speed, Gaze gaze);
 /// `speed` deg/s: Kelly 1979 as Daly fitted it anew in 1998. 0 at frequency 0. speed > 0.
 double contrast_sensitivity(double frequency, double speed);
 
-/// The same of a picture that stands still and that eyes look around in: Daly 1993, as his predictor has it. `luminance` in cd/m2 > 0, the picture's
-/// area in square degrees, the display's distance in metres. A larger picture shows more periods: low frequencies gain. 0 at frequency 0.
+/// The same of a picture that stands still and that eyes look around in: Daly 1993, as his predictor has it.
+/// `luminance` in cd/m2 > 0, the picture's area in square degrees, the display's distance in metres. A larger picture
+/// shows more periods: low frequencies gain. 0 at frequency 0.
 double static_contrast_sensitivity(double frequency, double luminance, double area, double distance);
 
 /// Response of a receptor to `luminance` >= 0 cd/m2, from 0 to 100.

@@ -14,17 +14,19 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 256;          ///< pixels
-constexpr float kMostSlices = 4096;          ///< along a ray
-constexpr float kMostAbove = 8;              ///< times the linear one at most counts the extinction: where a corner of it leaves that nearly 0
-constexpr float kNothingLeft = 1e-30f;       ///< light from behind adds nothing to a float; slices there would be divided by 0
+constexpr std::size_t kChunk = 256;  ///< pixels
+constexpr float kMostSlices = 4096;  ///< along a ray
+constexpr float kMostAbove =
+    8;  ///< times the linear one at most counts the extinction: where a corner of it leaves that nearly 0
+constexpr float kNothingLeft =
+    1e-30f;  ///< light from behind adds nothing to a float; slices there would be divided by 0
 
 /// A piece of a ray in which the extinction is taken as linear.
 struct Slice {
-  float begin, length;                       ///< m
+  float begin, length;  ///< m
   float tau;
-  float left;                                ///< of light from its begin to the eye
-  float slope;                               ///< extinction at its end less that at its begin, 1/m
+  float left;   ///< of light from its begin to the eye
+  float slope;  ///< extinction at its end less that at its begin, 1/m
   float extinction(float t) const { return tau / length + slope * (t - 0.5f); }
   /// Where in it, 0 to 1, the depth from its begin on is `depth`: depth = length (extinction(0) t + slope t^2 / 2).
   float place_of(float depth) const {
@@ -80,28 +82,32 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
 struct SentOn {
   Ray ray;
   std::uint64_t key;
-  Rgb weight;                                ///< of the radiance along it
+  Rgb weight;  ///< of the radiance along it
 };
 
 /// A ray from a place in the medium, if rays bring some of its light.
-void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random, std::vector<SentOn>& rays) {
+void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, float weight,
+             const PixelRandom& random, std::vector<SentOn>& rays) {
   const PhaseShare& share = light.share(point.g);
   if (!share.has_rays()) return;
   const Vec3 travel = sample_hg(point.g, point.travel, random.get2(bounce, Purpose::phase));
   const float q = 4 * kPi * pdf_hg(point.g, point.travel, travel);
-  rays.push_back({{point.position, travel, 0, INFINITY}, random.hashed().bits(bounce, Purpose::gather), point.albedo * (weight * share.of_rays(q))});
+  rays.push_back({{point.position, travel, 0, INFINITY},
+                  random.hashed().bits(bounce, Purpose::gather),
+                  point.albedo * (weight * share.of_rays(q))});
 }
 
-/// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them, and weighed by how far the extinction
-/// there is from linear: direct light of the lamps.
-/// `whole`: share of what the eye would see from behind that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be
+/// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them, and
+/// weighed by how far the extinction there is from linear: direct light of the lamps. `whole`: share of what the eye
+/// would see from behind that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be
 /// added.
-Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, const std::vector<Slice>& slices,
-                  float whole, int samples, const PixelRandom& random, std::vector<SentOn>& sent_on, RayCounts& counts) {
+Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray,
+                  const std::vector<Slice>& slices, float whole, int samples, const PixelRandom& random,
+                  std::vector<SentOn>& sent_on, RayCounts& counts) {
   const std::size_t before = sent_on.size();
   Rgb sum{0.0f};
   std::size_t at = 0;
-  float passed = 0;                          // of it, before slice `at`
+  float passed = 0;  // of it, before slice `at`
   for (int k = 0; k < samples; ++k) {
     const float wanted = (float(k) + random.get1(0, Purpose::place)) / float(samples) * whole;
     // Samples ascend; the last slice takes what rounding leaves over.
@@ -113,21 +119,23 @@ Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight
     const float share = std::clamp((wanted - passed) / slice.left, 0.0f, -std::expm1(-slice.tau));
     const float within = slice.place_of(-std::log1p(-share));
     const Vec3 position = ray.origin + ray.direction * (slice.begin + within * slice.length);
-    const float linear = slice.extinction(within), weight = linear > 0 ? std::min(kMostAbove, media.extinction(position) / linear) : 0;
+    const float linear = slice.extinction(within),
+                weight = linear > 0 ? std::min(kMostAbove, media.extinction(position) / linear) : 0;
     const auto bounce = std::uint32_t(k);
     const MediumOptions& medium = media.collided(position, random.hashed().get1(bounce, Purpose::medium)).options();
     const MediumPoint point{position, ray.direction, medium.albedo, medium.g};
-    sum += medium.albedo * weight * scattered_lamp_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
-                                         {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
+    sum += medium.albedo * weight *
+           scattered_lamp_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
+                                {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
     send_on(light, point, bounce, weight, random, sent_on);
   }
   for (std::size_t i = before; i < sent_on.size(); ++i) sent_on[i].weight *= whole / float(samples);
   return sum * (whole / float(samples));
 }
 
-SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, float end, float step,
-                 const ComposeOptions& options, const PixelRandom& random, std::vector<Slice>& slices, std::vector<SentOn>& sent_on,
-                 RayCounts& counts) {
+SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, float end,
+                 float step, const ComposeOptions& options, const PixelRandom& random, std::vector<Slice>& slices,
+                 std::vector<SentOn>& sent_on, RayCounts& counts) {
   SmokePixel pixel;
   cut(media, ray, end, step, slices);
   if (slices.empty()) return pixel;
@@ -138,9 +146,10 @@ SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight&
     tau += double(slice.tau);
   }
   pixel.left = float(std::exp(-tau));
-  const auto whole = float(-std::expm1(-tau));   // 1 - left would have two digits where tau is 1e-6
+  const auto whole = float(-std::expm1(-tau));  // 1 - left would have two digits where tau is 1e-6
   if (options.sample_lights && whole > 0)
-    pixel.light += sampled_light(scene, media, light, ray, slices, whole, options.light_samples, random, sent_on, counts);
+    pixel.light +=
+        sampled_light(scene, media, light, ray, slices, whole, options.light_samples, random, sent_on, counts);
   return pixel;
 }
 
@@ -167,7 +176,8 @@ Rgb brought(const IncomingRadiance& incoming, const std::vector<SentOn>& sent_on
 
 }  // namespace
 
-MediaLight::MediaLight(const Media& media, const MajorantGrid& majorants, Vec3 eye, double emitted_flux, const Options& options)
+MediaLight::MediaLight(const Media& media, const MajorantGrid& majorants, Vec3 eye, double emitted_flux,
+                       const Options& options)
     : media_(media), eye_(eye), options_(options) {
   if (!(options_.cell > 0)) options_.cell = finest_voxel(media);
   for (const Medium& medium : media.all()) {
@@ -217,11 +227,13 @@ void MediaLight::finish() {
 ColourGrid MediaLight::source(Vec3d origin) const {
   const FluenceSums& sums = sums_.front();
   ColourGrid grid{"radiance", sums.counts(), Vec3d(sums.box().lower) + origin, {}, {}};
-  for (int a = 0; a < 3; ++a) grid.voxel[a] = double(sums.box().upper[a] - sums.box().lower[a]) / std::max(1, sums.counts()[std::size_t(a)]);
+  for (int a = 0; a < 3; ++a)
+    grid.voxel[a] = double(sums.box().upper[a] - sums.box().lower[a]) / std::max(1, sums.counts()[std::size_t(a)]);
   for (std::int32_t x = 0; x < grid.counts[0]; ++x)
     for (std::int32_t y = 0; y < grid.counts[1]; ++y)
       for (std::int32_t z = 0; z < grid.counts[2]; ++z) {
-        const Vec3d at = Vec3d(sums.box().lower) + Vec3d{(x + 0.5) * grid.voxel.x, (y + 0.5) * grid.voxel.y, (z + 0.5) * grid.voxel.z};
+        const Vec3d at = Vec3d(sums.box().lower) +
+                         Vec3d{(x + 0.5) * grid.voxel.x, (y + 0.5) * grid.voxel.y, (z + 0.5) * grid.voxel.z};
         const float extinction = media_.extinction(Vec3(at));
         grid.values.push_back(extinction > 0 ? scattered(Vec3(at)) * (1 / extinction) : Rgb(0.0f));
       }
@@ -239,11 +251,13 @@ Rgb MediaLight::scattered(Vec3 point) const {
 }
 
 std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView& view, const MediaLight& light,
-                                      const std::vector<float>& depth, const ComposeOptions& options, RayCounts& counts) {
+                                      const std::vector<float>& depth, const ComposeOptions& options,
+                                      RayCounts& counts) {
   std::vector<SmokePixel> pixels(std::size_t(view.width()) * std::size_t(view.height()));
   const Media* const media = scene.frame().media.get();
   if (!media) return pixels;
-  if (light.has_rays() && !(options.incoming && options.sample_lights)) throw std::invalid_argument("rays bring a part of the light, and there are none");
+  if (light.has_rays() && !(options.incoming && options.sample_lights))
+    throw std::invalid_argument("rays bring a part of the light, and there are none");
   const auto step = float(finest_voxel(*media) / 2);
   std::mutex joining;
   std::size_t done = 0;

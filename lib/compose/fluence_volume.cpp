@@ -10,8 +10,8 @@ namespace {
 
 using Cell = std::array<float, 4>;
 
-constexpr float kWidest = 16;                ///< cells
-constexpr std::size_t kLine = 64;            ///< lines of cells in a piece of work
+constexpr float kWidest = 16;      ///< cells
+constexpr std::size_t kLine = 64;  ///< lines of cells in a piece of work
 
 /// Weights of a line of cells around the centre, sum 1.
 std::vector<float> kernel(const FluenceFilter& filter, float width) {
@@ -28,10 +28,12 @@ std::vector<float> kernel(const FluenceFilter& filter, float width) {
 }
 
 /// One axis of a separable filter. Cells beyond the box hold nothing, neither sum nor volume.
-void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, int axis, const std::vector<float>& weights) {
+void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, int axis,
+                 const std::vector<float>& weights) {
   const std::size_t stride[3] = {std::size_t(counts[1]) * std::size_t(counts[2]), std::size_t(counts[2]), 1};
   const int other1 = axis == 0 ? 1 : 0, other2 = axis == 2 ? 1 : 2;
-  const auto n = std::size_t(counts[std::size_t(axis)]), n1 = std::size_t(counts[std::size_t(other1)]), n2 = std::size_t(counts[std::size_t(other2)]);
+  const auto n = std::size_t(counts[std::size_t(axis)]), n1 = std::size_t(counts[std::size_t(other1)]),
+             n2 = std::size_t(counts[std::size_t(other2)]);
   const auto reach = std::int64_t(weights.size() / 2);
   parallel_chunks(n1 * n2, kLine, [&](std::size_t first, std::size_t last) {
     std::vector<Cell> line(n);
@@ -40,7 +42,8 @@ void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& co
       for (std::size_t i = 0; i < n; ++i) line[i] = base[i * stride[axis]];
       for (std::size_t i = 0; i < n; ++i) {
         Cell sum{};
-        const std::int64_t from = std::max<std::int64_t>(0, std::int64_t(i) - reach), to = std::min<std::int64_t>(std::int64_t(n) - 1, std::int64_t(i) + reach);
+        const std::int64_t from = std::max<std::int64_t>(0, std::int64_t(i) - reach),
+                           to = std::min<std::int64_t>(std::int64_t(n) - 1, std::int64_t(i) + reach);
         for (std::int64_t j = from; j <= to; ++j) {
           const float w = weights[std::size_t(j - std::int64_t(i) + reach)];
           for (std::size_t c = 0; c < 4; ++c) sum[c] += w * line[std::size_t(j)][c];
@@ -51,41 +54,46 @@ void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& co
   });
 }
 
-void filter_separable(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter, float width) {
+void filter_separable(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter,
+                      float width) {
   const std::vector<float> weights = kernel(filter, width);
   for (int axis = 0; axis < 3; ++axis) filter_axis(cells, counts, axis, weights);
 }
 
 float brightness(const Cell& cell) { return cell[3] > 0 ? (cell[0] + cell[1] + cell[2]) / (3 * cell[3]) : 0; }
 
-/// Cells count less whose light is another: compared by a Gaussian of the same width, as single cells are noise. What the weights add to or
-/// take from the whole is put right at the end. [Durand & Dorsey 2002]
-void filter_bilateral(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter, float width) {
+/// Cells count less whose light is another: compared by a Gaussian of the same width, as single cells are noise. What
+/// the weights add to or take from the whole is put right at the end. [Durand & Dorsey 2002]
+void filter_bilateral(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter,
+                      float width) {
   std::vector<Cell> smooth = cells;
   filter_separable(smooth, counts, {FluenceFilter::Kind::gaussian, width, 0}, width);
   const int reach = int(std::ceil(2 * width));
   const auto [nx, ny, nz] = counts;
-  const auto index = [&, ny = ny, nz = nz](int x, int y, int z) { return (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz) + std::size_t(z); };
+  const auto index = [&, ny = ny, nz = nz](int x, int y, int z) {
+    return (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz) + std::size_t(z);
+  };
   std::vector<Cell> result(cells.size());
-  parallel_chunks(std::size_t(nx) * std::size_t(ny), 16, [&, nx = nx, ny = ny, nz = nz](std::size_t first, std::size_t last) {
-    for (std::size_t column = first; column < last; ++column)
-      for (int z = 0; z < nz; ++z) {
-        const int x = int(column / std::size_t(ny)), y = int(column % std::size_t(ny));
-        const float here = std::log(std::max(1e-30f, brightness(smooth[index(x, y, z)])));
-        Cell sum{};
-        for (int i = std::max(0, x - reach); i <= std::min(nx - 1, x + reach); ++i)
-          for (int j = std::max(0, y - reach); j <= std::min(ny - 1, y + reach); ++j)
-            for (int k = std::max(0, z - reach); k <= std::min(nz - 1, z + reach); ++k) {
-              const std::size_t at = index(i, j, k);
-              if (!(cells[at][3] > 0)) continue;
-              const float difference = (std::log(std::max(1e-30f, brightness(smooth[at]))) - here) / filter.range;
-              const auto d2 = float((i - x) * (i - x) + (j - y) * (j - y) + (k - z) * (k - z)) / (width * width);
-              const float w = std::exp(-0.5f * (d2 + difference * difference));
-              for (std::size_t c = 0; c < 4; ++c) sum[c] += w * cells[at][c];
-            }
-        result[index(x, y, z)] = sum;
-      }
-  });
+  parallel_chunks(
+      std::size_t(nx) * std::size_t(ny), 16, [&, nx = nx, ny = ny, nz = nz](std::size_t first, std::size_t last) {
+        for (std::size_t column = first; column < last; ++column)
+          for (int z = 0; z < nz; ++z) {
+            const int x = int(column / std::size_t(ny)), y = int(column % std::size_t(ny));
+            const float here = std::log(std::max(1e-30f, brightness(smooth[index(x, y, z)])));
+            Cell sum{};
+            for (int i = std::max(0, x - reach); i <= std::min(nx - 1, x + reach); ++i)
+              for (int j = std::max(0, y - reach); j <= std::min(ny - 1, y + reach); ++j)
+                for (int k = std::max(0, z - reach); k <= std::min(nz - 1, z + reach); ++k) {
+                  const std::size_t at = index(i, j, k);
+                  if (!(cells[at][3] > 0)) continue;
+                  const float difference = (std::log(std::max(1e-30f, brightness(smooth[at]))) - here) / filter.range;
+                  const auto d2 = float((i - x) * (i - x) + (j - y) * (j - y) + (k - z) * (k - z)) / (width * width);
+                  const float w = std::exp(-0.5f * (d2 + difference * difference));
+                  for (std::size_t c = 0; c < 4; ++c) sum[c] += w * cells[at][c];
+                }
+            result[index(x, y, z)] = sum;
+          }
+      });
   // The whole light over the open cells stays what it was, by channel.
   std::array<double, 3> before{}, after{};
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -122,8 +130,10 @@ FluenceSums::FluenceSums(const MajorantGrid& majorants, double cell, double emit
   for (std::int32_t x = 0; x < counts_[0]; ++x)
     for (std::int32_t y = 0; y < counts_[1]; ++y)
       for (std::int32_t z = 0; z < counts_[2]; ++z, ++i)
-        open_[i] = majorants.values()[(std::size_t(x / per) * std::size_t(majorants.counts()[1]) + std::size_t(y / per)) *
-                                          std::size_t(majorants.counts()[2]) + std::size_t(z / per)] > 0;
+        open_[i] =
+            majorants.values()[(std::size_t(x / per) * std::size_t(majorants.counts()[1]) + std::size_t(y / per)) *
+                                   std::size_t(majorants.counts()[2]) +
+                               std::size_t(z / per)] > 0;
 }
 
 double FluenceSums::cell_volume() const {
@@ -144,7 +154,8 @@ std::size_t FluenceSums::cell_of(Vec3 point) const {
 void FluenceSums::add(Vec3 point, Rgb worth, int times) {
   const std::size_t cell = cell_of(point);
   if (cell >= sums_.size() || !is_finite(worth)) return;
-  for (int c = 0; c < 3; ++c) {              // unsigned: what overflows in a damaged file wraps, and comes back when it is taken away
+  for (int c = 0; c < 3;
+       ++c) {  // unsigned: what overflows in a damaged file wraps, and comes back when it is taken away
     std::int64_t& sum = sums_[cell][std::size_t(c)];
     const auto more = std::uint64_t(std::llrint(std::clamp(double(worth[c]) / unit_, -9e18, 9e18)));
     sum = std::int64_t(std::uint64_t(sum) + std::uint64_t(std::int64_t(times)) * more);
@@ -152,9 +163,11 @@ void FluenceSums::add(Vec3 point, Rgb worth, int times) {
   photons_ += std::uint64_t(std::int64_t(times));
 }
 
-FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filter) : box_(sums.box()), counts_(sums.counts()) {
+FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filter)
+    : box_(sums.box()), counts_(sums.counts()) {
   if (sums.sums().empty()) return;
-  for (std::size_t a = 0; a < 3; ++a) cells_per_m_[int(a)] = float(counts_[a]) / (box_.upper[int(a)] - box_.lower[int(a)]);
+  for (std::size_t a = 0; a < 3; ++a)
+    cells_per_m_[int(a)] = float(counts_[a]) / (box_.upper[int(a)] - box_.lower[int(a)]);
   cells_.resize(sums.sums().size());
   const auto volume = float(sums.cell_volume());
   std::size_t open = 0;
@@ -167,7 +180,9 @@ FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filte
   if (!(width_ > 0)) {
     // A Gaussian of deviation s counts as many cells as (4 pi s^2)^(3/2).
     const double density = double(sums.photons()) / double(std::max<std::size_t>(1, open));
-    width_ = std::clamp(float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f, kWidest);
+    width_ = std::clamp(
+        float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f,
+        kWidest);
   }
   if (filter.kind == FluenceFilter::Kind::bilateral) filter_bilateral(cells_, counts_, filter, std::min(width_, 4.0f));
   else if (filter.kind != FluenceFilter::Kind::none) filter_separable(cells_, counts_, filter, width_);

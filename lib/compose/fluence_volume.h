@@ -1,4 +1,5 @@
-// lib/compose/fluence_volume.h -- light inside media, from tentative photons: sums by cells that can be undone, then filtered.
+// lib/compose/fluence_volume.h -- light inside media, from tentative photons: sums by cells that can be undone, then
+// filtered.
 #pragma once
 
 #include <array>
@@ -10,17 +11,17 @@
 
 namespace tempolux {
 
-/// Cells over the box of the majorants, each cut into `per_majorant`^3. Of every channel the sum of what photons are worth
-/// (flux / majorant, W m) is kept as a multiple of `unit` in 64 bits: adding a photon and taking it away again leaves
-/// exactly what was there, in any order.
+/// Cells over the box of the majorants, each cut into `per_majorant`^3. Of every channel the sum of what photons are
+/// worth (flux / majorant, W m) is kept as a multiple of `unit` in 64 bits: adding a photon and taking it away again
+/// leaves exactly what was there, in any order.
 class FluenceSums {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 25;
 
   FluenceSums() = default;
-  /// `emitted_flux` [W]: of the lamps, all channels together; gives the unit: 2^-44 of that flux along the box's diagonal, a power of
-  /// two. So a sum holds 2^19 times what all photons could be worth that pass the box once. `cell` [m]: their size is this or a
-  /// little less, more where kMostCells would be exceeded.
+  /// `emitted_flux` [W]: of the lamps, all channels together; gives the unit: 2^-44 of that flux along the box's
+  /// diagonal, a power of two. So a sum holds 2^19 times what all photons could be worth that pass the box once. `cell`
+  /// [m]: their size is this or a little less, more where kMostCells would be exceeded.
   FluenceSums(const MajorantGrid& majorants, double cell, double emitted_flux);
 
   const Box3& box() const { return box_; }
@@ -51,23 +52,25 @@ class FluenceSums {
   std::vector<std::uint8_t> open_;
 };
 
-inline constexpr float kPhotonsInFilter = 256;   ///< that count in a filter whose width is not given: noise of a cell 1/16
+inline constexpr float kPhotonsInFilter =
+    256;  ///< that count in a filter whose width is not given: noise of a cell 1/16
 
 struct FluenceFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;
-  float width = 0;          ///< cells: half the box's edge, or the Gaussian's standard deviation; 0: so wide that about 256 photons count
-  float range = 0.5f;       ///< bilateral: standard deviation of ln fluence over which cells count as alike
+  float width =
+      0;  ///< cells: half the box's edge, or the Gaussian's standard deviation; 0: so wide that about 256 photons count
+  float range = 0.5f;  ///< bilateral: standard deviation of ln fluence over which cells count as alike
 };
 
-/// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same kernel, so that cells at the border of what photons
-/// can reach lose nothing; between the cells' centres trilinear. 0 outside.
+/// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same kernel, so that cells at the border of
+/// what photons can reach lose nothing; between the cells' centres trilinear. 0 outside.
 class FluenceVolume {
  public:
   FluenceVolume() = default;
   FluenceVolume(const FluenceSums& sums, const FluenceFilter& filter);
   Rgb at(Vec3 point) const;
-  float width() const { return width_; }     ///< cells: that of the filter, also where it was 0
+  float width() const { return width_; }  ///< cells: that of the filter, also where it was 0
 
  private:
   Box3 box_;

@@ -5,10 +5,10 @@
 #include <cstdlib>
 
 /// Aborts with file, line and the condition. Never for input: input errors are InputError.
-#define TEMPOLUX_CHECK(condition)                                                                 \
-  do {                                                                                            \
-    if (!(condition)) {                                                                           \
-      std::fprintf(stderr, "%s:%d: broken promise: %s\n", __FILE__, __LINE__, #condition);        \
-      std::abort();                                                                               \
-    }                                                                                             \
+#define TEMPOLUX_CHECK(condition)                                                          \
+  do {                                                                                     \
+    if (!(condition)) {                                                                    \
+      std::fprintf(stderr, "%s:%d: broken promise: %s\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                        \
+    }                                                                                      \
   } while (false)

@@ -40,7 +40,8 @@ constexpr bool kMemoryIsLimited = true;
 constexpr bool kMemoryIsLimited = true;
 #endif
 
-/// Only the first line that a helper writes is passed on; the rest is read and dropped, so that the helper does not wait.
+/// Only the first line that a helper writes is passed on; the rest is read and dropped, so that the helper does not
+/// wait.
 constexpr std::size_t kMostWords = 1024;
 constexpr std::size_t kPiece = 1 << 16;  ///< what a pipe of Linux holds
 
@@ -166,8 +167,7 @@ class Child {
 
   void end() {
     ::kill(child_, SIGKILL);
-    while (!reap(0)) {
-    }
+    while (!reap(0)) {}
   }
 
   /// As waitpid gives it, once it has ended.
@@ -180,7 +180,8 @@ class Child {
     int status = 0;
     const pid_t got = ::waitpid(child_, &status, options);
     if (got == child_) status_ = status;
-    // ECHILD: this process ignores SIGCHLD, so the kernel has waited for it. How it ended is not known; its output must show it.
+    // ECHILD: this process ignores SIGCHLD, so the kernel has waited for it. How it ended is not known; its output must
+    // show it.
     ended_ = got == child_ || (got < 0 && errno == ECHILD);
     return ended_;
   }
@@ -203,7 +204,8 @@ std::string ending(int status, const std::string& words, const ChildLimits& limi
     const int signal = WTERMSIG(status);
     if (signal == SIGXCPU) return "took more than " + std::to_string(limits.processor_s) + " s of processor time";
     if (signal == SIGSYS)
-      return "was ended by its guard: it asked the system for more than reading needs, such as to open a file or a socket. "
+      return "was ended by its guard: it asked the system for more than reading needs, such as to open a file or a "
+             "socket. "
              "Data that does so is damaged or made to do harm; use a copy that you trust";
     const char* name = ::sigdescr_np(signal);
     return "died by signal " + std::to_string(signal) + (name ? " (" + std::string(name) + ")" : "");
@@ -293,8 +295,8 @@ std::string helper_program(const std::string& name, const std::string& purpose, 
     if (std::filesystem::is_regular_file(folder + "/" + name, ignored)) return folder + "/" + name;
     looked += (looked.empty() ? "" : ", ") + folder;
   }
-  throw InputError(purpose + " needs " + name + ", which was not built or not installed (looked in " + looked +
-                   "); " + remedy);
+  throw InputError(purpose + " needs " + name + ", which was not built or not installed (looked in " + looked + "); " +
+                   remedy);
 }
 
 ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,
@@ -311,15 +313,11 @@ ChildResult run_child(const std::string& program, const std::vector<std::string>
   ChildResult result;
   try {
     result.trouble = exchange.run(program, deadline);
-  } catch (const std::bad_alloc&) {
-    throw ResourceError(program + ": not enough memory for what it prints");
-  }
+  } catch (const std::bad_alloc&) { throw ResourceError(program + ": not enough memory for what it prints"); }
   if (result.trouble.empty() && !child.wait_until(deadline))
     result.trouble = "did not end within " + std::to_string(limits.wall_s) + " s";
-  if (result.trouble.empty())
-    result.trouble = ending(child.status(), exchange.words(), limits);
-  else
-    child.end();
+  if (result.trouble.empty()) result.trouble = ending(child.status(), exchange.words(), limits);
+  else child.end();
   result.output = exchange.take();
   return result;
 }

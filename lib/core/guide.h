@@ -7,8 +7,9 @@
 
 namespace tempolux {
 
-/// Guide table [Chen, Asau, "On generating random variates from an empirical distribution", AIIE Transactions 6, 1974]: for N even parts
-/// of [0, 1) the first answer that a number in it can have. Searching a large table touches many lines of memory, a part of it one.
+/// Guide table [Chen, Asau, "On generating random variates from an empirical distribution", AIIE Transactions 6, 1974]:
+/// for N even parts of [0, 1) the first answer that a number in it can have. Searching a large table touches many lines
+/// of memory, a part of it one.
 template <std::uint32_t N>
 class Guide {
  public:
@@ -20,7 +21,7 @@ class Guide {
     first_[N] = last;
   }
   struct Range {
-    std::uint32_t first, last;   ///< the answer is one of these, both included
+    std::uint32_t first, last;  ///< the answer is one of these, both included
   };
   Range range(double u) const {
     const std::uint32_t part = std::min(std::uint32_t(u * N), N - 1);

@@ -82,8 +82,7 @@ double RadicalInverse::operator()(std::uint64_t index) const {
   return value < 1 ? value : 0x1.fffffffffffffp-1;
 }
 
-PhotonHalton::PhotonHalton(std::uint64_t seed)
-    : base3_(3, seed), base5_(5, seed), base7_(7, seed), base2_(2, seed) {}
+PhotonHalton::PhotonHalton(std::uint64_t seed) : base3_(3, seed), base5_(5, seed), base7_(7, seed), base2_(2, seed) {}
 
 std::array<double, 4> PhotonHalton::point(std::uint64_t index) const {
   return {base3_(index), base5_(index), base7_(index), base2_(index)};

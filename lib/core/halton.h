@@ -25,11 +25,11 @@ class RadicalInverse {
  private:
   std::uint32_t base_, block_digits_, block_size_;
   int block_count_;
-  std::uint64_t reciprocal_;                     ///< 2^64 / block_size, rounded down
-  double scale_;                                 ///< base^-(block_digits * block_count)
-  std::vector<std::uint32_t> table_;             ///< block_count x block_size: reversed, permuted digits
-  std::vector<std::uint64_t> rest_weight_;       ///< by blocks done: block_size^(blocks left)
-  std::vector<std::uint64_t> rest_of_zeros_;     ///< and what those add to the numerator when all digits are 0
+  std::uint64_t reciprocal_;                  ///< 2^64 / block_size, rounded down
+  double scale_;                              ///< base^-(block_digits * block_count)
+  std::vector<std::uint32_t> table_;          ///< block_count x block_size: reversed, permuted digits
+  std::vector<std::uint64_t> rest_weight_;    ///< by blocks done: block_size^(blocks left)
+  std::vector<std::uint64_t> rest_of_zeros_;  ///< and what those add to the numerator when all digits are 0
 };
 
 /// The four coordinates of a photon's emission, bases 3, 5, 7, 2 in the order in which they are used:

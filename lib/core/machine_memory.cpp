@@ -9,7 +9,8 @@
 namespace tempolux {
 namespace {
 
-/// The smallest limit from the group `path` up to the root of `mount`; a file that is not there or says "max" limits nothing.
+/// The smallest limit from the group `path` up to the root of `mount`; a file that is not there or says "max" limits
+/// nothing.
 std::uint64_t limit_of_groups(const std::string& mount, std::string path, const std::string& file) {
   std::uint64_t limit = ~0ull;
   for (;;) {

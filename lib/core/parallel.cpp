@@ -56,20 +56,16 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
   std::vector<std::shared_ptr<void>> made(places);
   std::size_t next = 0;
   tbb::parallel_pipeline(
-      places, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                                  [&](tbb::flow_control& control) {
-                                                    if (next == chunk_count) control.stop();
-                                                    return next < chunk_count ? next++ : next;
-                                                  }) &
-                  tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel,
-                                                             [&](std::size_t i) {
-                                                               made[i % places] = make(i);
-                                                               return i;
-                                                             }) &
-                  tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, [&](std::size_t i) {
-                    const std::shared_ptr<void> item = std::move(made[i % places]);
-                    take(i, item.get());
-                  }));
+      places, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& control) {
+                if (next == chunk_count) control.stop();
+                return next < chunk_count ? next++ : next;
+              }) & tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, [&](std::size_t i) {
+                made[i % places] = make(i);
+                return i;
+              }) & tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, [&](std::size_t i) {
+                const std::shared_ptr<void> item = std::move(made[i % places]);
+                take(i, item.get());
+              }));
 }
 
 }  // namespace tempolux

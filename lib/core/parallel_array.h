@@ -12,17 +12,18 @@
 
 namespace tempolux {
 
-/// `count` values T{}. The system clears memory page by page where it is first written: one thread would do that for all of it
-/// while the others wait.
+/// `count` values T{}. The system clears memory page by page where it is first written: one thread would do that for
+/// all of it while the others wait.
 template <class T>
 class ParallelArray {
  public:
   explicit ParallelArray(std::size_t count)
-      : data_(static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t{alignof(T)}))), count_(count) {
+      : data_(static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{alignof(T)}))), count_(count) {
     static_assert(std::is_trivially_destructible_v<T>);
     formats::prefer_large_pages(data_.get(), count * sizeof(T));
-    parallel_chunks(count, (std::size_t(4) << 20) / sizeof(T) + 1,
-                    [&](std::size_t first, std::size_t last) { std::uninitialized_value_construct(data_.get() + first, data_.get() + last); });
+    parallel_chunks(count, (std::size_t(4) << 20) / sizeof(T) + 1, [&](std::size_t first, std::size_t last) {
+      std::uninitialized_value_construct(data_.get() + first, data_.get() + last);
+    });
   }
 
   std::size_t size() const { return count_; }
@@ -34,7 +35,7 @@ class ParallelArray {
 
  private:
   struct Free {
-    void operator()(T* data) const { ::operator delete(data, std::align_val_t{alignof(T)}); }
+    void operator()(T* data) const { ::operator delete (data, std::align_val_t{alignof(T)}); }
   };
   std::unique_ptr<T, Free> data_;
   std::size_t count_;

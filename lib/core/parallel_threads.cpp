@@ -1,5 +1,6 @@
-// lib/core/parallel_threads.cpp -- parallel.h by threads of the standard library, in place of parallel.cpp where ThreadSanitizer
-// looks on: it does not see how Debian's TBB, which is not built for it, hands over work, and would call each hand-over a race.
+// lib/core/parallel_threads.cpp -- parallel.h by threads of the standard library, in place of parallel.cpp where
+// ThreadSanitizer looks on: it does not see how Debian's TBB, which is not built for it, hands over work, and would
+// call each hand-over a race.
 #include <sched.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 namespace tempolux {
 namespace {
 
-std::atomic<int> most_threads{0};   ///< 0: no limit
+std::atomic<int> most_threads{0};  ///< 0: no limit
 
 /// body() by all threads at once; the first exception reaches the caller, `stop` is set by it.
 void by_all(const std::function<void()>& body, std::atomic<bool>& stop) {
@@ -58,11 +59,13 @@ int usable_processor_count() {
 
 int parallel_thread_count() { return most_threads > 0 ? most_threads.load() : usable_processor_count(); }
 
-void parallel_chunks(std::size_t count, std::size_t chunk_size, const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_chunks(std::size_t count, std::size_t chunk_size,
+                     const std::function<void(std::size_t, std::size_t)>& body) {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
   const auto work = [&] {
-    for (std::size_t first; !stop && (first = next.fetch_add(chunk_size)) < count;) body(first, std::min(count, first + chunk_size));
+    for (std::size_t first; !stop && (first = next.fetch_add(chunk_size)) < count;)
+      body(first, std::min(count, first + chunk_size));
   };
   if (count <= chunk_size) work();
   else by_all(work, stop);
@@ -101,18 +104,20 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
       }
     }
   };
-  by_all([&] {
-    try {
-      work();
-    } catch (...) {
-      {
-        const std::lock_guard lock(mutex);   // else a thread that is about to wait would miss the signal
-        stop = true;
-      }
-      changed.notify_all();
-      throw;
-    }
-  }, stop);
+  by_all(
+      [&] {
+        try {
+          work();
+        } catch (...) {
+          {
+            const std::lock_guard lock(mutex);  // else a thread that is about to wait would miss the signal
+            stop = true;
+          }
+          changed.notify_all();
+          throw;
+        }
+      },
+      stop);
 }
 
 }  // namespace tempolux

@@ -13,7 +13,22 @@ namespace tempolux {
 
 /// What a random number is drawn for; part of its key, so that no two uses share numbers.
 enum class Purpose : std::uint32_t {
-  emit = 1, lobe, scatter, roulette, light_choice, light_point, pixel, scramble, gather, points, place, test, flight, medium, phase, sun
+  emit = 1,
+  lobe,
+  scatter,
+  roulette,
+  light_choice,
+  light_point,
+  pixel,
+  scramble,
+  gather,
+  points,
+  place,
+  test,
+  flight,
+  medium,
+  phase,
+  sun
 };
 
 /// Finaliser with full avalanche on 64 bits (Stafford's mix 13, as in SplitMix64).
@@ -36,8 +51,8 @@ class PathRandom {
 
   /// 64 random bits for one (bounce, purpose, extra).
   constexpr std::uint64_t bits(std::uint32_t bounce, Purpose purpose, std::uint32_t extra = 0) const {
-    return mix64(key_ ^ mix64((std::uint64_t(bounce) << 32 | std::uint64_t(purpose) << 24 | extra) +
-                              0x9e3779b97f4a7c15ull));
+    return mix64(key_ ^
+                 mix64((std::uint64_t(bounce) << 32 | std::uint64_t(purpose) << 24 | extra) + 0x9e3779b97f4a7c15ull));
   }
   /// One number in [0, 1).
   constexpr float get1(std::uint32_t bounce, Purpose purpose, std::uint32_t extra = 0) const {

@@ -38,7 +38,7 @@ inline Vec2 sample_disc_concentric(Vec2 u) {
   const bool steep = !(std::abs(a) > std::abs(b));
   const float r = select(steep, b, a), size = std::abs(r);
   const SinCos part = sin_cos_eighth((kPi / 4) * (select(steep, a, b) / std::max(size, 1e-30f)));
-  const float along = r * part.cos, across = size * part.sin;   // the sine's argument has not r's sign
+  const float along = r * part.cos, across = size * part.sin;  // the sine's argument has not r's sign
   return {select(steep, across, along), select(steep, along, across)};
 }
 

@@ -64,8 +64,7 @@ std::vector<unsigned char> unpack(const std::vector<PackedPiece>& pieces) {
   const ChildLimits limits = limits_for(pieces);
   ChildResult result = run_child(program, {}, request_for(pieces), limits);
   const PackedPiece& piece = piece_at(pieces, result.output.size());
-  if (result.trouble.empty() && result.output.size() < limits.output_bytes)
-    result.trouble = "printed too few bytes";
+  if (result.trouble.empty() && result.output.size() < limits.output_bytes) result.trouble = "printed too few bytes";
   if (!result.trouble.empty()) throw InputError(piece.place + ": " + name + " " + result.trouble + "; " + piece.remedy);
   return std::move(result.output);
 }

@@ -8,12 +8,15 @@
 
 namespace tempolux {
 
-/// What a search descends through. The leaves' order is the caller's: those of any aligned block of 8^j are one subtree.
+/// What a search descends through. The leaves' order is the caller's: those of any aligned block of 8^j are one
+/// subtree.
 struct BoxTree {
   static constexpr std::size_t kChildren = 8;
-  /// Boxes of the children. Level 0 has leaves as children; child c of node j is number 8 j + c of the level below. Those of missing
-  /// children are NaN, which no comparison lets through.
-  struct alignas(64) Node { float lower[3][kChildren], upper[3][kChildren]; };
+  /// Boxes of the children. Level 0 has leaves as children; child c of node j is number 8 j + c of the level below.
+  /// Those of missing children are NaN, which no comparison lets through.
+  struct alignas(64) Node {
+    float lower[3][kChildren], upper[3][kChildren];
+  };
 
   BoxTree() = default;
   /// One box for each leaf, at least one.
@@ -22,8 +25,8 @@ struct BoxTree {
   std::size_t level_count() const { return level_start.size(); }
   const Node& node(std::size_t level, std::uint64_t number) const { return nodes[level_start[level] + number]; }
 
-  std::vector<Node> nodes;                  ///< level by level, the root last
-  std::vector<std::uint32_t> level_start;   ///< first node of each level
+  std::vector<Node> nodes;                 ///< level by level, the root last
+  std::vector<std::uint32_t> level_start;  ///< first node of each level
 };
 
 }  // namespace tempolux

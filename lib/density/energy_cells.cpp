@@ -10,15 +10,16 @@
 namespace tempolux {
 namespace {
 
-/// The grid begins beside the origin by an irrational part of an edge: surfaces lie at round coordinates more often than
-/// anywhere else, and one on a face between two cubes would be dealt out to both of them by rounding.
-constexpr double kShift = 0.38196601125;   // 2 - golden ratio
-/// Cells of which the hull tells the area keep all if they have fewer records: of eight, it tells the area to a half (rms;
-/// measured in tests/lib/density/split_light_test.cpp), which is too little to call a cell bright.
+/// The grid begins beside the origin by an irrational part of an edge: surfaces lie at round coordinates more often
+/// than anywhere else, and one on a face between two cubes would be dealt out to both of them by rounding.
+constexpr double kShift = 0.38196601125;  // 2 - golden ratio
+/// Cells of which the hull tells the area keep all if they have fewer records: of eight, it tells the area to a half
+/// (rms; measured in tests/lib/density/split_light_test.cpp), which is too little to call a cell bright.
 constexpr std::uint64_t kFewest = 8;
 constexpr std::size_t kPlaces = 16384;
-/// Of a cell's records the hull tells the area, and with few of them it finds little of it: on S3 (frame 1, 200 000 paths, lit
-/// area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and 380 records in the mean.
+/// Of a cell's records the hull tells the area, and with few of them it finds little of it: on S3 (frame 1, 200 000
+/// paths, lit area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and 380 records in the
+/// mean.
 constexpr double kRecordsPerCell = 256;
 
 int axis_of(Vec3 normal) {
@@ -41,7 +42,7 @@ std::size_t EnergyCells::Hash::operator()(const Key& key) const {
 
 EnergyCells::Key EnergyCells::key_of(const CellPlace& place) const {
   Key key{};
-  constexpr double most = 4e18;   // a cube far away keeps its number within 64 bits
+  constexpr double most = 4e18;  // a cube far away keeps its number within 64 bits
   for (int a = 0; a < 3; ++a)
     key.cube[std::size_t(a)] = std::int64_t(std::clamp(std::floor(grid_of(place.position[a], edge_)), -most, most));
   const int axis = axis_of(place.normal);
@@ -88,8 +89,8 @@ void EnergyCells::close(const EnergyLimit& limit) {
 
   bright_ = 0;
   for (const Figures& f : all) {
-    const double kept = limit.records ? *limit.records * energy_ / double(records)
-                                           : limit.times_mean * mean_irradiance() * f.area;
+    const double kept =
+        limit.records ? *limit.records * energy_ / double(records) : limit.times_mean * mean_irradiance() * f.area;
     const bool unknown = !limit.records && limit.times_mean > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
     // Where limit or mean are without bound, inf - inf and 0 * inf are no verdict: the cell keeps all.
     f.cell->low_share = unknown || !(kept < f.energy) ? 1 : kept / f.energy;
@@ -132,9 +133,9 @@ double CellEdge::edge() const {
   for (const Place& place : kept.places_) bounds.add(place.position), records += place.count;
   if (kept.places_.size() < 2) return 1;
   double edge = double(max_component(bounds.upper - bounds.lower));
-  if (!(edge > 0)) return 1;   // 0 and -0 are one place
+  if (!(edge > 0)) return 1;  // 0 and -0 are one place
   // From all in one cell, a quarter of an octave at a time, until a cell holds so many of those kept.
-  for (int step = 0; step < 100; ++step, edge *= 0.8408964152537145) {   // 2^(-1/4)
+  for (int step = 0; step < 100; ++step, edge *= 0.8408964152537145) {  // 2^(-1/4)
     std::set<std::array<std::int64_t, 3>> cells;
     for (const Place& place : kept.places_) {
       std::array<std::int64_t, 3> cube{};

@@ -16,15 +16,15 @@ namespace tempolux {
 
 /// Where a record lies.
 struct CellPlace {
-  Vec3 position;              ///< m
-  Vec3 normal;                ///< unit: on the side that is lit
-  std::uint16_t object = 0;   ///< id.object
+  Vec3 position;             ///< m
+  Vec3 normal;               ///< unit: on the side that is lit
+  std::uint16_t object = 0;  ///< id.object
 };
 
 /// What makes a cell bright.
 struct EnergyLimit {
-  double times_mean = 4;                    ///< >= 0: a cell keeps at most this multiple of the mean irradiance
-  std::optional<double> records = {};       ///< if given, instead: at most the energy of so many records of mean energy
+  double times_mean = 4;               ///< >= 0: a cell keeps at most this multiple of the mean irradiance
+  std::optional<double> records = {};  ///< if given, instead: at most the energy of so many records of mean energy
 };
 
 /// Cells of one edge: records whose positions lie in the same cube of a grid, on the same object, and whose normals are
@@ -36,7 +36,8 @@ class EnergyCells {
   /// convex hull of its records' positions, seen along its axis (PlanarHull).
   EnergyCells(double edge, double area_of_record);
 
-  /// First pass: a record with this flux [W] (times the share that is reflected, where known). Finite; magnitudes count.
+  /// First pass: a record with this flux [W] (times the share that is reflected, where known). Finite; magnitudes
+  /// count.
   void add(const CellPlace& place, const std::array<float, 3>& flux);
   /// After the first pass: finds what each cell keeps.
   void close(const EnergyLimit& limit);
@@ -45,16 +46,16 @@ class EnergyCells {
   double low_share(const CellPlace& place) const;
 
   std::size_t size() const { return cells_.size(); }
-  std::size_t bright_count() const { return bright_; }   ///< cells that keep less than all
-  double area() const { return area_; }                  ///< m^2: of all cells that have energy
-  double energy() const { return energy_; }              ///< W: of all records, channels added
+  std::size_t bright_count() const { return bright_; }  ///< cells that keep less than all
+  double area() const { return area_; }                 ///< m^2: of all cells that have energy
+  double energy() const { return energy_; }             ///< W: of all records, channels added
   /// W/m^2, channels added: energy() / area(); 0 without area.
   double mean_irradiance() const { return area_ > 0 ? energy_ / area_ : 0; }
 
  private:
   struct Key {
     std::array<std::int64_t, 3> cube;
-    std::uint32_t side;   ///< axis and object
+    std::uint32_t side;  ///< axis and object
     bool operator==(const Key&) const = default;
     auto operator<=>(const Key&) const = default;
   };
@@ -64,7 +65,7 @@ class EnergyCells {
   struct Cell {
     std::array<WindowSum, 3> flux;
     std::uint64_t count = 0;
-    std::uint64_t slant = 0;   ///< sum of 1 / |cosine of the normal to the axis|, in units of 2^-16
+    std::uint64_t slant = 0;  ///< sum of 1 / |cosine of the normal to the axis|, in units of 2^-16
     PlanarHull hull;
     double low_share = 1;
   };
@@ -77,8 +78,9 @@ class EnergyCells {
   double area_ = 0, energy_ = 0;
 };
 
-/// Finds the edge of cells that hold 256 records each in the mean: on surfaces, squares 16 mean distances wide. Keeps the
-/// records with the smallest hashes of their positions, 16384 places, so that memory is bounded and order does not matter.
+/// Finds the edge of cells that hold 256 records each in the mean: on surfaces, squares 16 mean distances wide. Keeps
+/// the records with the smallest hashes of their positions, 16384 places, so that memory is bounded and order does not
+/// matter.
 class CellEdge {
  public:
   void add(Vec3 position);
@@ -91,7 +93,7 @@ class CellEdge {
     Vec3 position;
     std::uint64_t count;
   };
-  std::unordered_map<std::uint64_t, std::size_t> index_;   ///< of places_ by hash
+  std::unordered_map<std::uint64_t, std::size_t> index_;  ///< of places_ by hash
   std::vector<Place> places_;
   std::uint64_t limit_ = ~std::uint64_t(0), total_ = 0;
   void trim();

@@ -21,8 +21,12 @@ void require_valid(const IrradianceOptions& options) {
 }
 
 PhotonQuery make_query(Vec3 point, Vec3 normal, const IrradianceOptions& options) {
-  return {.point = point, .normal = normal, .max_radius = options.max_radius, .min_cos = options.min_cos,
-          .flattening = options.flattening, .kinds = options.kinds};
+  return {.point = point,
+          .normal = normal,
+          .max_radius = options.max_radius,
+          .min_cos = options.min_cos,
+          .flattening = options.flattening,
+          .kinds = options.kinds};
 }
 
 Rgbd sum_flux(const PhotonIndex& index, std::span<const std::uint32_t> photons) {
@@ -35,8 +39,7 @@ IrradianceEstimate divide_by_disc(Rgbd flux, double radius2, std::size_t count) 
   return {flux / (std::numbers::pi * radius2), float(std::sqrt(radius2)), std::uint32_t(count)};
 }
 
-IrradianceEstimate estimate_within(const PhotonIndex& index, PhotonQuery query, float radius,
-                                   NeighbourList& scratch) {
+IrradianceEstimate estimate_within(const PhotonIndex& index, PhotonQuery query, float radius, NeighbourList& scratch) {
   query.max_radius = radius;
   index.find_within(query, scratch);
   return divide_by_disc(sum_flux(index, scratch.photons()), double(radius) * radius, scratch.count());
@@ -74,9 +77,8 @@ IrradianceEstimate estimate_irradiance_fixed(const PhotonIndex& index, Vec3 poin
   return estimate_within(index, make_query(point, normal, options), options.max_radius, scratch);
 }
 
-void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points,
-                          std::span<const Vec3> normals, const IrradianceOptions& options,
-                          std::span<IrradianceEstimate> results) {
+void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points, std::span<const Vec3> normals,
+                          const IrradianceOptions& options, std::span<IrradianceEstimate> results) {
   require_valid(options);
   if (points.size() != normals.size() || points.size() != results.size())
     throw std::invalid_argument("irradiance estimate: as many normals and results as points");
@@ -84,8 +86,7 @@ void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points
   parallel_chunks(order.size(), 512, [&](std::size_t first, std::size_t last) {
     NeighbourList scratch;
     for (std::size_t i = first; i < last; ++i)
-      results[order[i]] =
-          estimate_irradiance(index, points[order[i]], normals[order[i]], options, scratch);
+      results[order[i]] = estimate_irradiance(index, points[order[i]], normals[order[i]], options, scratch);
   });
 }
 

@@ -8,18 +8,18 @@
 namespace tempolux {
 
 struct IrradianceOptions {
-  int neighbours = 50;           ///< k, 2 .. kMaxNeighbours
+  int neighbours = 50;                                        ///< k, 2 .. kMaxNeighbours
   float max_radius = std::numeric_limits<float>::infinity();  ///< m, > 0; photons beyond it are not used
-  float min_radius = 0;          ///< m; the estimate never looks closer than this or the index's resolution
-  float min_cos = 0.1f;          ///< of the photon's and the point's normal: keeps a thin wall's sides apart
-  float flattening = 10;         ///< ellipsoid 1 : 1/flattening, thin along the normal (photon_index.h)
+  float min_radius = 0;   ///< m; the estimate never looks closer than this or the index's resolution
+  float min_cos = 0.1f;   ///< of the photon's and the point's normal: keeps a thin wall's sides apart
+  float flattening = 10;  ///< ellipsoid 1 : 1/flattening, thin along the normal (photon_index.h)
   std::uint8_t kinds = kAllKinds;
 };
 
 struct IrradianceEstimate {
-  Rgbd irradiance;               ///< W/m^2; negative where a dynamic map takes light away
-  float radius = 0;              ///< m, of the disc that was divided by; 0: no estimate was possible
-  std::uint32_t count = 0;       ///< photons summed
+  Rgbd irradiance;          ///< W/m^2; negative where a dynamic map takes light away
+  float radius = 0;         ///< m, of the disc that was divided by; 0: no estimate was possible
+  std::uint32_t count = 0;  ///< photons summed
 };
 
 /// Irradiance at a surface point from the k nearest photons that pass the options' tests:
@@ -51,8 +51,7 @@ IrradianceEstimate estimate_irradiance_fixed(const PhotonIndex& index, Vec3 poin
 
 /// estimate_irradiance for many points, given in any order: visits them along a space-filling curve, in
 /// parallel, and writes results[i] for points[i]. The three spans have one length.
-void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points,
-                          std::span<const Vec3> normals, const IrradianceOptions& options,
-                          std::span<IrradianceEstimate> results);
+void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points, std::span<const Vec3> normals,
+                          const IrradianceOptions& options, std::span<IrradianceEstimate> results);
 
 }  // namespace tempolux

@@ -14,9 +14,9 @@ constexpr std::size_t kCodeChunk = 1 << 14;
 
 /// Where the bits of each axis go in the code, and how coordinates become cells.
 struct CurveLayout {
-  Vec3 lower, scale;                         // cell = (p - lower) * scale
+  Vec3 lower, scale;  // cell = (p - lower) * scale
   std::array<float, 3> last_cell{};
-  std::array<std::uint32_t, 3> bits{};       // positions of the axis's bits in the code
+  std::array<std::uint32_t, 3> bits{};  // positions of the axis's bits in the code
 
   explicit CurveLayout(const Box3& box) : lower(box.lower) {
     const Vec3 extent = box.upper - box.lower;

@@ -12,8 +12,8 @@ std::size_t count_up_to(const CandidateList& list, float bound) {
   const __m256 limit = _mm256_set1_ps(bound);
   __m256i sum = _mm256_setzero_si256();
   for (std::size_t i = 0; i < list.count; i += 8)
-    sum = _mm256_sub_epi32(sum, _mm256_castps_si256(_mm256_cmp_ps(_mm256_loadu_ps(list.distance2 + i), limit,
-                                                                  _CMP_LE_OQ)));
+    sum = _mm256_sub_epi32(sum,
+                           _mm256_castps_si256(_mm256_cmp_ps(_mm256_loadu_ps(list.distance2 + i), limit, _CMP_LE_OQ)));
   __m128i half = _mm_add_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
   half = _mm_add_epi32(half, _mm_shuffle_epi32(half, 0x4e));
   half = _mm_add_epi32(half, _mm_shuffle_epi32(half, 0xb1));
@@ -32,7 +32,7 @@ float largest(const CandidateList& list) {
 
 struct Threshold {
   float value;
-  std::size_t count;   ///< entries <= value, >= k; more than k only if several equal the k-th
+  std::size_t count;  ///< entries <= value, >= k; more than k only if several equal the k-th
 };
 
 /// A value with exactly k entries up to it, if equal entries allow. Counting is so fast that the value is

@@ -32,11 +32,10 @@ struct CandidateList {
 
   /// Appends the lanes set in `mask`.
   void append(__m256 d2, __m256i photons, unsigned mask) {
-    const __m256i lanes = _mm256_cvtepu8_epi32(
-        _mm_loadl_epi64(reinterpret_cast<const __m128i*>(kCompressLanes[mask].data())));
+    const __m256i lanes =
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kCompressLanes[mask].data())));
     _mm256_storeu_ps(distance2 + count, _mm256_permutevar8x32_ps(d2, lanes));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(photon + count),
-                        _mm256_permutevar8x32_epi32(photons, lanes));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(photon + count), _mm256_permutevar8x32_epi32(photons, lanes));
     count += std::size_t(std::popcount(mask));
   }
 };

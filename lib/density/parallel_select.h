@@ -19,9 +19,10 @@ std::size_t parallel_partition(std::span<T> values, std::size_t chunk, const Bel
     std::size_t first, last;
     std::size_t length() const { return last - first; }
   };
-  std::vector<Run> low((values.size() + chunk - 1) / chunk);   // by chunk: its values that go in front
+  std::vector<Run> low((values.size() + chunk - 1) / chunk);  // by chunk: its values that go in front
   parallel_chunks(values.size(), chunk, [&](std::size_t first, std::size_t last) {
-    const auto middle = std::partition(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(last), below);
+    const auto middle =
+        std::partition(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(last), below);
     low[first / chunk] = {first, std::size_t(middle - values.begin())};
   });
   std::size_t border = 0;
@@ -56,11 +57,13 @@ std::size_t parallel_partition(std::span<T> values, std::size_t chunk, const Bel
   return border;
 }
 
-/// As std::nth_element(values.begin(), values.begin() + n, values.end(), less): less is a strict order without ties. A sample
-/// gives two values that lie close before and behind the one sought; all threads part off what is outside of them.
+/// As std::nth_element(values.begin(), values.begin() + n, values.end(), less): less is a strict order without ties. A
+/// sample gives two values that lie close before and behind the one sought; all threads part off what is outside of
+/// them.
 template <class T, class Less>
 void parallel_nth_element(std::span<T> values, std::size_t n, const Less& less) {
-  constexpr std::size_t kSample = 1 << 10, kMargin = kSample / 16, kChunk = 1 << 15;   // 4 standard deviations of a median's rank
+  constexpr std::size_t kSample = 1 << 10, kMargin = kSample / 16,
+                        kChunk = 1 << 15;  // 4 standard deviations of a median's rank
   if (values.size() >= 4 * kChunk) {
     std::vector<T> sample;
     for (std::size_t i = 0; i < kSample; ++i) sample.push_back(values[i * values.size() / kSample]);

@@ -38,8 +38,7 @@ std::unique_ptr<T[]> room_for(std::size_t count) {
 template <int axis, class Item>
 void select(std::span<Item> items, std::size_t n) {
   parallel_nth_element(items, n, [](const Item& a, const Item& b) {
-    return a.position[axis] < b.position[axis] ||
-           (a.position[axis] == b.position[axis] && a.source < b.source);
+    return a.position[axis] < b.position[axis] || (a.position[axis] == b.position[axis] && a.source < b.source);
   });
 }
 
@@ -55,8 +54,9 @@ template <class Item>
 Box3 box_of_many(const Item* first, const Item* last) {
   const auto count = std::size_t(last - first);
   std::vector<Box3> boxes((count + kBoxChunk - 1) / kBoxChunk);
-  parallel_chunks(count, kBoxChunk,
-                  [&](std::size_t begin, std::size_t end) { boxes[begin / kBoxChunk] = box_of(first + begin, first + end); });
+  parallel_chunks(count, kBoxChunk, [&](std::size_t begin, std::size_t end) {
+    boxes[begin / kBoxChunk] = box_of(first + begin, first + end);
+  });
   Box3 whole;
   for (const Box3& box : boxes) whole.add(box);
   return whole;
@@ -105,8 +105,7 @@ void order_as_tree(std::span<Item> items, std::size_t leaf_size) {
     std::erase_if(halves, [](const Range& r) { return r.first == r.last; });
     ranges = std::move(halves);
   }
-  parallel_chunks(ranges.size(), 1,
-                  [&](std::size_t i, std::size_t) { split_to_leaves(items, leaf_size, ranges[i]); });
+  parallel_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t) { split_to_leaves(items, leaf_size, ranges[i]); });
 }
 
 /// Ten bits per component (signed, 511 is 1) and two for the kind.
@@ -129,9 +128,10 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
   if (photons.size() > std::size_t(1) << 31) throw std::length_error("PhotonIndex: more than 2^31 photons");
   const auto is_wanted = [kinds](const formats::Photon& photon) { return (kind_bit(photon.kind) & kinds) != 0; };
   const std::size_t chunks = (photons.size() + kChunk - 1) / kChunk;
-  std::vector<std::size_t> places(chunks + 1, 0);   // by chunk: where its photons begin
+  std::vector<std::size_t> places(chunks + 1, 0);  // by chunk: where its photons begin
   parallel_chunks(photons.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    places[first / kChunk + 1] = std::size_t(std::count_if(&photons[first], &photons[first] + (last - first), is_wanted));
+    places[first / kChunk + 1] =
+        std::size_t(std::count_if(&photons[first], &photons[first] + (last - first), is_wanted));
   });
   for (std::size_t chunk = 0; chunk < chunks; ++chunk) places[chunk + 1] += places[chunk];
   size_ = places.back();

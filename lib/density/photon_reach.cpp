@@ -8,16 +8,18 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kAsked = 1000;
-constexpr std::size_t kStray = 20;   ///< one photon in so many is farther from others than the reach
+constexpr std::size_t kStray = 20;  ///< one photon in so many is farther from others than the reach
 
 }  // namespace
 
-float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, float flattening, const std::function<bool(Vec3)>& where) {
+float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, float flattening,
+                   const std::function<bool(Vec3)>& where) {
   if (index.size() == 0) return 0;
   std::vector<std::size_t> meant;
   for (std::size_t i = 0; where && i < index.size(); ++i)
     if (where(index.position(i))) meant.push_back(i);
-  const std::size_t count = meant.empty() ? index.size() : meant.size(), step = std::max<std::size_t>(1, count / kAsked);
+  const std::size_t count = meant.empty() ? index.size() : meant.size(),
+                    step = std::max<std::size_t>(1, count / kAsked);
   NeighbourList found;
   std::vector<float> distance2;
   for (std::size_t j = 0; j < count; j += step) {
@@ -27,7 +29,7 @@ float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, floa
     query.normal = index.normal(i);
     query.min_cos = min_cos;
     query.flattening = flattening;
-    index.find_nearest(query, std::min(neighbours + 1, kMaxNeighbours), found);   // it finds itself
+    index.find_nearest(query, std::min(neighbours + 1, kMaxNeighbours), found);  // it finds itself
     if (found.count() > 0) distance2.push_back(found.distance2()[found.farthest()]);
   }
   if (distance2.empty()) return index.resolution();

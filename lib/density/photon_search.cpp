@@ -27,7 +27,7 @@ struct PhotonSearch {
   /// Everything in it comes after `last_key` if key > last_key.
   struct Entry {
     std::uint64_t key;
-    unsigned level;   // of the node; its number follows from the first photon
+    unsigned level;  // of the node; its number follows from the first photon
   };
   /// Subtrees still to visit, the next one on top. A level adds at most 7, and 2^31 photons have 9 levels.
   struct Stack {
@@ -54,12 +54,18 @@ struct PhotonSearch {
   std::uint64_t last_key;
 
   PhotonSearch(const PhotonIndex& index_, const PhotonQuery& query, NeighbourList& found_)
-      : index(index_), found(found_), list{found_.distance2_.data(), found_.photon_.data()},
-        px(_mm256_set1_ps(query.point.x)), py(_mm256_set1_ps(query.point.y)),
-        pz(_mm256_set1_ps(query.point.z)), nx(_mm256_set1_ps(query.normal.x)),
-        ny(_mm256_set1_ps(query.normal.y)), nz(_mm256_set1_ps(query.normal.z)),
+      : index(index_),
+        found(found_),
+        list{found_.distance2_.data(), found_.photon_.data()},
+        px(_mm256_set1_ps(query.point.x)),
+        py(_mm256_set1_ps(query.point.y)),
+        pz(_mm256_set1_ps(query.point.z)),
+        nx(_mm256_set1_ps(query.normal.x)),
+        ny(_mm256_set1_ps(query.normal.y)),
+        nz(_mm256_set1_ps(query.normal.z)),
         flat_factor(_mm256_set1_ps(query.flattening * query.flattening - 1)),
-        min_dot(_mm256_set1_ps(query.min_cos * 511)), kinds(_mm256_set1_epi32(query.kinds)) {
+        min_dot(_mm256_set1_ps(query.min_cos * 511)),
+        kinds(_mm256_set1_epi32(query.kinds)) {
     set_bound(query.max_radius * query.max_radius, 0xffffffffu);
   }
 
@@ -81,23 +87,24 @@ struct PhotonSearch {
 
   __m256 box_distance2(const BoxTree::Node& node) const {
     const auto along = [](const float* lower, const float* upper, __m256 p) {
-      const __m256 d = _mm256_max_ps(_mm256_sub_ps(_mm256_load_ps(lower), p),
-                                     _mm256_sub_ps(p, _mm256_load_ps(upper)));
+      const __m256 d = _mm256_max_ps(_mm256_sub_ps(_mm256_load_ps(lower), p), _mm256_sub_ps(p, _mm256_load_ps(upper)));
       const __m256 outside = _mm256_max_ps(_mm256_setzero_ps(), d);  // NaN of a missing child stays NaN
       return _mm256_mul_ps(outside, outside);
     };
-    return _mm256_add_ps(_mm256_add_ps(along(node.lower[0], node.upper[0], px),
-                                       along(node.lower[1], node.upper[1], py)),
-                         along(node.lower[2], node.upper[2], pz));
+    return _mm256_add_ps(
+        _mm256_add_ps(along(node.lower[0], node.upper[0], px), along(node.lower[1], node.upper[1], py)),
+        along(node.lower[2], node.upper[2], pz));
   }
 
-  /// The children in which a photon may pass the test of normals: a bound of the cosine, with the roundings of filter().
+  /// The children in which a photon may pass the test of normals: a bound of the cosine, with the roundings of
+  /// filter().
   __m256 may_face(const BoxTree::Node& node) const {
     const auto most = [](const float* lower, const float* upper, __m256 n) {
       return _mm256_max_ps(_mm256_mul_ps(_mm256_load_ps(lower), n), _mm256_mul_ps(_mm256_load_ps(upper), n));
     };
-    const __m256 cosine = _mm256_add_ps(
-        _mm256_add_ps(most(node.lower[0], node.upper[0], nx), most(node.lower[1], node.upper[1], ny)), most(node.lower[2], node.upper[2], nz));
+    const __m256 cosine =
+        _mm256_add_ps(_mm256_add_ps(most(node.lower[0], node.upper[0], nx), most(node.lower[1], node.upper[1], ny)),
+                      most(node.lower[2], node.upper[2], nz));
     return _mm256_cmp_ps(cosine, min_dot, _CMP_GT_OQ);
   }
 
@@ -118,29 +125,26 @@ struct PhotonSearch {
   template <bool kFilter, bool kFlat>
   void scan_leaf(std::uint32_t first) {
     const PhotonIndex::Leaf& leaf = index.leaves_[first >> kLeafBits];
-    __m256i photons = _mm256_add_epi32(_mm256_set1_epi32(int(first)),
-                                       _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    __m256i photons = _mm256_add_epi32(_mm256_set1_epi32(int(first)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     for (std::size_t i = 0; i < PhotonIndex::kLeafSize; i += 8) {
       const __m256 dx = _mm256_sub_ps(_mm256_load_ps(leaf.x + i), px);
       const __m256 dy = _mm256_sub_ps(_mm256_load_ps(leaf.y + i), py);
       const __m256 dz = _mm256_sub_ps(_mm256_load_ps(leaf.z + i), pz);
-      __m256 d2 = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)),
-                                _mm256_mul_ps(dz, dz));
+      __m256 d2 = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
       if constexpr (kFlat) {
-        const __m256 h = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, nx), _mm256_mul_ps(dy, ny)),
-                                       _mm256_mul_ps(dz, nz));
+        const __m256 h =
+            _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, nx), _mm256_mul_ps(dy, ny)), _mm256_mul_ps(dz, nz));
         d2 = _mm256_add_ps(d2, _mm256_mul_ps(flat_factor, _mm256_mul_ps(h, h)));
       }
       __m256 pass = _mm256_cmp_ps(d2, bound, _CMP_LE_OQ);
-      if constexpr (kFilter)
-        pass = _mm256_and_ps(pass, filter(index.filters_[first >> kLeafBits].code + i));
+      if constexpr (kFilter) pass = _mm256_and_ps(pass, filter(index.filters_[first >> kLeafBits].code + i));
       list.append(d2, photons, unsigned(_mm256_movemask_ps(pass)));
       photons = _mm256_add_epi32(photons, _mm256_set1_epi32(8));
     }
   }
 
-  /// The children of a node within the bound, nearest first (kSorted) or in tree order; of a query that asks for normals (kFilter)
-  /// not those that face elsewhere.
+  /// The children of a node within the bound, nearest first (kSorted) or in tree order; of a query that asks for
+  /// normals (kFilter) not those that face elsewhere.
   template <bool kSorted, bool kFilter>
   unsigned children_within(Entry entry, std::array<std::uint64_t, 8>& keys) const {
     const std::uint32_t first = std::uint32_t(entry.key);
@@ -193,7 +197,7 @@ struct PhotonSearch {
   /// The k nearest within the bound, in tree order. Fast if the bound is not much too large.
   template <bool kFilter, bool kFlat>
   void collect(std::size_t k) {
-    const std::size_t limit = 2 * k + 32;   // of candidates before the bound is tightened
+    const std::size_t limit = 2 * k + 32;  // of candidates before the bound is tightened
     reserve(limit + PhotonIndex::kLeafSize);
     list.count = 0;
     Stack stack(root());
@@ -280,9 +284,7 @@ void PhotonIndex::find_within(const PhotonQuery& query, NeighbourList& found) co
   found.count_ = 0;
   if (size_ == 0 || !is_finite(query.point)) return;
   PhotonSearch search(*this, query, found);
-  specialised(query, [&](auto filter, auto flat) {
-    search.within<decltype(filter)::value, decltype(flat)::value>();
-  });
+  specialised(query, [&](auto filter, auto flat) { search.within<decltype(filter)::value, decltype(flat)::value>(); });
   found.count_ = search.list.count;
   found.farthest_ = 0;
 }

@@ -10,11 +10,12 @@
 
 namespace tempolux {
 
-/// What it was made of must outlive it. With directions (one for each photon) normal maps and coats are left out of the flux of kind
-/// caustic, and who looks applies them (received_share); without, all carry what a Lambert lobe gets of it (formats/photons/photons.md, section 5).
+/// What it was made of must outlive it. With directions (one for each photon) normal maps and coats are left out of the
+/// flux of kind caustic, and who looks applies them (received_share); without, all carry what a Lambert lobe gets of it
+/// (formats/photons/photons.md, section 5).
 struct PhotonView {
   std::span<const formats::Photon> photons;
-  std::span<const std::array<std::uint16_t, 2>> directions;   ///< octahedral wi; or none
+  std::span<const std::array<std::uint16_t, 2>> directions;  ///< octahedral wi; or none
 
   PhotonView() = default;
   PhotonView(std::span<const formats::Photon> all) : photons(all) {}

@@ -7,7 +7,7 @@ namespace tempolux {
 namespace {
 
 constexpr double kSteps = 65536;
-constexpr std::size_t kKept = 64;   ///< points within the hull that are kept before it is made again
+constexpr std::size_t kKept = 64;  ///< points within the hull that are kept before it is made again
 
 std::int32_t step(double t) { return std::int32_t(std::clamp(std::floor(t * kSteps), 0.0, kSteps - 1)); }
 
@@ -32,7 +32,7 @@ std::vector<PlanarHull::Corner> PlanarHull::corners() const {
       while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
       hull.push_back(point);
     }
-    hull.pop_back();   // it begins the other side
+    hull.pop_back();  // it begins the other side
     std::reverse(sorted.begin(), sorted.end());
   }
   return hull;

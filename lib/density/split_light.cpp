@@ -72,8 +72,8 @@ void add_energy(std::span<const IrradiancePointRecord> points, double area_of_po
     std::array<float, 3> flux{};
     // Finite though the sum of three kinds may not be: a point at the end of what floats hold is as bright as any.
     for (std::size_t c = 0; c < 3; ++c)
-      flux[c] = float(std::min((double(point.direct[c]) + double(point.caustic[c]) + double(point.indirect[c])) *
-                                   area_of_point, 3e38));
+      flux[c] = float(std::min(
+          (double(point.direct[c]) + double(point.caustic[c]) + double(point.indirect[c])) * area_of_point, 3e38));
     cells.add(place_of(point), flux);
   }
 }
@@ -99,7 +99,8 @@ DividedPoints divide(std::span<const IrradiancePointRecord> points, const Energy
   for (const IrradiancePointRecord& point : points) {
     const double share = cells.low_share(place_of(point));
     IrradiancePointRecord low = point, high = point;
-    for (const auto kind : {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect}) {
+    for (const auto kind :
+         {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect}) {
       const DividedFlux part = divide_channels(point.*kind, share);
       low.*kind = part.low, high.*kind = part.high;
     }
@@ -113,10 +114,13 @@ std::vector<float> join_parts(std::span<IrradiancePointRecord> low, std::span<co
   std::vector<float> shares(low.size(), 0.0f);
   std::size_t at = 0;
   for (const IrradiancePointRecord& bright : high) {
-    while (at < low.size() && (low[at].position != bright.position || low[at].normal != bright.normal || low[at].object != bright.object)) ++at;
+    while (at < low.size() &&
+           (low[at].position != bright.position || low[at].normal != bright.normal || low[at].object != bright.object))
+      ++at;
     if (at == low.size()) return {};
     double part = 0, whole = 0;
-    for (const auto kind : {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect})
+    for (const auto kind :
+         {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect})
       for (std::size_t c = 0; c < 3; ++c) {
         (low[at].*kind)[c] += (bright.*kind)[c];
         part += double((bright.*kind)[c]);

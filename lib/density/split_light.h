@@ -14,8 +14,8 @@ struct DividedValue {
   float low = 0, high = 0;
 };
 
-/// low + high == value without rounding; low is share * value to 6e-8 of the value. share is in [0, 1]. The larger of the
-/// two is rounded and the smaller is what is left, which a float32 holds exactly (Sterbenz). Below 2^-100 the
+/// low + high == value without rounding; low is share * value to 6e-8 of the value. share is in [0, 1]. The larger of
+/// the two is rounded and the smaller is what is left, which a float32 holds exactly (Sterbenz). Below 2^-100 the
 /// left-over could be a denormal number, which processors flush to zero: the value stays whole, with the larger part.
 DividedValue divide(float value, double share);
 
@@ -35,18 +35,22 @@ struct DividedPhotons {
 };
 DividedPhotons divide(const formats::PhotonBlock& block, const EnergyCells& cells);
 
-/// The low part has every point; the high part those that have irradiance in it. All kinds of a point are divided alike.
+/// The low part has every point; the high part those that have irradiance in it. All kinds of a point are divided
+/// alike.
 struct DividedPoints {
   std::vector<formats::IrradiancePointRecord> low, high;
 };
 DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, const EnergyCells& cells);
 
-/// The other way: adds the high part to the low one, which becomes the whole, to the last bit. Returns for each point the share that
-/// the high part has of its light, all kinds and channels added; nothing if `high` holds a point that `low` has not, in its order.
-std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low, std::span<const formats::IrradiancePointRecord> high);
+/// The other way: adds the high part to the low one, which becomes the whole, to the last bit. Returns for each point
+/// the share that the high part has of its light, all kinds and channels added; nothing if `high` holds a point that
+/// `low` has not, in its order.
+std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low,
+                              std::span<const formats::IrradiancePointRecord> high);
 
-/// The same of photons: adds the flux of the high part to the low one, which becomes the whole. Photons keep the order of the low part;
-/// those that are in the high part alone come last. `low` and `high` are the two parts of one map: InputError is the caller's.
+/// The same of photons: adds the flux of the high part to the low one, which becomes the whole. Photons keep the order
+/// of the low part; those that are in the high part alone come last. `low` and `high` are the two parts of one map:
+/// InputError is the caller's.
 void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high);
 
 /// Photons of the kinds in `kinds` (bit k: PathKind k), and the others.

@@ -8,16 +8,16 @@
 
 namespace tempolux {
 
-/// Adds |x| of float32 values without error, so that the sum does not depend on their order. All finite float32 values are
-/// multiples of 2^-149 below 2^128: nine windows of 32 bits hold them. Room for 2^31 values. formats::ExactSum keeps
-/// signs and rounds to the nearest, but takes 4 KiB: too much for every cell of a grid.
+/// Adds |x| of float32 values without error, so that the sum does not depend on their order. All finite float32 values
+/// are multiples of 2^-149 below 2^128: nine windows of 32 bits hold them. Room for 2^31 values. formats::ExactSum
+/// keeps signs and rounds to the nearest, but takes 4 KiB: too much for every cell of a grid.
 class WindowSum {
  public:
   /// `value` must be finite. Works on bits: small numbers count though the processor flushes them to zero.
   void add(float value) {
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(value) & 0x7fffffff, exponent = bits >> 23;
     const std::uint64_t mantissa = (bits & 0x7fffff) | (std::uint32_t(exponent != 0) << 23);
-    const std::uint32_t unit = exponent > 0 ? exponent - 1 : 0;   // of the mantissa: 2^(unit - 149)
+    const std::uint32_t unit = exponent > 0 ? exponent - 1 : 0;  // of the mantissa: 2^(unit - 149)
     const std::uint64_t shifted = mantissa << (unit & 31);
     windows_[unit >> 5] += shifted & 0xffffffff;
     windows_[(unit >> 5) + 1] += shifted >> 32;
@@ -25,12 +25,13 @@ class WindowSum {
   /// The sum as a double: windows added from the largest down, rounded after each; equal windows give equal bytes.
   double value() const {
     double sum = 0;
-    for (int i = int(windows_.size()) - 1; i >= 0; --i) sum += std::ldexp(double(windows_[std::size_t(i)]), 32 * i - 149);
+    for (int i = int(windows_.size()) - 1; i >= 0; --i)
+      sum += std::ldexp(double(windows_[std::size_t(i)]), 32 * i - 149);
     return sum;
   }
 
  private:
-  std::array<std::uint64_t, 9> windows_{};   ///< [i]: multiples of 2^(32 i - 149)
+  std::array<std::uint64_t, 9> windows_{};  ///< [i]: multiples of 2^(32 i - 149)
 };
 
 }  // namespace tempolux

@@ -13,8 +13,8 @@ constexpr int kAround = 3;  ///< pixels
 constexpr int kWindow = (2 * kAround + 1) * (2 * kAround + 1);
 constexpr float kDark = 0.02f;      ///< of the layer's mean
 constexpr float kOwnNoise = 0.25f;  ///< share of a pixel's own noise in its scale
-/// 1 / sum of the squared weights of Neighbourhood::mean: n equal values summed twice have n (2 n^2 + 1) / 3 for the sum of squared
-/// weights, over n^4.
+/// 1 / sum of the squared weights of Neighbourhood::mean: n equal values summed twice have n (2 n^2 + 1) / 3 for the
+/// sum of squared weights, over n^4.
 constexpr float kWorth = [] {
   const float n = 2 * kAround + 1, line = 3 * n * n * n / (2 * n * n + 1);
   return line * line;
@@ -67,10 +67,12 @@ class Choice {
     for_each_pixel([&](std::size_t p, int x, int y) {
       const float w = share(p, x, y);
       for (std::size_t c = 0; c < 3; ++c) {
-        const float m = raw_.a[c][p] / 2 + raw_.b[c][p] / 2, f =   // halves first: their sum may not be a number
-                     (best_.a[c][p] + best_.b[c][p]) / 2;
-        const float mixed = m + w * (f - m);   // light is never negative: rounding must not make it so
-        out[c][p] = counts_[p] ? (m >= 0 ? std::max(mixed, 0.0f) : mixed) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
+        const float m = raw_.a[c][p] / 2 + raw_.b[c][p] / 2, f =  // halves first: their sum may not be a number
+                                                             (best_.a[c][p] + best_.b[c][p]) / 2;
+        const float mixed = m + w * (f - m);  // light is never negative: rounding must not make it so
+        out[c][p] = counts_[p]         ? (m >= 0 ? std::max(mixed, 0.0f) : mixed)
+                    : std::isfinite(m) ? m
+                                       : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
       }
     });
     return out;
@@ -96,7 +98,8 @@ class Choice {
     for_each_pixel([&](std::size_t p, int x, int y) {
       float noise = 0;
       for (std::size_t c = 0; c < 3; ++c) noise += std::abs(raw_.a[c][p] - raw_.b[c][p]) / 6;
-      if (counts_[p]) scale_[p] = 1 / squared(std::max(light.at(x, y) / float(kWindow), 0.0f) + dark_ + kOwnNoise * noise);
+      if (counts_[p])
+        scale_[p] = 1 / squared(std::max(light.at(x, y) / float(kWindow), 0.0f) + dark_ + kOwnNoise * noise);
     });
   }
 
@@ -138,7 +141,8 @@ class Choice {
         std::vector<float>& mixed = (best_.*half)[c];
         mixed.assign(count_, 0.0f);
         for (std::size_t k = 0; k < candidates_.size(); ++k)
-          for_each_pixel([&](std::size_t p, int x, int y) { mixed[p] += shares[k].at(x, y) * (candidates_[k].*half)[c][p]; });
+          for_each_pixel(
+              [&](std::size_t p, int x, int y) { mixed[p] += shares[k].at(x, y) * (candidates_[k].*half)[c][p]; });
       }
     std::array<Plane, 3> own;
     for (Plane& plane : own) plane = Plane(near_.width(), near_.height());
@@ -171,11 +175,12 @@ class Choice {
     return e;
   }
 
-  /// w. Inside surfaces the gain may be a standard error more than is found: what is around is worth kWorth pixels, and with noise alone (F - M)^2 is as
-  /// uncertain as V - C.
+  /// w. Inside surfaces the gain may be a standard error more than is found: what is around is worth kWorth pixels, and
+  /// with noise alone (F - M)^2 is as uncertain as V - C.
   float share(std::size_t p, int x, int y) const {
     const float gain = gain_.at(x, y), apart = apart_.at(x, y);
-    const float error = near_.kind(p) == 1 ? std::sqrt(2 * std::max(0.0f, square_.at(x, y) - squared(gain)) / kWorth) : 0;
+    const float error =
+        near_.kind(p) == 1 ? std::sqrt(2 * std::max(0.0f, square_.at(x, y) - squared(gain)) / kWorth) : 0;
     return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 

@@ -1,4 +1,5 @@
-// lib/filter/choose.h -- filtered or raw? Each pixel's mixture has the least squared error that the halves of its samples find.
+// lib/filter/choose.h -- filtered or raw? Each pixel's mixture has the least squared error that the halves of its
+// samples find.
 #pragma once
 
 #include <array>
@@ -39,21 +40,24 @@ class Neighbourhood {
 
 /// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel.
 ///
-/// With A, B the raw halves, f, g a candidate of A alone and of B alone, M = (A + B) / 2 and F = (f + g) / 2, unbiased estimates at a pixel are
+/// With A, B the raw halves, f, g a candidate of A alone and of B alone, M = (A + B) / 2 and F = (f + g) / 2, unbiased
+/// estimates at a pixel are
 ///     of the squared error of M:   V = (A - B)^2 / 4
 ///     of the covariance of both:   C = (f - g) (A - B) / 4
-///     of the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal distribution, 1981].
-/// Each is divided by the square of the light around (at least `dark`) plus a quarter of the pixel's own noise, summed over colours and
-/// averaged over what is around. A pixel's own noise lowers its weight alike in all three: a lone bright sample does not decide for what is
-/// around it. The candidate of the least error is taken; shares of candidates are averaged likewise.
-/// Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012.
+///     of the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal
+///     distribution, 1981].
+/// Each is divided by the square of the light around (at least `dark`) plus a quarter of the pixel's own noise, summed
+/// over colours and averaged over what is around. A pixel's own noise lowers its weight alike in all three: a lone
+/// bright sample does not decide for what is around it. The candidate of the least error is taken; shares of candidates
+/// are averaged likewise. Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012.
 ///
-/// Then that F counts by w = (V - C + s) / (mean of (F - M)^2), from 0 to 1, and M by 1 - w. Inside surfaces s is the standard error of
-/// V - C - (F - M)^2 if there is noise alone; at edges 0. Where both halves are equal M is the answer, to the bit if (A + B) / 2 is.
-/// Pixels with a half that is not finite, or too bright for squares in float32, decide nothing: they are M, or the last candidate where M
-/// is not finite.
+/// Then that F counts by w = (V - C + s) / (mean of (F - M)^2), from 0 to 1, and M by 1 - w. Inside surfaces s is the
+/// standard error of V - C - (F - M)^2 if there is noise alone; at edges 0. Where both halves are equal M is the
+/// answer, to the bit if (A + B) / 2 is. Pixels with a half that is not finite, or too bright for squares in float32,
+/// decide nothing: they are M, or the last candidate where M is not finite.
 ///
-/// All planes have as many elements as there are pixels; `candidates` is not empty. Thread-safe; the same result for any number of threads.
+/// All planes have as many elements as there are pixels; `candidates` is not empty. Thread-safe; the same result for
+/// any number of threads.
 Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
 
 /// Light so dark that a layer is not looked at more closely: 2 % of its mean over the picture [W/m^2/sr].

@@ -16,7 +16,8 @@ constexpr float kLost = std::numeric_limits<float>::quiet_NaN();
 template <class Body>
 void for_each_strip(const Surfaces& of, const Body& body) {
   for_each_row(of.height, [&](int y) {
-    for (std::size_t x0 = 0; x0 < std::size_t(of.width); x0 += kStrip) body(y, x0, std::min(kStrip, std::size_t(of.width) - x0));
+    for (std::size_t x0 = 0; x0 < std::size_t(of.width); x0 += kStrip)
+      body(y, x0, std::min(kStrip, std::size_t(of.width) - x0));
   });
 }
 
@@ -27,7 +28,8 @@ struct Collector::Strip {
   std::size_t x0, count;
 };
 
-Collector::Collector(const WindowFrame& middle, std::size_t half) : middle_(middle), surfaces_(middle.light->surfaces), half_(half) {
+Collector::Collector(const WindowFrame& middle, std::size_t half)
+    : middle_(middle), surfaces_(middle.light->surfaces), half_(half) {
   const Light& own = middle.light->raw[half];
   const auto plane = [&] { return Plane::unset(surfaces_.width, surfaces_.height); };
   for (Plane* each : {&px_, &py_, &right_, &down_, &out_.weight, &edge_weight_}) *each = plane();
@@ -48,7 +50,8 @@ void Collector::start(int direction) {
   direction_ = direction;
   for_each_row(surfaces_.height, [&](int y) {
     for (int x = 0; x < surfaces_.width; ++x) {
-      const FlowFrame::Step step = middle_.flow->step(std::size_t(y) * std::size_t(surfaces_.width) + std::size_t(x), direction);
+      const FlowFrame::Step step =
+          middle_.flow->step(std::size_t(y) * std::size_t(surfaces_.width) + std::size_t(x), direction);
       right_.at(x, y) = step.right;
       down_.at(x, y) = step.down;
       px_.at(x, y) = step.known ? float(x) + step.right : kLost;
@@ -72,9 +75,10 @@ void Collector::add(const WindowFrame& frame) {
   });
 }
 
-/// Where the strip's pixels are in the frame, as places from its pixel (0, 0); weights of those that are lost become 0, others are
-/// multiplied by what the guides agree.
-void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weights, std::array<std::uint32_t, kStrip>& there) {
+/// Where the strip's pixels are in the frame, as places from its pixel (0, 0); weights of those that are lost become 0,
+/// others are multiplied by what the guides agree.
+void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weights,
+                       std::array<std::uint32_t, kStrip>& there) {
   const int y = strip.y;
   const std::size_t x0 = strip.x0, count = strip.count;
   const Surfaces& light = frame.light->surfaces;
@@ -84,7 +88,8 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
   Lane alive;
   std::array<std::uint32_t, kStrip> pixel;  // in images, which have no margin
   for (std::size_t i = 0; i < count; ++i) {
-    const bool inside = px[i] > -0.5f && py[i] > -0.5f && px[i] < right && py[i] < bottom;  // false for what is not a number
+    const bool inside =
+        px[i] > -0.5f && py[i] > -0.5f && px[i] < right && py[i] < bottom;  // false for what is not a number
     const auto cx = std::uint32_t(inside ? int(px[i] + 0.5f) : 0), cy = std::uint32_t(inside ? int(py[i] + 0.5f) : 0);
     there[i] = cy * stride + cx;
     pixel[i] = cy * width + cx;
@@ -107,7 +112,8 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
     }
     const FlowFrame::Step back = frame.flow->step(pixel[i], -direction_), on = frame.flow->step(pixel[i], direction_);
     const float miss_right = step_right[i] + back.right, miss_down = step_down[i] + back.down;
-    const float allowed = kReturn + kReturnShare * std::sqrt(step_right[i] * step_right[i] + step_down[i] * step_down[i]);
+    const float allowed =
+        kReturn + kReturnShare * std::sqrt(step_right[i] * step_right[i] + step_down[i] * step_down[i]);
     const bool returns = back.known && miss_right * miss_right + miss_down * miss_down <= allowed * allowed;
     if (!returns) weights[i] = 0;
     px[i] = returns && on.known ? px[i] + on.right : kLost;
@@ -131,7 +137,8 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
 }
 
 /// Adds what the pixels' places hold. Light of edges counts only as long as none of use is there.
-void Collector::add(const Strip& strip, const LightGroup& frame, const Lane& weights, const std::array<std::uint32_t, kStrip>& there) {
+void Collector::add(const Strip& strip, const LightGroup& frame, const Lane& weights,
+                    const std::array<std::uint32_t, kStrip>& there) {
   const int y = strip.y;
   const std::size_t x0 = strip.x0, count = strip.count;
   float *sum = out_.weight.row(y) + x0, *edges = edge_weight_.row(y) + x0;

@@ -17,12 +17,13 @@ struct WindowFrame {
   const FlowFrame* flow = nullptr;
 };
 
-/// Brings one half of the light of frames together, one frame after the other, so that no more than two need to be in memory. A neighbour
-/// counts as far as the guides of the other half agree with the middle's (value_weight).
+/// Brings one half of the light of frames together, one frame after the other, so that no more than two need to be in
+/// memory. A neighbour counts as far as the guides of the other half agree with the middle's (value_weight).
 ///
-/// Each pixel of the middle is followed from frame to frame. It is lost for good where the nearest pixel lies outside the picture, shows
-/// another object or a normal turned by more than PixelSurfaces::kSameNormal, or has come from elsewhere: the flow there and back ends more
-/// than kReturn pixels, and kReturnShare of its length, from where it began.
+/// Each pixel of the middle is followed from frame to frame. It is lost for good where the nearest pixel lies outside
+/// the picture, shows another object or a normal turned by more than PixelSurfaces::kSameNormal, or has come from
+/// elsewhere: the flow there and back ends more than kReturn pixels, and kReturnShare of its length, from where it
+/// began.
 class Collector {
  public:
   /// What `middle` points to outlives this.
@@ -37,7 +38,8 @@ class Collector {
  private:
   struct Strip;  // pixels of a row
   void follow(const Strip& strip, const WindowFrame& frame, Lane& weights, std::array<std::uint32_t, kStrip>& there);
-  void add(const Strip& strip, const LightGroup& frame, const Lane& weights, const std::array<std::uint32_t, kStrip>& there);
+  void add(const Strip& strip, const LightGroup& frame, const Lane& weights,
+           const std::array<std::uint32_t, kStrip>& there);
 
   const WindowFrame middle_;
   const Surfaces& surfaces_;

@@ -21,7 +21,8 @@ namespace {
 void check_frame(const WindowLight& frame, const WindowLight& other) {
   if (other.width != frame.width || other.height != frame.height)
     throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
-                     std::to_string(other.width) + "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
+                     std::to_string(other.width) + "x" + std::to_string(other.height) +
+                     " pixels; all frames of a window have one size");
   const auto &own = frame.light.group(0), &others = other.light.group(0);
   if (own.has_value() != others.has_value() ||
       (own && (own->layers != others->layers || own->surfaces.albedo[0].empty() != others->surfaces.albedo[0].empty())))
@@ -42,7 +43,8 @@ class Candidates {
     if (scales_ > 0) fitted.push_back(fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance));
     if (scales_ > 1) fitted.push_back(fit(on, fitted[0], &fitted[0], kLarge, variance));
     std::array<std::vector<ColourPlane>, 2> other;
-    for (std::size_t h = 0; h < 2 && !fitted.empty(); ++h) other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted.back()[h]);
+    for (std::size_t h = 0; h < 2 && !fitted.empty(); ++h)
+      other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted.back()[h]);
     if (frames > 1) add_candidate(collected, other);
     for (BothHalves& halves : fitted) {
       for (std::size_t h = 0; h < 2; ++h) fill(fitted.back()[h], halves[h]);
@@ -57,7 +59,8 @@ class Candidates {
     for_each_row(group_.surfaces.height, [&](int y) {
       for (int x = 0; x < group_.surfaces.width; ++x)
         for (std::size_t l = 0; l < light.layers.size() && light.weight.at(x, y) < kFewestPixels; ++l)
-          for (std::size_t c = 0; c < 3 && !light.layers[l][c].empty(); ++c) light.layers[l][c].at(x, y) = largest.layers[l][c].at(x, y);
+          for (std::size_t c = 0; c < 3 && !light.layers[l][c].empty(); ++c)
+            light.layers[l][c].at(x, y) = largest.layers[l][c].at(x, y);
     });
   }
 
@@ -71,7 +74,8 @@ class Candidates {
           std::vector<float>& values = (h == 0 ? candidate.a : candidate.b)[c];
           values.assign(std::size_t(on.width) * std::size_t(on.height), 0.0f);
           if (const Plane& own = light[h].layers[l][c]; !own.empty())
-            resolve({own, other[h].empty() ? none : other[h][l][c], on.albedo[c]}, coverage_, on.width, on.height, values);
+            resolve({own, other[h].empty() ? none : other[h][l][c], on.albedo[c]}, coverage_, on.width, on.height,
+                    values);
         }
     }
   }
@@ -93,7 +97,8 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
     for_each_row(on.height, [&](int y) {
       for (int x = 0; x < on.width; ++x) {
         const std::size_t p = std::size_t(y) * std::size_t(on.width) + std::size_t(x);
-        const float noise = (group.raw[0].layers[l][c].at(x, y) - group.raw[1].layers[l][c].at(x, y)) / 2 * on.albedo_at(c, x, y);
+        const float noise =
+            (group.raw[0].layers[l][c].at(x, y) - group.raw[1].layers[l][c].at(x, y)) / 2 * on.albedo_at(c, x, y);
         raw.a[c][p] += noise;
         raw.b[c][p] -= noise;
       }
@@ -114,7 +119,8 @@ struct FrameFilter::State {
   const FlowFrame& flow;
   FilterOptions options;
   std::size_t before, after, added = 0;
-  std::array<std::optional<Collector>, 2> collectors;  ///< of the matte layers, by half; mirrors' light has no flow of its own
+  std::array<std::optional<Collector>, 2>
+      collectors;  ///< of the matte layers, by half; mirrors' light has no flow of its own
 
   float dark(const Image& image, const std::string& layer) const {
     if (const auto found = options.dark.find(layer); found != options.dark.end()) return found->second;
@@ -129,12 +135,14 @@ struct FrameFilter::State {
     if (g == 0 && collectors[0]) candidates.add({collectors[0]->take(), collectors[1]->take()}, int(1 + added));
     std::vector<std::uint8_t> kinds(image.pixel_count());
     for (int y = 0; y < on.height; ++y)
-      for (int x = 0; x < on.width; ++x) kinds[std::size_t(y) * std::size_t(on.width) + std::size_t(x)] = on.inside.at(x, y) != 0;
+      for (int x = 0; x < on.width; ++x)
+        kinds[std::size_t(y) * std::size_t(on.width) + std::size_t(x)] = on.inside.at(x, y) != 0;
     const Neighbourhood around(std::move(kinds), on.width, on.height);
     for (std::size_t l = 0; l < group.layers.size(); ++l) {
       if (candidates.of(l).empty() || group.raw[0].layers[l][0].empty()) continue;
       Colours chosen = choose(raw_halves(image, group, l), candidates.of(l), around, dark(image, group.layers[l]));
-      for (std::size_t c = 0; c < 3; ++c) float_channel(image, channel_name(group.layers[l], c))->values = std::move(chosen[c]);
+      for (std::size_t c = 0; c < 3; ++c)
+        float_channel(image, channel_name(group.layers[l], c))->values = std::move(chosen[c]);
     }
   }
 };
@@ -144,14 +152,16 @@ FrameFilter::FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::
     : state_(new State{middle, flow, options, before, after, 0, {}}) {
   if (options.scales < 0 || options.scales > kMostScales) throw std::invalid_argument("FrameFilter: scales");
   if (before + after > 0 && middle.guides)
-    for (std::size_t h = 0; h < 2; ++h) state_->collectors[h].emplace(WindowFrame{&*middle.light.group(0), &*middle.guides, &flow}, h);
+    for (std::size_t h = 0; h < 2; ++h)
+      state_->collectors[h].emplace(WindowFrame{&*middle.light.group(0), &*middle.guides, &flow}, h);
 }
 
 FrameFilter::~FrameFilter() = default;
 
 void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
   State& state = *state_;
-  if (state.added >= state.before + state.after) throw std::invalid_argument("FrameFilter: more frames than the window has");
+  if (state.added >= state.before + state.after)
+    throw std::invalid_argument("FrameFilter: more frames than the window has");
   check_frame(state.middle, frame);
   const bool is_after = state.added >= state.before, first = state.added == (is_after ? state.before : 0);
   ++state.added;
@@ -163,7 +173,8 @@ void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
 }
 
 Image FrameFilter::finish(Image image) {
-  if (state_->added != state_->before + state_->after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
+  if (state_->added != state_->before + state_->after)
+    throw std::invalid_argument("FrameFilter: frames of the window are missing");
   const LayerSums before = sum_layers(image);
   const Coverage coverage(image);
   for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
@@ -175,8 +186,8 @@ Image FrameFilter::finish(Image image) {
 
 namespace {
 
-/// Pixels around a tile that its own depend on: the fits' windows, two for what is smoothed and on one surface, the windows of unmix() and
-/// resolve(), those of choose() six times.
+/// Pixels around a tile that its own depend on: the fits' windows, two for what is smoothed and on one surface, the
+/// windows of unmix() and resolve(), those of choose() six times.
 constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
@@ -203,7 +214,8 @@ Image filter_alone(Image image, const FilterOptions& options) {
   constexpr int kWide = 480, kHigh = 270;
   FilterOptions of_tile = options;
   for (const char* layer : {"", "emission", "specular", "direct", "caustic", "indirect"})
-    if (holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) && holds(image, channel_name(layer, 2)))
+    if (holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) &&
+        holds(image, channel_name(layer, 2)))
       of_tile.dark[layer] = dark_of(image.rgb(layer));
   Image out{image.width, image.height, {}, {}, {}, {}};
   for (int top = 0; top < image.height; top += kHigh)
@@ -215,12 +227,14 @@ Image filter_alone(Image image, const FilterOptions& options) {
       const FlowFrame flow;
       tile = FrameFilter(light, flow, 0, 0, of_tile).finish(std::move(tile));
       for (const Channel& channel : tile.channels) {
-        if (channel.values.empty() || !(is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA"))) continue;
+        if (channel.values.empty() || !(is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA")))
+          continue;
         Channel* to = float_channel(out, channel.name);
         std::vector<float>& values = to ? to->values : out.add(channel.name).values;
         for (int y = top; y < std::min(image.height, top + kHigh); ++y)
           std::copy_n(channel.values.data() + std::size_t(y - y0) * std::size_t(tile.width) + std::size_t(left - x0),
-                      std::min(kWide, image.width - left), values.data() + std::size_t(y) * std::size_t(image.width) + std::size_t(left));
+                      std::min(kWide, image.width - left),
+                      values.data() + std::size_t(y) * std::size_t(image.width) + std::size_t(left));
       }
     }
   for (Channel& channel : out.channels) float_channel(image, channel.name)->values = std::move(channel.values);

@@ -18,8 +18,9 @@ inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge
 inline constexpr int kMostScales = 2;
 
 struct FilterOptions {
-  int scales = kMostScales;           ///< 1: small windows alone; 0: filter in time alone
-  std::map<std::string, float> dark;  ///< by layer dark_of() the whole picture (choose.h); without: of the image at hand
+  int scales = kMostScales;  ///< 1: small windows alone; 0: filter in time alone
+  std::map<std::string, float>
+      dark;  ///< by layer dark_of() the whole picture (choose.h); without: of the image at hand
 };
 
 /// A frame of a window: its light, and the first fits of its matte light.
@@ -30,20 +31,22 @@ struct WindowLight {
   WindowLight(const Image& image, bool alone);
 };
 
-/// Filters a frame with those around it. Each half of the light is fitted by itself at each scale (fit.h), alone and with what was
-/// collected along the flow (collect.h); which pixels count is decided by the other half. Each candidate is put together at edges where
-/// `image` has coverage (unmix.h, resolve.h) and multiplied by albedo again. choose() mixes them with the raw layer. R G B is the sum of
-/// the layers, and what it held beside them. Other channels and all attributes stay.
+/// Filters a frame with those around it. Each half of the light is fitted by itself at each scale (fit.h), alone and
+/// with what was collected along the flow (collect.h); which pixels count is decided by the other half. Each candidate
+/// is put together at edges where `image` has coverage (unmix.h, resolve.h) and multiplied by albedo again. choose()
+/// mixes them with the raw layer. R G B is the sum of the layers, and what it held beside them. Other channels and all
+/// attributes stay.
 class FrameFilter {
  public:
   /// middle: made of the image; middle and flow outlive this. before, after: frames of the window.
-  FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after, const FilterOptions& options);
+  FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
+              const FilterOptions& options);
   ~FrameFilter();
   FrameFilter(const FrameFilter&) = delete;
   FrameFilter& operator=(const FrameFilter&) = delete;
 
-  /// The frames of the window in the order in which they are followed: the `before` ones, the nearest first, then the `after` ones. None is
-  /// looked at after the call. InputError if it differs from the middle's in size or layers.
+  /// The frames of the window in the order in which they are followed: the `before` ones, the nearest first, then the
+  /// `after` ones. None is looked at after the call. InputError if it differs from the middle's in size or layers.
   void add(const WindowLight& frame, const FlowFrame& flow);
   /// Once, after all were added.
   Image finish(Image image);
@@ -53,7 +56,8 @@ class FrameFilter {
   std::unique_ptr<State> state_;
 };
 
-/// The same without frames around, tile by tile: little memory beside the image's. The same bytes as FrameFilter's but for rounding.
+/// The same without frames around, tile by tile: little memory beside the image's. The same bytes as FrameFilter's but
+/// for rounding.
 Image filter_alone(Image image, const FilterOptions& options);
 
 }  // namespace tempolux

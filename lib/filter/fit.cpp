@@ -11,7 +11,8 @@
 namespace tempolux {
 namespace {
 
-/// Pulls slopes to 0 as if by pixels kPull times all of them, 1 place away: decides where a window has all its pixels in one column.
+/// Pulls slopes to 0 as if by pixels kPull times all of them, 1 place away: decides where a window has all its pixels
+/// in one column.
 constexpr float kPull = 0.02f;
 constexpr float kPlane = 3;  ///< variance of a plane's value over that of a mean
 constexpr std::size_t kTaps = std::size_t(kMostPlaces) * kMostPlaces;
@@ -24,13 +25,15 @@ struct Moments {
 
 class StripFit {
  public:
-  StripFit(const Surfaces& surfaces, const BothHalves& from, const BothHalves* guides, const FitOptions& options, BothHalves& out)
+  StripFit(const Surfaces& surfaces, const BothHalves& from, const BothHalves* guides, const FitOptions& options,
+           BothHalves& out)
       : surfaces_(surfaces), from_(from), guides_(guides), options_(options), out_(out) {}
 
   void run(int y, std::size_t x0) {
     y_ = y;
     x0_ = x0;
-    count_ = std::min(kEight, std::size_t(surfaces_.width) - x0);  // the last eight may reach into the margin: never stored
+    count_ =
+        std::min(kEight, std::size_t(surfaces_.width) - x0);  // the last eight may reach into the margin: never stored
     Float8* same = same_.data();
     for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
       const SurfaceEight row(surfaces_, y, dy * options_.stride, x0);
@@ -99,7 +102,9 @@ class StripFit {
       const Float8 off = own_guide_[c] - at(light.guide[c], dx, dy);
       difference = multiply_add(off, off, difference);
     }
-    const Float8 z = 1 - difference / (kValueErrors * kValueErrors * (own_variance_ + at(light.guide_variance, dx, dy)) + kTinyVariance);
+    const Float8 z =
+        1 -
+        difference / (kValueErrors * kValueErrors * (own_variance_ + at(light.guide_variance, dx, dy)) + kTinyVariance);
     return where(z > 0, z * z);
   }
 
@@ -110,9 +115,11 @@ class StripFit {
     const Int8 any = moments.one > 0;
     const Float8 one = where(any, moments.one) + where(~any, all8(1)), per_weight = where(any, 1 / one);
     const Float8 mx = moments.x / one, my = moments.y / one, pull = kPull * one;
-    const Float8 xx = moments.xx - moments.x * mx + pull, yy = moments.yy - moments.y * my + pull, xy = moments.xy - moments.x * my;
-    const Float8 determinant = xx * yy - xy * xy;   // positive: pull is
-    const Float8 b = (my * xy - mx * yy) / determinant, c = (mx * xy - my * xx) / determinant, a = per_weight - b * mx - c * my;
+    const Float8 xx = moments.xx - moments.x * mx + pull, yy = moments.yy - moments.y * my + pull,
+                 xy = moments.xy - moments.x * my;
+    const Float8 determinant = xx * yy - xy * xy;  // positive: pull is
+    const Float8 b = (my * xy - mx * yy) / determinant, c = (mx * xy - my * xx) / determinant,
+                 a = per_weight - b * mx - c * my;
     store8(per_weight, per_weight_.data());
     std::size_t tap = 0;
     for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
@@ -122,7 +129,8 @@ class StripFit {
     }
   }
 
-  /// Sum over the window of factors (value - own), for three planes. Differences: what is constant comes out to the bit.
+  /// Sum over the window of factors (value - own), for three planes. Differences: what is constant comes out to the
+  /// bit.
   std::array<Float8, 3> sum_of(const Taps& factors, const ColourPlane& from) const {
     const std::array<Float8, 3> own{at(from[0], 0, 0), at(from[1], 0, 0), at(from[2], 0, 0)};
     Float8 r{}, g{}, b{};
@@ -156,7 +164,8 @@ class StripFit {
     for (std::size_t c = 0; c < 3; ++c) {
       const float* own = from[c].row(y_) + x0_;
       float* value = to[c].row(y_) + x0_;
-      for (std::size_t i = 0; i < count_; ++i) value[i] = std::max(value[i], std::min(own[i] + sums[c][i] * per_weight_[i], 0.0f));
+      for (std::size_t i = 0; i < count_; ++i)
+        value[i] = std::max(value[i], std::min(own[i] + sums[c][i] * per_weight_[i], 0.0f));
     }
   }
 

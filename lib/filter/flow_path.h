@@ -10,11 +10,11 @@
 
 namespace tempolux {
 
-/// Pixel flow of one frame (formats/flow/flow.md; a frame with the channels of --channels motion will do), y down as in pictures.
-/// Where only one direction is there, the other is its opposite. No flow at all: nothing moves.
+/// Pixel flow of one frame (formats/flow/flow.md; a frame with the channels of --channels motion will do), y down as in
+/// pictures. Where only one direction is there, the other is its opposite. No flow at all: nothing moves.
 struct FlowFrame {
   struct Step {
-    float right = 0, down = 0;   ///< pixels
+    float right = 0, down = 0;  ///< pixels
     bool known = true;
   };
   FlowFrame() = default;
@@ -42,10 +42,11 @@ inline constexpr float kReturn = 0.75f, kReturnShare = 0.05f;
 
 inline FlowFrame::Step FlowFrame::step(std::size_t pixel, int direction) const {
   if (empty()) return {};
-  const bool forward = direction > 0 ? has_forward() : !has_backward();   // which of the two is read
+  const bool forward = direction > 0 ? has_forward() : !has_backward();  // which of the two is read
   const float sign = forward == (direction > 0) ? 1.0f : -1.0f;
   const float u = (forward ? forward_u_ : backward_u_)[pixel], v = (forward ? forward_v_ : backward_v_)[pixel];
-  const bool known = (valid_.empty() || (valid_[pixel] & (forward ? 1u : 2u)) != 0) && std::isfinite(u) && std::isfinite(v);
+  const bool known =
+      (valid_.empty() || (valid_[pixel] & (forward ? 1u : 2u)) != 0) && std::isfinite(u) && std::isfinite(v);
   return {sign * u, -sign * v, known};
 }
 

@@ -18,7 +18,8 @@ constexpr std::array<const char*, 3> kMatte{"direct", "caustic", "indirect"};
 constexpr std::array<const char*, 2> kShown{"emission", "specular"};
 
 bool has_colour(const Image& image, const std::string& layer) {
-  return holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) && holds(image, channel_name(layer, 2));
+  return holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) &&
+         holds(image, channel_name(layer, 2));
 }
 
 bool is_black(const Image& image, const std::string& layer) {
@@ -40,10 +41,8 @@ class MadeUpNoise {
       for (std::size_t c = 0; c < 3; ++c) {
         Plane& noise = noise_.emplace_back(on.width, on.height);
         if (group.raw[0].layers[l][c].empty()) continue;
-        if (!told.empty())
-          take(image.find(channel_name(told, c))->values, l, c, noise);
-        else if (!on.albedo[0].empty())
-          estimate(group.raw[0].layers[l][c], noise);
+        if (!told.empty()) take(image.find(channel_name(told, c))->values, l, c, noise);
+        else if (!on.albedo[0].empty()) estimate(group.raw[0].layers[l][c], noise);
       }
   }
   const Plane& of(std::size_t layer, std::size_t c) const { return noise_[3 * layer + c]; }
@@ -51,8 +50,8 @@ class MadeUpNoise {
  private:
   float sign(int x, int y) const { return mix64(std::uint64_t(y) << 32 | std::uint64_t(x)) & 1 ? 1.0f : -1.0f; }
 
-  /// Half the square of the difference to the four pixels beside on the surface: with noise alone its mean is the variance, and smooth
-  /// light adds little to it. Pixels that do not see one surface are left as they are: 0.
+  /// Half the square of the difference to the four pixels beside on the surface: with noise alone its mean is the
+  /// variance, and smooth light adds little to it. Pixels that do not see one surface are left as they are: 0.
   void estimate(const Plane& light, Plane& noise) const {
     const Surfaces& on = group_.surfaces;
     for_each_row(on.height, [&](int y) {
@@ -77,8 +76,10 @@ class MadeUpNoise {
         float sum = 0;
         for (const ColourPlane& layer : group_.raw[0].layers)
           if (!layer[c].empty()) sum += std::abs(layer[c].at(x, y));
-        const float deviation = std::sqrt(variance[std::size_t(y) * std::size_t(on.width) + std::size_t(x)]) / on.albedo_at(c, x, y);
-        const float share = sum > 0 ? std::abs(group_.raw[0].layers[l][c].at(x, y)) / sum : 1 / float(group_.layers.size());
+        const float deviation =
+            std::sqrt(variance[std::size_t(y) * std::size_t(on.width) + std::size_t(x)]) / on.albedo_at(c, x, y);
+        const float share =
+            sum > 0 ? std::abs(group_.raw[0].layers[l][c].at(x, y)) / sum : 1 / float(group_.layers.size());
         noise.at(x, y) = deviation < kLargestLight ? sign(x, y) * deviation * share : 0;  // not a number: 0
       }
     });
@@ -132,7 +133,9 @@ void LightGroup::take_noise(const Image& image) {
       for_each_row(image.height, [&](int y) {
         for (int x = 0; x < image.width; ++x) {
           float noise = made_up ? made_up->of(l, c).at(x, y) : 0;
-          if (channel) noise = channel->values[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] / surfaces.albedo_at(c, x, y);
+          if (channel)
+            noise = channel->values[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] /
+                    surfaces.albedo_at(c, x, y);
           if (!(std::abs(noise) < kLargestLight)) noise = surfaces.use.at(x, y) = 0;
           b.at(x, y) = a.at(x, y) - noise;
           a.at(x, y) += noise;
@@ -148,7 +151,8 @@ void LightGroup::take_noise(const Image& image) {
 
 bool knows_noise(const Image& image) {
   return has_colour(image, "diffuse.variance") || has_colour(image, "variance") || has_colour(image, "albedo") ||
-         std::any_of(kMatte.begin(), kMatte.end(), [&](const std::string& layer) { return holds(image, layer + ".noise.R"); });
+         std::any_of(kMatte.begin(), kMatte.end(),
+                     [&](const std::string& layer) { return holds(image, layer + ".noise.R"); });
 }
 
 void check_noise(const Image& image) {
@@ -164,7 +168,8 @@ FrameLight::FrameLight(const Image& image) {
   for (std::size_t g = 0; g < kGroups; ++g) {
     std::vector<std::string> layers;
     bool noise = g == 0;
-    for (const std::string layer : g == 0 ? std::span<const char* const>(kMatte) : std::span<const char* const>(kShown)) {
+    for (const std::string layer :
+         g == 0 ? std::span<const char* const>(kMatte) : std::span<const char* const>(kShown)) {
       noise = noise || holds(image, layer + ".noise.R");
       if (has_colour(image, layer)) layers.push_back(layer);
     }
@@ -177,7 +182,8 @@ bool is_read_to_filter(const std::string& channel) {
   constexpr std::array<const char*, 17> kGroupsRead{"RGBA",   "direct",   "caustic", "indirect", "emission", "specular",
                                                     "volume", "seen",     "albedo",  "Z",        "N",        "id",
                                                     "motion", "coverage", "samples", "variance", "diffuse"};
-  return std::any_of(kGroupsRead.begin(), kGroupsRead.end(), [&](const char* group) { return is_in_group(channel, group); });
+  return std::any_of(kGroupsRead.begin(), kGroupsRead.end(),
+                     [&](const char* group) { return is_in_group(channel, group); });
 }
 
 }  // namespace tempolux

@@ -39,7 +39,9 @@ LayerSums sum_layers(Image& image) {
       const Channel* layer = float_channel(image, channel_name(kLayersInOrder[l], c));
       if (!layer) continue;
       if (sums[c].empty()) sums[c] = layer->values;
-      else std::transform(layer->values.begin(), layer->values.end(), sums[c].begin(), sums[c].begin(), [](float v, float sum) { return sum + v; });
+      else
+        std::transform(layer->values.begin(), layer->values.end(), sums[c].begin(), sums[c].begin(),
+                       [](float v, float sum) { return sum + v; });
     }
   return sums;
 }

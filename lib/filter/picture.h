@@ -22,11 +22,12 @@ Channel* float_channel(Image& image, const std::string& name);
 using LayerSums = std::array<std::vector<float>, 3>;
 LayerSums sum_layers(Image& image);
 
-/// The picture after its layers have changed: their sum. Where it held more light than its layers, as some of them are not there, it keeps that. Half floats are
-/// off by 2^-11 each: twice that is no light.
+/// The picture after its layers have changed: their sum. Where it held more light than its layers, as some of them are
+/// not there, it keeps that. Half floats are off by 2^-11 each: twice that is no light.
 void renew_picture(const LayerSums& before, const LayerSums& after, Image& image);
 
-/// What is not finite in what passes the filter becomes 0; of depth infinity is allowed, and what is not a number becomes it.
+/// What is not finite in what passes the filter becomes 0; of depth infinity is allowed, and what is not a number
+/// becomes it.
 void leave_numbers(Image& image);
 
 }  // namespace tempolux

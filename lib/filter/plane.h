@@ -1,4 +1,5 @@
-// lib/filter/plane.h -- one number for each pixel, with a margin around the picture, so that windows need no tests at its borders.
+// lib/filter/plane.h -- one number for each pixel, with a margin around the picture, so that windows need no tests at
+// its borders.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,8 @@ class PlaneT {
     PlaneT plane;
     plane.stride_ = std::size_t(width) + 2 * kMargin;
     plane.height_ = height;
-    const std::size_t all = plane.stride_ * (std::size_t(height) + 2 * kMargin), count = all + kMargin;   // eight may be read from any place
+    const std::size_t all = plane.stride_ * (std::size_t(height) + 2 * kMargin),
+                      count = all + kMargin;  // eight may be read from any place
     plane.data_ = std::make_unique_for_overwrite<T[]>(count);
     formats::prefer_large_pages(plane.data_.get(), count * sizeof(T));
     std::fill_n(plane.data_.get() + all, kMargin, T{});

@@ -31,7 +31,8 @@ void resolve(const EdgePlane& light, const Coverage& coverage, int width, int he
     float* to = values.data() + std::size_t(y) * std::size_t(width);
     for (int x = 0; x < width; ++x) {
       if (is_too_bright(to[x])) continue;
-      to[x] = coverage.is_whole(x, y) ? light.own_at(x, y) : composed(own, light.other_at(x, y), coverage, x, y, width, height);
+      to[x] = coverage.is_whole(x, y) ? light.own_at(x, y)
+                                      : composed(own, light.other_at(x, y), coverage, x, y, width, height);
     }
   });
 }

@@ -10,8 +10,8 @@ namespace tempolux {
 
 /// One channel of the light of surfaces: radiance is light times albedo (an empty plane: 1).
 struct EdgePlane {
-  const Plane& own;     ///< by pixel: of its own surface
-  const Plane& other;   ///< of what no centre around shows; an empty plane: black
+  const Plane& own;    ///< by pixel: of its own surface
+  const Plane& other;  ///< of what no centre around shows; an empty plane: black
   const Plane& albedo;
 
   float albedo_at(int x, int y) const { return albedo.empty() ? 1 : albedo.at(x, y); }

@@ -35,7 +35,8 @@ class SurfaceRow {
     const float off = std::abs(other_w_[i] - w_[i] - right - down);
     const float allowed = PixelSurfaces::kSameDepth * w_[i] + std::abs(right) + std::abs(down);
     // Products of conditions, not && : all lanes of a vector do the same.
-    return float(object_[i] == other_object_[i]) * float(facing >= PixelSurfaces::kSameNormal * length2) * float(off <= allowed);
+    return float(object_[i] == other_object_[i]) * float(facing >= PixelSurfaces::kSameNormal * length2) *
+           float(off <= allowed);
   }
 
  private:
@@ -66,7 +67,8 @@ class SurfaceEight {
 
   /// 1 or 0.
   Float8 surface(int dx) const {
-    const Float8 facing = multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));
+    const Float8 facing =
+        multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));
     const Float8 right = w_right_ * float(dx), off = abs8(load8(other_w_ + dx) - expected_ - right);
     const Int8 same = (object_ == load8(other_object_ + dx)) & (facing >= facing_) & (off <= allowed_ + abs8(right));
     return where(same, all8(1));

@@ -8,7 +8,8 @@
 namespace tempolux {
 namespace {
 
-constexpr float kDarkest = 0.01f;  ///< albedo is taken to be at least this: what is nearly black has nearly no light to filter
+constexpr float kDarkest =
+    0.01f;  ///< albedo is taken to be at least this: what is nearly black has nearly no light to filter
 
 Plane plane_of(const Image& image, const std::string& name) {
   const Channel* channel = image.find(name);
@@ -41,7 +42,8 @@ Surfaces::Surfaces(const Image& image, bool seen) : width(image.width), height(i
   ny = plane_of(image, of + "N.Y");
   nz = plane_of(image, of + "N.Z");
   object = PlaneT<std::uint32_t>(width, height);
-  if (const Channel* ids = image.find(of.empty() ? "id.object" : "seen.id"); ids && !ids->ids.empty()) object.take(ids->ids, width);
+  if (const Channel* ids = image.find(of.empty() ? "id.object" : "seen.id"); ids && !ids->ids.empty())
+    object.take(ids->ids, width);
   take_depth(image.find(of + "Z"));
   if (!seen || !of.empty()) take_albedo(image, of + "albedo");
   take_edges(image);
@@ -97,6 +99,8 @@ void Surfaces::take_edges(const Image& image) {
   });
 }
 
-bool Surfaces::on_surface(int x, int y, int dx, int dy) const { return SurfaceRow(*this, y, dx, dy).surface(std::size_t(x)) != 0; }
+bool Surfaces::on_surface(int x, int y, int dx, int dy) const {
+  return SurfaceRow(*this, y, dx, dy).surface(std::size_t(x)) != 0;
+}
 
 }  // namespace tempolux

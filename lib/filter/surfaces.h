@@ -22,10 +22,11 @@ struct Surfaces {
   PlaneT<std::uint32_t> object;
   Plane w, w_right, w_down, nx, ny, nz;  ///< PixelSurfaces
   ColourPlane albedo;                    ///< what radiance is divided by, at least .01; empty planes: nothing
-  Plane use;                             ///< 1: the pixel sees one surface and holds numbers; 0: no other may take light from it
-  Plane inside;                          ///< 1: of use, and the pixels around are on the same surface
+  Plane use;     ///< 1: the pixel sees one surface and holds numbers; 0: no other may take light from it
+  Plane inside;  ///< 1: of use, and the pixels around are on the same surface
 
-  /// Of the first surfaces, or of what mirrors and glass show: seen, where the image has the channels seen.* (formats/frames/frames.md).
+  /// Of the first surfaces, or of what mirrors and glass show: seen, where the image has the channels seen.*
+  /// (formats/frames/frames.md).
   Surfaces(const Image& image, bool seen);
 
   /// Is the pixel (dx, dy) from (x, y) on its surface, as PixelSurfaces::same says, whether it is of use or not?

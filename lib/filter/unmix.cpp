@@ -13,8 +13,8 @@ constexpr std::size_t kMostLayers = 3;  ///< of a group
 
 class Unmixing {
  public:
-  Unmixing(const LightGroup& group, std::size_t half, const Light& collected, const Coverage& coverage, int frames, Light& fitted,
-           std::vector<ColourPlane>& other)
+  Unmixing(const LightGroup& group, std::size_t half, const Light& collected, const Coverage& coverage, int frames,
+           Light& fitted, std::vector<ColourPlane>& other)
       : surfaces_(group.surfaces),
         raw_(group.raw[half]),
         collected_(collected),
@@ -40,7 +40,8 @@ class Unmixing {
         const double mean = count_ > 0 ? s.plain / count_ : double(mixed(l, c, x, y));
         const double fitted = own ? double(fitted_.weight.at(x, y)) / frames_ : 0;  // pixels' worth
         const double plain = fitted > 0 ? 0 : 1;
-        const double unmixed = (s.product + plain * mean + fitted * double(fitted_.layers[l][c].at(x, y))) / (s.square + plain + fitted);
+        const double unmixed =
+            (s.product + plain * mean + fitted * double(fitted_.layers[l][c].at(x, y))) / (s.square + plain + fitted);
         (own ? fitted_.layers : other_)[l][c].at(x, y) = float(std::max(unmixed, std::min(mean, 0.0)));
       }
   }
@@ -97,13 +98,14 @@ class Unmixing {
 
 }  // namespace
 
-std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const Light& collected, const Coverage& coverage, int frames,
-                               Light& fitted) {
+std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const Light& collected,
+                               const Coverage& coverage, int frames, Light& fitted) {
   const Surfaces& surfaces = group.surfaces;
   std::vector<ColourPlane> other(fitted.layers.size());
   const bool any_other = coverage.has_other();
   for (std::size_t l = 0; l < other.size(); ++l)
-    for (std::size_t c = 0; c < 3 && any_other && !fitted.layers[l][c].empty(); ++c) other[l][c] = Plane(surfaces.width, surfaces.height);
+    for (std::size_t c = 0; c < 3 && any_other && !fitted.layers[l][c].empty(); ++c)
+      other[l][c] = Plane(surfaces.width, surfaces.height);
   // Only light of pixels that are known is read, only that of others written: any order will do.
   parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
     Unmixing unmixing(group, half, collected, coverage, frames, fitted, other);

@@ -16,10 +16,11 @@
 namespace tempolux {
 namespace {
 
-/// Sites of a point. Those of a spot are drawn from at random: with 16 of them a cell of points is known to some per cent.
+/// Sites of a point. Those of a spot are drawn from at random: with 16 of them a cell of points is known to some per
+/// cent.
 constexpr double kSitesPerPoint = 16;
-constexpr float kFadeFrom = 4, kFadeTo = 6;   ///< radii R
-constexpr float kCellsPerReach = 8;           ///< of photons that no point stands for, in kBesideLamp spacings
+constexpr float kFadeFrom = 4, kFadeTo = 6;  ///< radii R
+constexpr float kCellsPerReach = 8;          ///< of photons that no point stands for, in kBesideLamp spacings
 
 /// Cubes in which a point that is asked for may be.
 class NearPoints {
@@ -36,7 +37,8 @@ class NearPoints {
  private:
   std::array<std::int64_t, 3> cube(Vec3 p) const {
     std::array<std::int64_t, 3> c;
-    for (int a = 0; a < 3; ++a) c[std::size_t(a)] = std::int64_t(std::floor(std::clamp(double(p[a]) * inverse_, -1e15, 1e15)));
+    for (int a = 0; a < 3; ++a)
+      c[std::size_t(a)] = std::int64_t(std::floor(std::clamp(double(p[a]) * inverse_, -1e15, 1e15)));
     return c;
   }
   static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
@@ -45,7 +47,7 @@ class NearPoints {
     return k;
   }
   double inverse_;
-  std::unordered_set<std::uint64_t> cubes_;   ///< by hash: one too many costs a look-up
+  std::unordered_set<std::uint64_t> cubes_;  ///< by hash: one too many costs a look-up
 };
 
 /// A cube, and the axis that the normal is nearest to.
@@ -53,7 +55,8 @@ std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
   std::uint64_t key = 0;
   int axis = 0;
   for (int a = 0; a < 3; ++a) {
-    key = mix64(key ^ std::uint64_t(std::int64_t(std::floor(std::clamp(photon.place.position[a] * per_metre, -1e15f, 1e15f)))));
+    key = mix64(
+        key ^ std::uint64_t(std::int64_t(std::floor(std::clamp(photon.place.position[a] * per_metre, -1e15f, 1e15f)))));
     if (std::abs(photon.normal[a]) > std::abs(photon.normal[axis])) axis = a;
   }
   return mix64(key ^ std::uint64_t(2 * axis + (photon.normal[axis] > 0)));
@@ -61,16 +64,16 @@ std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
 
 }  // namespace
 
-BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares,
-                           const BrightOptions& options)
+BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points,
+                           std::vector<float> high_shares, const BrightOptions& options)
     : tracer_(tracer),
       points_(points),
       high_(std::move(high_shares)),
       radius_(points.spacing() * std::sqrt(kInvPi)),
       lamp_reach_(kBesideLamp * points.spacing()) {
   high_.resize(points.size(), 0.0f);
-  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share
-  // of it may be sampled explicitly. Beside a lamp direct light has a division of its own.
+  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's
+  // light, so that no share of it may be sampled explicitly. Beside a lamp direct light has a division of its own.
   for (std::uint32_t i = 0; i < high_.size(); ++i)
     if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_even_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
@@ -95,9 +98,12 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   const double spacing = double(points.spacing());
   // May be asked for: up to a cube of `near` beyond them. The pieces of a sphere cover all within 3/4 of its radius.
-  const AimSphere around{Vec3d(box.lower + box.upper) * 0.5, (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
-  const std::vector<PlacedSite> placed = place_sites(tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
-                                                     [&](Vec3 position) { return near.may_hold(position); });
+  const AimSphere around{
+      Vec3d(box.lower + box.upper) * 0.5,
+      (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
+  const std::vector<PlacedSite> placed =
+      place_sites(tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
+                  [&](Vec3 position) { return near.may_hold(position); });
   std::vector<std::optional<Site>> found(placed.size());
   parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) found[i] = site_at(placed[i].place, placed[i].area);
@@ -113,11 +119,12 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
 
 /// Sites of lamps' photons.
 void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
-  std::unordered_map<std::uint64_t, std::uint32_t> cells;   // of places for which no point stands
+  std::unordered_map<std::uint64_t, std::uint32_t> cells;  // of places for which no point stands
   for (const LampPhoton& photon : photons) {
     std::uint32_t spot = photon.point;
     if (spot == kNone)
-      spot = std::uint32_t(high_.size()) + cells.emplace(cell_of(photon, kCellsPerReach / lamp_reach_), std::uint32_t(cells.size())).first->second;
+      spot = std::uint32_t(high_.size()) +
+             cells.emplace(cell_of(photon, kCellsPerReach / lamp_reach_), std::uint32_t(cells.size())).first->second;
     sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, spot, photon.lamp_distance});
   }
 }
@@ -142,11 +149,13 @@ void BrightPoints::gather_spots() {
   tree_.emplace(spots);
 }
 
-/// A site at a place, if the point that stands for it has a high part, and it is not the place's own surface's twin that is met there.
+/// A site at a place, if the point that stands for it has a high part, and it is not the place's own surface's twin
+/// that is met there.
 std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& place, float area) const {
   const float offset = Reach(tracer_).offset();
   Hit hit;
-  if (!tracer_.intersect({place.position + place.normal * (4 * offset), -place.normal, 0, 8 * offset, true}, hit)) return std::nullopt;
+  if (!tracer_.intersect({place.position + place.normal * (4 * offset), -place.normal, 0, 8 * offset, true}, hit))
+    return std::nullopt;
   SurfacePoint there = tracer_.surface_point(hit);
   if (there.object != place.object) return std::nullopt;
   const bool front = dot(there.normal_geometric, place.normal) > 0;
@@ -159,8 +168,10 @@ std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& p
   return Site{there, normal, light->all * high_[light->point], bsdf, light->radius, area, light->point};
 }
 
-/// Where the direct light of a point is not that of the places near it, rays that meet such a place sample it: so do sites.
-void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven, const BrightOptions& options) {
+/// Where the direct light of a point is not that of the places near it, rays that meet such a place sample it: so do
+/// sites.
+void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven,
+                                 const BrightOptions& options) {
   std::vector<IrradiancePoint> sampled;
   for (const std::uint32_t i : uneven) {
     IrradiancePoint point;
@@ -202,7 +213,8 @@ Rgb BrightPoints::radiance(const Site& site, Vec3 wo) const {
   return site.bsdf.diffuse_reflectance(cosine) * site.irradiance * kInvPi;
 }
 
-BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const {
+BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRandom& random,
+                                   GatherCounts& counts) const {
   const SurfacePoint& place = at.place;
   const Vec3 normal = at.normal;
   const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
@@ -215,9 +227,10 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     LightTree::Choice chosen;
     if (!tree_->choose(start, place.position, normal, std::min(u, kOneMinusEpsilon), chosen)) continue;
     const Sites& sites = sites_of_[chosen.light];
-    const Site& site = sites_[sites.first + std::min(sites.count - 1, std::uint32_t(chosen.left * double(sites.count)))];
+    const Site& site =
+        sites_[sites.first + std::min(sites.count - 1, std::uint32_t(chosen.left * double(sites.count)))];
     const Vec3d d(site.place.position - place.position), n(normal), m(site.normal);
-    const double distance = length(d), here = dot(n, d), there = -dot(m, d);   // cosines x distance
+    const double distance = length(d), here = dot(n, d), there = -dot(m, d);  // cosines x distance
     const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
     if (!(here > 0 && there > 0 && dot(wi, geometric) > 0)) continue;
     const float part = share(site, float(distance), at.reads_near);
@@ -230,12 +243,14 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
       seen *= double(media_transmittance(*media, shadow, {random, number, way_shadow}));
     const double d2 = distance * distance, cosine = here / distance;
     const double arrival = at.coat ? double(at.coat->arrival_weight(float(cosine))) : 1;
-    const Rgbd power = seen * (double(site.area) * double(sites.count) * arrival / (chosen.probability * double(samples)));
+    const Rgbd power =
+        seen * (double(site.area) * double(sites.count) * arrival / (chosen.probability * double(samples)));
     const Rgbd e = power * (here * there / (d2 * d2));
     light.irradiance += e;
-    // E = P (n d) (-m d) / d^4, d = y - x: dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4, of which what lies in the plane.
+    // E = P (n d) (-m d) / d^4, d = y - x: dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4, of which
+    // what lies in the plane.
     const Vec3d along = (m - n * dot(m, n)) * here + (d - n * here) * (4 * here * there / d2);
-    const Vec3d turn = cross(n, d) * there;   // (n_i x n) . g is the change of n . d
+    const Vec3d turn = cross(n, d) * there;  // (n_i x n) . g is the change of n . d
     for (int c = 0; c < 3; ++c) {
       light.translational[std::size_t(c)] += along * (power[c] / (d2 * d2));
       light.rotational[std::size_t(c)] += turn * (power[c] / (d2 * d2));

@@ -61,7 +61,8 @@ std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointR
   });
 }
 
-std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame) {
+std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records,
+                                                    const SceneFrame& frame) {
   return converted(records, [moving = MovingObjects(frame)](const IrradianceRecord& record) {
     formats::IrradianceCacheRecord r;
     r.position = array_of(record.position);
@@ -94,8 +95,7 @@ std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCache
     }
     record.radius = r.radius;
     record.radius_unclamped = r.radius_unclamped;
-    if (r.clearance_reach > 0)
-      record.clearance = {r.clearance_reach, std::bit_cast<Clearance::Shares>(r.clearance)};
+    if (r.clearance_reach > 0) record.clearance = {r.clearance_reach, std::bit_cast<Clearance::Shares>(r.clearance)};
     return record;
   });
 }

@@ -15,7 +15,7 @@ struct Shots {
   const GatherDirections directions;
   std::vector<Ray> rays;
   std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> cells;   ///< of the rays
+  std::vector<std::uint32_t> cells;  ///< of the rays
   std::vector<Rgb> radiance;
   std::vector<float> distance;
 
@@ -45,9 +45,11 @@ struct Shots {
 
 }  // namespace
 
-FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
+FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points,
+                         const GatherOptions& options)
     : reach_(tracer), incoming_(tracer, lights, points, options.near_factor, options.bright), options_(options) {
-  for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
+  for (std::size_t i = 0; i < strata_.size(); ++i)
+    strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }
 
 void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record) const {
@@ -55,7 +57,8 @@ void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record
   record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);
 }
 
-IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share) const {
+IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts,
+                                     float ray_share) const {
   thread_local Hemisphere sky;
   thread_local std::vector<std::uint8_t> further;
   std::size_t halvings = 0;
@@ -78,7 +81,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   shoot();
   for (std::size_t i = 0; i < shots.rays.size(); ++i) {
     sky.radiance[shots.cells[i]] = shots.radiance[i];
-    sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);   // 0 for a miss
+    sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);  // 0 for a miss
   }
   IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal);
 
@@ -99,12 +102,15 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   return record;
 }
 
-void FinalGather::add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const {
+void FinalGather::add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record,
+                               GatherCounts& counts) const {
   if (!options_.bright) return;
   const Bsdf bsdf = incoming_.bsdf_at(from, record.normal);
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
   const PathRandom random(options_.seed ^ 0x6272696768740001ull, key);
-  add_bright_light(options_.bright->arriving({from, record.normal, coated ? &bsdf : nullptr}, options_.bright_samples, random, counts), record);
+  add_bright_light(options_.bright->arriving({from, record.normal, coated ? &bsdf : nullptr}, options_.bright_samples,
+                                             random, counts),
+                   record);
 }
 
 }  // namespace tempolux

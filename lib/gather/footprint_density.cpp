@@ -16,27 +16,29 @@ namespace tempolux {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kThin = 64;         ///< times Reach::offset(): radius of an ellipsoid whose height positions can just tell
-constexpr float kLift = 1e-4f;       ///< of a radius: what decoded normals may be off by at its end
+constexpr float kThin = 64;     ///< times Reach::offset(): radius of an ellipsoid whose height positions can just tell
+constexpr float kLift = 1e-4f;  ///< of a radius: what decoded normals may be off by at its end
 constexpr float kAlmost = 0.999999f;
-constexpr int kMostHalvings = 6;     ///< of a footprint's radius, where hardly any of it is surface
+constexpr int kMostHalvings = 6;  ///< of a footprint's radius, where hardly any of it is surface
 constexpr std::size_t kLeavesAtOnce = 16;
 constexpr float kSamePlane = 0.999999f, kGolden = 0.6180340f;
-constexpr int kAreaProbes = 16;   ///< that must arrive where a footprint is not whole; their noise is that of one photon among k
+constexpr int kAreaProbes =
+    16;  ///< that must arrive where a footprint is not whole; their noise is that of one photon among k
 enum : std::uint8_t { kUnknown, kWhole, kNotWhole };
 
 }  // namespace
 
 float received_share(Vec3 wi, Vec3 normal, const LitSurface& at) {
   const Vec3 axis = cross(normal, at.smooth), once = cross(axis, wi);
-  const Vec3 turned = wi + once + cross(axis, once) * (1 / std::max(kMinCos, 1 + dot(normal, at.smooth)));   // Rodrigues
+  const Vec3 turned = wi + once + cross(axis, once) * (1 / std::max(kMinCos, 1 + dot(normal, at.smooth)));  // Rodrigues
   const float cosine = dot(turned, at.shading);
   if (!(cosine > 0)) return 0;
-  return cosine / std::max(kLooksAway, dot(wi, normal)) * (at.bsdf ? at.bsdf->arrival_weight(std::min(1.0f, cosine)) : 1);
+  return cosine / std::max(kLooksAway, dot(wi, normal)) *
+         (at.bsdf ? at.bsdf->arrival_weight(std::min(1.0f, cosine)) : 1);
 }
 
-FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photons,
-                                   const FootprintOptions& options, std::uint8_t kinds, Vec3d shift)
+FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photons, const FootprintOptions& options,
+                                   std::uint8_t kinds, Vec3d shift)
     : options_(options), area_(tracer), index_(photons.photons, kinds, shift) {
   if (empty()) return;
   directed_ = photons.directed();
@@ -76,9 +78,11 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
 
 /// To the k-th of its neighbours.
 float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const {
-  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);   // it finds itself
-  index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening, kAllKinds}, wanted, found);
-  const float radius = int(found.count()) < wanted ? options_.max_radius : std::sqrt(found.distance2()[found.farthest()]);
+  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);  // it finds itself
+  index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening, kAllKinds}, wanted,
+                      found);
+  const float radius =
+      int(found.count()) < wanted ? options_.max_radius : std::sqrt(found.distance2()[found.farthest()]);
   return std::max(std::min(radius, options_.max_radius), area_.offset());
 }
 
@@ -91,7 +95,7 @@ void FootprintDensity::build_tree() {
       const Leaf& leaf = leaves_[i / kLeaf];
       const std::size_t lane = i % kLeaf;
       const float radius = std::sqrt(std::max(leaf.narrow2[lane], 1 / leaf.inverse_r2[lane]));
-      const auto half = [&](float n) {   // of the ellipsoid's box
+      const auto half = [&](float n) {  // of the ellipsoid's box
         return radius * std::sqrt(std::max(0.0f, 1 - n * n + n * n / (leaf.flat[lane] + 1))) * 1.0001f + area_.offset();
       };
       const Vec3 middle = index_.position(i), halves{half(leaf.nx[lane]), half(leaf.ny[lane]), half(leaf.nz[lane])};
@@ -108,7 +112,7 @@ bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Cov
     std::size_t level, node;
   };
   constexpr std::size_t kChildren = BoxTree::kChildren;
-  std::array<Entry, (kChildren - 1) * 12 + 1> stack;   // 2^31 photons have 9 levels
+  std::array<Entry, (kChildren - 1) * 12 + 1> stack;  // 2^31 photons have 9 levels
   std::size_t depth = 0;
   bool wide = true;
   stack[depth++] = {tree_.level_count() - 1, 0};
@@ -116,9 +120,10 @@ bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Cov
     const auto [level, number] = stack[--depth];
     const BoxTree::Node& node = tree_.node(level, number);
     std::array<int, kChildren> inside;
-    for (std::size_t c = 0; c < kChildren; ++c)   // NaN of a missing child is never inside
-      inside[c] = (position.x >= node.lower[0][c]) & (position.x <= node.upper[0][c]) & (position.y >= node.lower[1][c]) &
-                  (position.y <= node.upper[1][c]) & (position.z >= node.lower[2][c]) & (position.z <= node.upper[2][c]);
+    for (std::size_t c = 0; c < kChildren; ++c)  // NaN of a missing child is never inside
+      inside[c] = (position.x >= node.lower[0][c]) & (position.x <= node.upper[0][c]) &
+                  (position.y >= node.lower[1][c]) & (position.y <= node.upper[1][c]) &
+                  (position.z >= node.lower[2][c]) & (position.z <= node.upper[2][c]);
     for (std::size_t c = 0; c < kChildren; ++c) {
       if (!inside[c]) continue;
       if (level == 0) wide &= scan_leaf(kChildren * number + c, position, normal, found);
@@ -169,8 +174,8 @@ FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const
   return extent;
 }
 
-/// Do all footprints of a leaf lie in one whole disc? Spokes of that disc and one of each footprint are looked along: photons
-/// are many where they are dense, and so it costs three rays for each of them.
+/// Do all footprints of a leaf lie in one whole disc? Spokes of that disc and one of each footprint are looked along:
+/// photons are many where they are dense, and so it costs three rays for each of them.
 bool FootprintDensity::leaf_whole(std::size_t number) const {
   std::atomic<std::uint8_t>& known = leaf_whole_[number];
   const std::uint8_t before = known.load(std::memory_order_relaxed);
@@ -197,7 +202,8 @@ bool FootprintDensity::measure_leaf(std::size_t number) const {
   for (std::uint32_t i = first; i < last; ++i) {
     const float phi = 2 * kPi * kGolden * float(i);
     const Vec3 outwards = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
-    if (!area_.whole_towards(index_.position(i), normal, outwards, outer_radius(i), kLift * outer_radius(i))) return false;
+    if (!area_.whole_towards(index_.position(i), normal, outwards, outer_radius(i), kLift * outer_radius(i)))
+      return false;
   }
   return true;
 }
@@ -221,14 +227,16 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
 /// A photon whose light falls on the place if it reaches it.
 struct FootprintDensity::Candidate {
   std::uint32_t photon;
-  Rgbd irradiance;      ///< W/m^2
-  double importance;    ///< >= 0: its channels' sum
+  Rgbd irradiance;    ///< W/m^2
+  double importance;  ///< >= 0: its channels' sum
 };
 
-/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum
-/// `whole`.
+/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced
+/// along their sum `whole`.
 Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
-  const auto reaches = [&](std::uint32_t photon) { return area_.reach()(index_.position(photon), normal_of(photon), position, normal); };
+  const auto reaches = [&](std::uint32_t photon) {
+    return area_.reach()(index_.position(photon), normal_of(photon), position, normal);
+  };
   Rgbd sum{0.0};
   if (options_.asked == 0 || candidates.size() <= std::size_t(options_.asked)) {
     for (const Candidate& c : candidates)
@@ -236,7 +244,8 @@ Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Cand
     return sum;
   }
   const double step = whole / options_.asked;
-  double next = step * double(PathRandom(0x61736b6564ull, gather_key(position, normal, 0)).get1(0, Purpose::points)), passed = 0;
+  double next = step * double(PathRandom(0x61736b6564ull, gather_key(position, normal, 0)).get1(0, Purpose::points)),
+         passed = 0;
   for (const Candidate& c : candidates) {
     int times = 0;
     for (passed += c.importance; next < passed; next += step) ++times;
@@ -247,8 +256,8 @@ Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Cand
 
 /// Of the footprints that cover a place.
 struct FootprintDensity::Extents {
-  bool widest = false;   ///< all that come within the margin have the largest radius
-  float inside = 0;      ///< m: so far from the border of one of them, at most
+  bool widest = false;  ///< all that come within the margin have the largest radius
+  float inside = 0;     ///< m: so far from the border of one of them, at most
 };
 
 Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
@@ -281,7 +290,7 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
     extents.widest = extents.widest && radius > kAlmost * options_.max_radius;
     extents.inside = std::max(extents.inside, radius - std::sqrt(distance2));
     double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
-    if (!(weight > 0)) continue;   // it has become smaller
+    if (!(weight > 0)) continue;  // it has become smaller
     if (directed_) weight *= double(received_share(arriving_from_[photon], normal_of(photon), surface));
     if (!(weight > 0)) continue;
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);

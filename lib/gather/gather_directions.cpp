@@ -11,7 +11,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kTile = 4;             ///< sectors followed side by side: two rings of them are a packet of rays
+constexpr int kTile = 4;  ///< sectors followed side by side: two rings of them are a packet of rays
 
 /// From one ray of a cell to its next, modulo 1: any number is spread over the cell [R2 of Roberts 2018, shifted].
 constexpr Vec2 kStep{0.7548777f, 0.5698403f};
@@ -22,8 +22,7 @@ float frac(float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); }
 GatherStrata::GatherStrata(int rings_, int sectors_) : rings(rings_), sectors(sectors_) {
   for (int first = 0; first < sectors; first += kTile)
     for (int j = 0; j < rings; ++j)
-      for (int k = first; k < std::min(first + kTile, sectors); ++k)
-        order.push_back(std::uint32_t(j * sectors + k));
+      for (int k = first; k < std::min(first + kTile, sectors); ++k) order.push_back(std::uint32_t(j * sectors + k));
 }
 
 GatherStrata::GatherStrata(int rays) {

@@ -11,28 +11,34 @@
 
 namespace tempolux {
 
-Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) { return Vec3d{origin[0], origin[1], origin[2]} - frame.origin; }
+Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
+  return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;
+}
 
-bool holds_kind(const std::string& kinds, const std::string& kind) { return ("," + kinds + ",").find("," + kind + ",") != std::string::npos; }
+bool holds_kind(const std::string& kinds, const std::string& kind) {
+  return ("," + kinds + ",").find("," + kind + ",") != std::string::npos;
+}
 
-GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options) {
+GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
+                         const PointOptions& options) {
   const SceneFrame& frame = tracer.frame();
   const bool caustic = holds_kind(map.header.kinds, "caustic") || !lobes_of(frame).specular;
   PlacedPoints placed = place_points(frame, options);
-  GatherPoints result{std::move(placed.points), placed.spacing, caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
-                      map.header.emitted_count};
+  GatherPoints result{std::move(placed.points), placed.spacing, caustic ? "direct,caustic,indirect" : "direct,indirect",
+                      map.header.history, map.header.emitted_count};
   estimate_points(tracer, lights, map, shift_of(map.header.origin, frame), options, result.points);
   return result;
 }
 
-DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options) {
+DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights,
+                                const PointOptions& options) {
   DividedGatherPoints divided{make_points(map.whole, tracer, lights, options), {}};
   divided.high_shares = shares_of_photons(tracer, lights, map.high, options, divided.whole.points);
   return divided;
 }
 
-PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing, const Lights& lights,
-                                const PointOptions& options, GatherPoints& points) {
+PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing,
+                                const Lights& lights, const PointOptions& options, GatherPoints& points) {
   const SceneFrame& frame = whole.frame();
   const MovingObjects moving(frame);
   const PlacedPoints placed = place_points(frame, options);
@@ -47,9 +53,10 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
     points.points[i].position = placed.points[i].position;
     points.points[i].normal = placed.points[i].normal;
   }
-  const Vec3d static_shift = shift_of(light.fixed.header.origin, frame), dynamic_shift = shift_of(light.moved.header.origin, frame);
-  const PointUpdateCounts counts =
-      update_points({whole, standing, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
+  const Vec3d static_shift = shift_of(light.fixed.header.origin, frame),
+              dynamic_shift = shift_of(light.moved.header.origin, frame);
+  const PointUpdateCounts counts = update_points(
+      {whole, standing, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
   // What moves has its photons in the dynamic map alone.
   formats::PhotonBlock on_movers;
   for (std::size_t i = 0; i < light.moved.photons.size(); ++i)

@@ -97,7 +97,8 @@ void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& re
   std::array<Vec3d, 3> gradient{};
   for (std::size_t k = 0; k < N; ++k) {
     const Vec3d u = around.middle[k], v_lower{-around.lower[k].y, around.lower[k].x, 0};
-    for (std::size_t c = 0; c < 3; ++c) gradient[c] += u * (along[c][k] * 2 * M_PI / double(N)) + v_lower * across[c][k];
+    for (std::size_t c = 0; c < 3; ++c)
+      gradient[c] += u * (along[c][k] * 2 * M_PI / double(N)) + v_lower * across[c][k];
   }
   for (std::size_t c = 0; c < 3; ++c) record.translational[c] = frame.to_world(Vec3(gradient[c]));
 }
@@ -105,7 +106,7 @@ void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& re
 void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
   const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
   counts.assign(M * N, 0);
-  std::vector<double> light(M * N), three(M * N), three2(M * N);   // by cell: its own, it and the sectors beside it
+  std::vector<double> light(M * N), three(M * N), three2(M * N);  // by cell: its own, it and the sectors beside it
   double total = 0;
   for (std::size_t c = 0; c < light.size(); ++c) {
     light[c] = channel_sum(Rgbd(radiance[c]));
@@ -150,7 +151,8 @@ float Hemisphere::harmonic_distance() const {
 }
 
 float Hemisphere::seen_rays() const {
-  return float(std::count_if(inverse_distance.begin(), inverse_distance.end(), [](float inverse) { return inverse > 0; }));
+  return float(
+      std::count_if(inverse_distance.begin(), inverse_distance.end(), [](float inverse) { return inverse > 0; }));
 }
 
 }  // namespace tempolux

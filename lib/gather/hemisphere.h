@@ -16,8 +16,8 @@ void gather_strata(int rays, int& rings, int& sectors);
 /// sector k azimuths in [k, k+1) 2 pi / N. All cells contribute alike to the irradiance.
 class Hemisphere {
  public:
-  std::vector<Rgb> radiance;             ///< W/m^2/sr
-  std::vector<float> inverse_distance;   ///< 1/m; 0: nothing there
+  std::vector<Rgb> radiance;            ///< W/m^2/sr
+  std::vector<float> inverse_distance;  ///< 1/m; 0: nothing there
 
   /// All cells dark and empty.
   void reset(int rings, int sectors);
@@ -27,8 +27,8 @@ class Hemisphere {
   ///     E     = pi/(M N) sum L_jk
   ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
   ///
-  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (docs/methods/formulas.md: the sign is that
-  /// of E(n) = E + (n_i x n) . dE/dn).
+  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (docs/methods/formulas.md: the sign is
+  /// that of E(n) = E + (n_i x n) . dE/dn).
   void irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
   ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
@@ -39,9 +39,9 @@ class Hemisphere {
   void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
   /// How many more rays each cell deserves beside the one it has had: the standard deviation of the cells around it
-  /// (eight, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall where light is
-  /// uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones has no bias:
-  /// were bright rays themselves to call for more, dark ones would stay as they are and light would be lost.
+  /// (eight, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall where light
+  /// is uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones has no
+  /// bias: were bright rays themselves to call for more, dark ones would stay as they are and light would be lost.
   void further_rays(std::vector<std::uint8_t>& counts) const;
   static constexpr int kMostFurther = 8;
 
@@ -54,7 +54,7 @@ class Hemisphere {
   std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }
 
   int rings_ = 0, sectors_ = 0;
-  std::vector<double> ring_tangent_;   ///< T_j
+  std::vector<double> ring_tangent_;  ///< T_j
 };
 
 }  // namespace tempolux

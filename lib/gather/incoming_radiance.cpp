@@ -20,18 +20,19 @@ namespace {
 /// Events followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
 constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
-constexpr std::uint64_t kMediaNumbers = std::uint64_t(1) << 32;   ///< the random numbers of media, apart from those of any depth
-constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
+constexpr std::uint64_t kMediaNumbers = std::uint64_t(1)
+                                        << 32;  ///< the random numbers of media, apart from those of any depth
+constexpr std::size_t kAtOnce = 32;             ///< rays whose answers are fetched together
 
 }  // namespace
 
 /// A surface at a ray's end.
 struct IncomingRadiance::Met {
   SurfacePoint hit;
-  Vec3 wo, geometric;             ///< geometric: the normal on the side of wo
-  float distance = INFINITY;      ///< m, along the path since the gather ray's start
-  const Bsdf* bsdf = nullptr;     ///< null: nothing was met
-  std::optional<Bsdf> textured;   ///< what bsdf points to where the material has textures
+  Vec3 wo, geometric;            ///< geometric: the normal on the side of wo
+  float distance = INFINITY;     ///< m, along the path since the gather ray's start
+  const Bsdf* bsdf = nullptr;    ///< null: nothing was met
+  std::optional<Bsdf> textured;  ///< what bsdf points to where the material has textures
 };
 
 /// A ray that goes on from a hit, and what is to become of the radiance along it. All of one depth follow together.
@@ -39,10 +40,10 @@ struct IncomingRadiance::Further {
   Ray ray;
   std::uint64_t key = 0;
   Rgb weight{0.0f};
-  std::size_t of = 0;        ///< the gather ray
-  bool sees_lamps = false;   ///< beyond events S: light of kind caustic where it started, which no point has told
-  float phase = 0;           ///< a medium sent the ray on with this density [1/sr]; 0: a surface did
-  bool low = false;          ///< what it meets at its end brings the low part: the high one is sampled where it started
+  std::size_t of = 0;       ///< the gather ray
+  bool sees_lamps = false;  ///< beyond events S: light of kind caustic where it started, which no point has told
+  float phase = 0;          ///< a medium sent the ray on with this density [1/sr]; 0: a surface did
+  bool low = false;         ///< what it meets at its end brings the low part: the high one is sampled where it started
 
   LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
@@ -51,12 +52,13 @@ struct IncomingRadiance::Further {
 struct IncomingRadiance::Gathered {
   GatherCounts& counts;
   std::vector<Further>& further;
-  std::span<RadianceSource> sources;   ///< by gather ray; may be empty
+  std::span<RadianceSource> sources;  ///< by gather ray; may be empty
 
   RadianceSource* source_of(const Further& from) const { return sources.empty() ? nullptr : &sources[from.of]; }
 };
 
-IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor, const BrightPoints* bright)
+IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points,
+                                   float near_factor, const BrightPoints* bright)
     : tracer_(tracer), lights_(lights), points_(points), near_factor_(near_factor), bright_(bright) {
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
@@ -69,7 +71,8 @@ Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
   return *met.bsdf;
 }
 
-/// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its normal.
+/// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its
+/// normal.
 inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
@@ -82,12 +85,12 @@ inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
   met.distance = distance;
 }
 
-/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. Of those that a
-/// medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). Of those that leave the scene: miss(i).
-/// alike: as Tracer::intersect.
+/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. Of those
+/// that a medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). Of those that leave
+/// the scene: miss(i). alike: as Tracer::intersect.
 template <class Take, class Key, class TakeMedium, class Miss>
-void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key,
-                              const TakeMedium& take_medium, const Miss& miss) const {
+void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take,
+                              const Key& key, const TakeMedium& take_medium, const Miss& miss) const {
   const Media* const media = tracer_.frame().media.get();
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
@@ -101,7 +104,8 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
       const Ray& ray = rays[first + i];
       if (media) [[unlikely]] {
         MediumPoint collision;
-        if (collides(*media, ray, hits[i].surface == kNone ? INFINITY : hits[i].t, PathRandom(key(first + i), kMediaNumbers), 0, collision)) {
+        if (collides(*media, ray, hits[i].surface == kNone ? INFINITY : hits[i].t,
+                     PathRandom(key(first + i), kMediaNumbers), 0, collision)) {
           take_medium(first + i, collision, length(collision.position - ray.origin));
           continue;
         }
@@ -123,8 +127,9 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
   counts.rays += rays.size();
 }
 
-void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
-                                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources, Start start) const {
+void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
+                                  std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts,
+                                  std::span<RadianceSource> sources, Start start) const {
   thread_local std::vector<Further> now, next;
   thread_local std::vector<Ray> further_rays;
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
@@ -132,38 +137,51 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   std::fill(sources.begin(), sources.end(), RadianceSource{});
   next.clear();
   const Gathered to{counts, next, sources};
-  follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
-    distance[i] = met.distance;
-    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ != nullptr}, 0, to);
-  }, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, const MediumPoint& collision, float way) {
-    distance[i] = way;
-    radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, to);
-  }, [](std::size_t) {});
+  follow(
+      rays, true, counts,
+      [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
+        distance[i] = met.distance;
+        radiance[i] =
+            reflected(met, point, {{}, keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ != nullptr}, 0, to);
+      },
+      [&](std::size_t i) { return keys[i]; },
+      [&](std::size_t i, const MediumPoint& collision, float way) {
+        distance[i] = way;
+        radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, to);
+      },
+      [](std::size_t) {});
   for (int depth = 1; !next.empty(); ++depth) {
     std::swap(now, next);
     next.clear();
     further_rays.clear();
     for (const Further& f : now) further_rays.push_back(f.ray);
-    follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
-      const Further from = now[i];
-      radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
-      if (from.phase > 0) radiance[from.of] += from.weight * weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0);
-    }, [&](std::size_t i) { return now[i].key; }, [&](std::size_t i, const MediumPoint& collision, float) {
-      const Further from = now[i];
-      radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
-    }, [&](std::size_t i) {   // a surface has sampled the environment where it sent the ray
-      const Further& from = now[i];
-      if (from.phase > 0 && lights_.has_environment()) radiance[from.of] += from.weight * weighed_environment(lights_, from.ray.direction, from.scattering());
-    });
+    follow(
+        further_rays, false, counts,
+        [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
+          const Further from = now[i];
+          radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
+          if (from.phase > 0)
+            radiance[from.of] += from.weight * weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0);
+        },
+        [&](std::size_t i) { return now[i].key; },
+        [&](std::size_t i, const MediumPoint& collision, float) {
+          const Further from = now[i];
+          radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
+        },
+        [&](std::size_t i) {  // a surface has sampled the environment where it sent the ray
+          const Further& from = now[i];
+          if (from.phase > 0 && lights_.has_environment())
+            radiance[from.of] += from.weight * weighed_environment(lights_, from.ray.direction, from.scattering());
+        });
   }
 }
 
 /// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
 inline float IncomingRadiance::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
 
-/// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there, or by
-/// going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its other lobes by following
-/// one of them. to.further receives the ray that goes on from a Lambert lobe, if any.
+/// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there,
+/// or by going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its
+/// other lobes by following one of them. to.further receives the ray that goes on from a Lambert lobe, if any.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
   const Bsdf& bsdf = *met.bsdf;
@@ -215,7 +233,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
                                             solid && front == next.transmitted ? &material : nullptr);
 }
 
-/// Radiance along a ray that goes on after an event S at `start`, `distance` on the way already, inside a solid of glass or not.
+/// Radiance along a ray that goes on after an event S at `start`, `distance` on the way already, inside a solid of
+/// glass or not.
 Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
                                        const Gathered& to, const MaterialValues* inside) const {
   Hit hit;
@@ -230,8 +249,7 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
       return left * scattered_in_media(collision, from, to);
     }
   }
-  if (!meets)
-    return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
+  if (!meets) return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
   Met met;
   met.hit = tracer_.surface_point(hit);
   const float on = length(met.hit.position - start.position);
@@ -243,56 +261,69 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
   return left * (emitted + reflected(met, point, from, depth, to));
 }
 
-/// Light of a lamp that a medium sends back along a ray from its collision; to.further receives the ray that goes on, which counts
-/// lamps too: those it meets, weighed, and those it sees by way of events S, as no point tells of them here.
+/// Light of a lamp that a medium sends back along a ray from its collision; to.further receives the ray that goes on,
+/// which counts lamps too: those it meets, weighed, and those it sees by way of events S, as no point tells of them
+/// here.
 Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const {
   if (RadianceSource* const source = to.source_of(from)) source->partial = source->mover = true;
   const PathRandom random(from.key, kMediaNumbers + 1);
   Rgb light{0.0f};
   if (!lights_.empty())
     light = at.albedo * scattered_lamp_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), true,
-                                                {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
+                                             {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
   Rgb weight = from.weight * at.albedo;
   if (!survives(weight, kLargestSurvivalInMedia, random.get1(1, Purpose::roulette))) return light;
   const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));
-  to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true, pdf_hg(at.g, at.travel, travel), false});
+  to.further.push_back({{at.position, travel, 0, INFINITY},
+                        mix64(from.key + 1),
+                        weight,
+                        from.of,
+                        true,
+                        pdf_hg(at.g, at.travel, travel),
+                        false});
   return light;
 }
 
-/// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Hits take caustic light
-/// from the point that stands for them, if one does; direct light too, which is known to the spacing of the points instead of an estimate's
-/// radius, if they are farther than about that; else by light sampling. Without a point all but direct light is the ray's.
+/// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Hits take caustic
+/// light from the point that stands for them, if one does; direct light too, which is known to the spacing of the
+/// points instead of an estimate's radius, if they are farther than about that; else by light sampling. Without a point
+/// all but direct light is the ray's.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                                 const PathRandom& random, int depth, const Gathered& to) const {
   ++(point ? to.counts.near_hits : to.counts.unanswered);
   const SeenSide side(met.hit, met.wo);
   Rgb irradiance{0.0f};
   if (point) irradiance = points_.point(*point).caustic;
-  if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random)) irradiance += points_.point(*point).direct;
+  if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random))
+    irradiance += points_.point(*point).direct;
   else irradiance += sampled_light(met, side, point, from.low, random, to.counts);
   if (bright_) {
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
   }
-  // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came out 5 %
-  // bright: cells get further rays by what neighbours saw, on which their own value must not depend.
+  // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came
+  // out 5 % bright: cells get further rays by what neighbours saw, on which their own value must not depend.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
   if (depth > 0 && !survives(weight, kLargestSurvival, random.get1(1, Purpose::roulette))) return irradiance;
-  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ != nullptr});
+  to.further.push_back(
+      {spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ != nullptr});
   return irradiance;
 }
 
-/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is sampled explicitly
-/// where the ray comes from (BrightPoints::left_of_lamp).
+/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is
+/// sampled explicitly where the ray comes from (BrightPoints::left_of_lamp).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point, bool low,
                                     const PathRandom& random, GatherCounts& counts) const {
   DirectSample direct;
   const Receiver at{met.hit, side.normal_geometric, side.normal, met.bsdf->has_specular() ? met.bsdf : nullptr};
-  if (lights_.empty() || !sample_direct(lights_, at, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), direct)) return Rgb(0.0f);
-  const float left =
-      low && !direct.light.distant ? bright_->left_of_lamp(point, met.distance, length(direct.light.position - met.hit.position)) : 1.0f;
+  if (lights_.empty() ||
+      !sample_direct(lights_, at, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), direct))
+    return Rgb(0.0f);
+  const float left = low && !direct.light.distant
+                         ? bright_->left_of_lamp(point, met.distance, length(direct.light.position - met.hit.position))
+                         : 1.0f;
   if (!(left > 0)) return Rgb(0.0f);
   ++counts.shadow_rays;
   return direct.irradiance * (left * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));

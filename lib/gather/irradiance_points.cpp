@@ -31,7 +31,7 @@ bool stores_light(const SceneFrame& frame, const Surface& surface) {
   return may_have_lambert(frame.materials[surface.material]);
 }
 
-constexpr std::uint32_t kMostSites = 1u << 30;   ///< of a side of a surface
+constexpr std::uint32_t kMostSites = 1u << 30;  ///< of a side of a surface
 
 using Areas = ParallelArray<double>;
 
@@ -47,8 +47,8 @@ Areas triangle_areas(const Surface& surface) {
 
 /// A surface's triangles, or those pieces of them that points are spread over.
 struct Ground {
-  std::vector<TrianglePiece> pieces;   ///< none: all triangles
-  Areas areas;                         ///< m^2 of each
+  std::vector<TrianglePiece> pieces;  ///< none: all triangles
+  Areas areas;                        ///< m^2 of each
 };
 
 Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
@@ -59,9 +59,10 @@ Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
   return {std::move(pieces), std::move(areas)};
 }
 
-/// The point at u.x of the way along the line of a surface's triangles' (or pieces') areas, of which `cumulative` is the running
-/// sum. Normal 0 if its triangle has no area.
-IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> pieces, std::span<const double> cumulative, Vec2 u, bool back) {
+/// The point at u.x of the way along the line of a surface's triangles' (or pieces') areas, of which `cumulative` is
+/// the running sum. Normal 0 if its triangle has no area.
+IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> pieces,
+                         std::span<const double> cumulative, Vec2 u, bool back) {
   const double along = double(u.x) * cumulative.back();
   const auto at = std::size_t(std::upper_bound(cumulative.begin(), cumulative.end() - 1, along) - cumulative.begin());
   const double first = at ? cumulative[at - 1] : 0, width = cumulative[at] - first;
@@ -80,8 +81,8 @@ IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> 
   return point;
 }
 
-/// Adds one surface's points, both sides: a scrambled Sobol sequence each, by area. The ground's areas become their running sum.
-/// `rank` tells surfaces of one object apart.
+/// Adds one surface's points, both sides: a scrambled Sobol sequence each, by area. The ground's areas become their
+/// running sum. `rank` tells surfaces of one object apart.
 void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double area_per_point, std::uint64_t seed,
               std::vector<IrradiancePoint>& points) {
   const std::span<double> areas = ground.areas;
@@ -95,15 +96,17 @@ void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double
     const std::uint64_t key = PathRandom(seed, surface.object).bits(rank, Purpose::points, side);
     parallel_chunks(count, 256, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
-        made[side * count + i] = point_on(surface, ground.pieces, areas, sobol_owen_2d(std::uint32_t(i), key), side == 1);
+        made[side * count + i] =
+            point_on(surface, ground.pieces, areas, sobol_owen_2d(std::uint32_t(i), key), side == 1);
     });
   }
-  points.erase(std::remove_if(points.begin() + before, points.end(), [](const auto& p) { return !(length2(p.normal) > 0); }),
-               points.end());
+  points.erase(
+      std::remove_if(points.begin() + before, points.end(), [](const auto& p) { return !(length2(p.normal) > 0); }),
+      points.end());
 }
 
-/// Of the spheres that hold what cameras see, those that points are spread in; none: everywhere. By the area of what stands or, where
-/// nothing of it lies in them, of what moves.
+/// Of the spheres that hold what cameras see, those that points are spread in; none: everywhere. By the area of what
+/// stands or, where nothing of it lies in them, of what moves.
 std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const AimSphere> seen) {
   if (seen.empty()) return {};
   std::vector<double> standing(seen.size()), moving(seen.size());
@@ -135,14 +138,17 @@ bool any_bent(const SceneFrame& frame) {
     return std::any_of(surface.primitive->triangles.begin(), surface.primitive->triangles.end(), [&](const auto& t) {
       const Vec3 a = surface.position(t[0]);
       const Vec3 n = normalize(cross(surface.position(t[1]) - a, surface.position(t[2]) - a));
-      return length2(n) > 0 && std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return std::abs(dot(n, surface.normal(v))) < kBent; });
+      return length2(n) > 0 && std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
+               return std::abs(dot(n, surface.normal(v))) < kBent;
+             });
     });
   });
 }
 
-/// How the surface a point is on scatters: shading normal on the point's side; its lobes if the Lambert lobe lies under a coat.
+/// How the surface a point is on scatters: shading normal on the point's side; its lobes if the Lambert lobe lies under
+/// a coat.
 struct Scattering {
-  Vec3 normal, smooth;   ///< smooth: without a normal map
+  Vec3 normal, smooth;  ///< smooth: without a normal map
   std::optional<Bsdf> coat;
 
   LitSurface lit(Vec3 geometric) const { return {geometric, smooth, normal, coat ? &*coat : nullptr}; }
@@ -163,7 +169,8 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   return found;
 }
 
-/// Calls each(sample, random bits of its way through media) for the stratified light samples of a point that can give it light.
+/// Calls each(sample, random bits of its way through media) for the stratified light samples of a point that can give
+/// it light.
 template <class Each>
 void for_light_samples(const Lights& lights, const IrradiancePoint& point, float offset, int samples,
                        const Scattering& scattering, const PathRandom& random, const Each& each) {
@@ -175,18 +182,20 @@ void for_light_samples(const Lights& lights, const IrradiancePoint& point, float
   for (int s = 0; s < samples; ++s) {
     const float u = (float(s) + random.get1(0, Purpose::light_choice, std::uint32_t(s))) / float(samples);
     DirectSample direct;
-    if (sample_direct(lights, at, std::min(u, kOneMinusEpsilon), random.get2(0, Purpose::light_point, std::uint32_t(s)), direct))
+    if (sample_direct(lights, at, std::min(u, kOneMinusEpsilon), random.get2(0, Purpose::light_point, std::uint32_t(s)),
+                      direct))
       each(direct, WayBits{random, std::uint32_t(s), way_shadow});
   }
 }
 
 /// Direct light at a point: mean over light samples of what arrives.
-Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
-                 int samples, const Scattering& scattering, const PathRandom& random) {
+Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset, int samples,
+                 const Scattering& scattering, const PathRandom& random) {
   Rgbd sum{0.0};
-  for_light_samples(lights, point, offset, samples, scattering, random, [&](const DirectSample& direct, const WayBits& bits) {
-    sum += Rgbd(direct.irradiance) * double(transmittance(tracer, direct.shadow, bits));
-  });
+  for_light_samples(lights, point, offset, samples, scattering, random,
+                    [&](const DirectSample& direct, const WayBits& bits) {
+                      sum += Rgbd(direct.irradiance) * double(transmittance(tracer, direct.shadow, bits));
+                    });
   return Rgb(sum / double(samples));
 }
 
@@ -226,7 +235,8 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) 
   for (std::size_t i = 0; i < grounds.size(); ++i) {
     if (!stores_light(frame, frame.surfaces[i])) continue;
     double& sum = i < frame.static_count ? standing : moving;
-    for (const double area : std::span<double>(grounds[i].emplace(ground_of(frame.surfaces[i], region)).areas)) sum += area;
+    for (const double area : std::span<double>(grounds[i].emplace(ground_of(frame.surfaces[i], region)).areas))
+      sum += area;
   }
   const double whole = standing > 0 ? standing : moving;
   PlacedPoints placed;
@@ -240,8 +250,9 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) 
   return placed;
 }
 
-std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, const AimSphere& around, double area,
-                                    std::uint64_t seed, const std::function<bool(Vec3)>& wanted) {
+std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects,
+                                    const AimSphere& around, double area, std::uint64_t seed,
+                                    const std::function<bool(Vec3)>& wanted) {
   std::vector<PlacedSite> sites;
   for (std::size_t s = 0; s < frame.surfaces.size(); ++s) {
     const Surface& surface = frame.surfaces[s];
@@ -257,8 +268,10 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
       std::vector<std::vector<PlacedSite>> found((count + kChunk - 1) / kChunk);
       parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-          const IrradiancePoint place = point_on(surface, ground.pieces, cumulative, sobol_owen_2d(std::uint32_t(i), key), back);
-          if (length2(place.normal) > 0 && wanted(place.position)) found[first / kChunk].push_back({place, float(cumulative.back() / count)});
+          const IrradiancePoint place =
+              point_on(surface, ground.pieces, cumulative, sobol_owen_2d(std::uint32_t(i), key), back);
+          if (length2(place.normal) > 0 && wanted(place.position))
+            found[first / kChunk].push_back({place, float(cumulative.back() / count)});
         }
       });
       for (const auto& some : found) sites.insert(sites.end(), some.begin(), some.end());
@@ -267,23 +280,26 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
   return sites;
 }
 
-void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons,
-                     Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points) {
+void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
+                     const PointOptions& options, std::vector<IrradiancePoint>& points) {
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0u);
   estimate_points(tracer, lights, photons, photon_shift, options, all, points);
 }
 
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
-                     const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points) {
+                     const PointOptions& options, std::span<const std::uint32_t> which,
+                     std::vector<IrradiancePoint>& points) {
   // Where photons were not aimed they are far apart: that says nothing of the places that points lie at.
   std::function<bool(Vec3)> where;
   if (const std::vector<AimSphere> region = region_of_points(tracer.frame(), options.seen); !region.empty())
     where = [region](Vec3 place) {
-      return std::ranges::any_of(region, [&](const AimSphere& sphere) { return length(Vec3d(place) - sphere.centre) <= sphere.radius; });
+      return std::ranges::any_of(
+          region, [&](const AimSphere& sphere) { return length(Vec3d(place) - sphere.centre) <= sphere.radius; });
     };
   const DensityOptions density{options.neighbours, options.max_radius, options.area_probes, where};
-  const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0}, kind_bit(formats::PathKind::caustic), photon_shift);
+  const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0},
+                                 kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons.photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();
   const bool asks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
@@ -292,8 +308,11 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
       const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
-      point.direct = lights.empty() ? Rgb(0.0f) : direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
+      const Scattering scattering =
+          asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
+      point.direct = lights.empty()
+                         ? Rgb(0.0f)
+                         : direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
       float unused;
       point.caustic = caustic.estimate(point.position, scattering.lit(point.normal), unused);
       point.indirect = indirect.estimate(point, random, point.radius);
@@ -306,15 +325,16 @@ void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std
   parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[i];
-      const Scattering scattering = density.directed() ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
+      const Scattering scattering =
+          density.directed() ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
       float unused;
       point.caustic = density.estimate(point.position, scattering.lit(point.normal), unused);
     }
   });
 }
 
-std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch, const PointOptions& options,
-                          std::vector<IrradiancePoint>& points) {
+std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch,
+                          const PointOptions& options, std::vector<IrradiancePoint>& points) {
   if (lights.empty()) return 0;
   const float offset = Reach(tracer).offset();
   const bool asks = any_coated(tracer.frame()) || any_bent(tracer.frame());
@@ -329,11 +349,14 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
       IrradiancePoint& point = points[order[i]];
       if (watch && box && !watch->between(point.position, *box)) continue;
       const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
+      const Scattering scattering =
+          asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
       bool touched = !watch;
       if (watch)
         for_light_samples(lights, point, offset, options.light_samples, scattering, random,
-                          [&](const DirectSample& direct, const WayBits&) { touched = touched || watch->touching(direct.shadow, 1) != 0; });
+                          [&](const DirectSample& direct, const WayBits&) {
+                            touched = touched || watch->touching(direct.shadow, 1) != 0;
+                          });
       if (!touched) continue;
       point.direct = direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
       ++count;
@@ -344,7 +367,9 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
 }
 
 ClearanceTest point_clearance(const Tracer& tracer) {
-  return [reach = Reach(tracer)](Vec3 position, Vec3 normal, float far) { return reach.clearance(position, normal, normal, far); };
+  return [reach = Reach(tracer)](Vec3 position, Vec3 normal, float far) {
+    return reach.clearance(position, normal, normal, far);
+  };
 }
 
 }  // namespace tempolux

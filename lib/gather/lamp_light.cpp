@@ -11,12 +11,13 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;   ///< photons emitted
-constexpr std::size_t kEnough = 1 << 10;                     ///< landed: their flux is known to 3 % then
+constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;  ///< photons emitted
+constexpr std::size_t kEnough = 1 << 10;                   ///< landed: their flux is known to 3 % then
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
 /// Where a photon lands, if that is on a Lambert lobe within `reach` m. Its flux is that of one photon of one.
-std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission, float reach, const PathRandom& random) {
+std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission,
+                                 float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;
   Ray ray{emission.origin + emission.normal * emission.origin_offset, emission.travel, 0, reach};
   Hit hit;
@@ -28,7 +29,8 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   const Bsdf bsdf(material, front);
   if (!bsdf.has_diffuse()) return std::nullopt;
   const Vec3 normal = front ? place.normal_geometric : -place.normal_geometric;
-  const float cosine = dot(wi, dot(place.normal, normal) < 0 ? -place.normal : place.normal), geometric = dot(wi, normal);
+  const float cosine = dot(wi, dot(place.normal, normal) < 0 ? -place.normal : place.normal),
+              geometric = dot(wi, normal);
   const float distance = length(place.position - emission.origin);
   if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
   const PointLookup::Light* const point = points.find(place.position, normal);
@@ -43,7 +45,8 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
 
 }  // namespace
 
-std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::uint64_t seed) {
+std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points,
+                                             std::uint64_t seed) {
   if (points.size() == 0 || !lights.has_placed()) return {};
   constexpr std::size_t kChunk = 1024;
   const std::uint64_t key = mix64(seed ^ kKey);
@@ -56,7 +59,8 @@ std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights&
       for (std::size_t i = done + first; i < done + last; ++i) {
         const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
         const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
-        if (std::optional<LampPhoton> photon = landed(tracer, points, emission, reach, PathRandom(key, i))) found[first / kChunk].push_back(*photon);
+        if (std::optional<LampPhoton> photon = landed(tracer, points, emission, reach, PathRandom(key, i)))
+          found[first / kChunk].push_back(*photon);
       }
     });
     for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());

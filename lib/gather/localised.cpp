@@ -10,12 +10,12 @@
 namespace tempolux {
 namespace {
 
-constexpr float kLeastShare = 0.01f;   ///< of the mean irradiance: what is darker is not told apart from black
+constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: what is darker is not told apart from black
 
-/// Dynamic photons are asked for in a disc this much wider than the one that k static photons fill, k = 50 as a rule. At the lower
-/// threshold, a share of .06 of the static light, it holds .06 x 50 x 7^2 = 150 of them, and their scatter is sqrt(150) / (50 x
-/// 7^2) = .5 % of the static light, which is about what gather rays leave. In the narrow disc it were 3 photons and 3.5 %:
-/// boiling. (docs/methods/dynamic.md)
+/// Dynamic photons are asked for in a disc this much wider than the one that k static photons fill, k = 50 as a rule.
+/// At the lower threshold, a share of .06 of the static light, it holds .06 x 50 x 7^2 = 150 of them, and their scatter
+/// is sqrt(150) / (50 x 7^2) = .5 % of the static light, which is about what gather rays leave. In the narrow disc it
+/// were 3 photons and 3.5 %: boiling. (docs/methods/dynamic.md)
 constexpr float kWider = 7;
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
@@ -45,7 +45,9 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
       const PathRandom random = random_at(record.position, seed);
       SignedDensity::Area area;
       for (std::size_t m = 0; m < maps.size(); ++m) {
-        if (m > 0 && !(maps[m].most_influence(record.position, record.normal, radius, random, area) > double(changes[i].influence))) continue;
+        if (m > 0 && !(maps[m].most_influence(record.position, record.normal, radius, random, area) >
+                       double(changes[i].influence)))
+          continue;
         const auto change = maps[m].at(record.position, record.normal, radius, random, area);
         if (!change) continue;
         changes[i].influence = std::max(changes[i].influence, float(change->influence));

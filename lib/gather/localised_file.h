@@ -1,4 +1,5 @@
-// lib/gather/localised_file.h -- .irradcache files of localised gathering: records that stand, updated for a frame, and those gathered for it.
+// lib/gather/localised_file.h -- .irradcache files of localised gathering: records that stand, updated for a frame, and
+// those gathered for it.
 #pragma once
 
 #include <string>
@@ -15,7 +16,7 @@ namespace tempolux {
 struct LocalisedRecords {
   std::vector<IrradianceRecord> standing, gathered;
   std::vector<RecordChange> changes;
-  float least_cosine = 0;   ///< in which both count
+  float least_cosine = 0;  ///< in which both count
   std::string history;
 };
 

@@ -13,9 +13,9 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kAtOnce = 1024;         ///< photons, or elements, in a piece of work
-constexpr int kNormalBits = 13;              ///< of 16 that a joined normal leaves out: it keeps 64 directions
-constexpr float kReach = 3;                  ///< of a Gaussian, standard deviations
+constexpr std::size_t kAtOnce = 1024;  ///< photons, or elements, in a piece of work
+constexpr int kNormalBits = 13;        ///< of 16 that a joined normal leaves out: it keeps 64 directions
+constexpr float kReach = 3;            ///< of a Gaussian, standard deviations
 
 struct Corners {
   Vec3 a, b, c;
@@ -32,9 +32,9 @@ Corners corners_of(const SceneFrame& frame, std::uint32_t surface, std::uint32_t
 /// An element with what is filtered.
 struct Sample {
   Vec3 position, normal;
-  Rgbd flux{0.0};                            ///< W
+  Rgbd flux{0.0};  ///< W
   float area = 0;
-  float width = 0;                           ///< m, of the filter around it
+  float width = 0;  ///< m, of the filter around it
   std::uint32_t material = 0;
 };
 
@@ -54,13 +54,14 @@ class Neighbours {
           const auto found = cubes_.find(key(there));
           if (found == cubes_.end()) continue;
           for (const std::uint32_t i : found->second)
-            if (cube(samples_[i].position) == there) visit(i);   // cubes may share a key
+            if (cube(samples_[i].position) == there) visit(i);  // cubes may share a key
         }
   }
 
  private:
   std::array<std::int64_t, 3> cube(Vec3 p) const {
-    return {std::int64_t(std::floor(p.x * per_m_)), std::int64_t(std::floor(p.y * per_m_)), std::int64_t(std::floor(p.z * per_m_))};
+    return {std::int64_t(std::floor(p.x * per_m_)), std::int64_t(std::floor(p.y * per_m_)),
+            std::int64_t(std::floor(p.z * per_m_))};
   }
   static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
     return mix64(mix64(mix64(std::uint64_t(c[0])) + std::uint64_t(c[1])) + std::uint64_t(c[2]));
@@ -81,10 +82,10 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of the samples that have a width: flux over area under the kernel; `alike` (may be empty): ln of irradiance by which
-/// neighbours are weighed.
-void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours, const std::vector<float>& alike,
-            std::vector<Rgbd>& result) {
+/// Irradiance of the samples that have a width: flux over area under the kernel; `alike` (may be empty): ln of
+/// irradiance by which neighbours are weighed.
+void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
+            const std::vector<float>& alike, std::vector<Rgbd>& result) {
   parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!(samples[i].width > 0)) continue;
@@ -105,10 +106,11 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
   });
 }
 
-/// Elements joined to what a filter cannot tell apart: those in a cube of this edge [m] that face alike and have one material.
+/// Elements joined to what a filter cannot tell apart: those in a cube of this edge [m] that face alike and have one
+/// material.
 struct Joined {
   std::vector<Sample> cubes;
-  std::vector<std::uint32_t> of;             ///< of each element its cube
+  std::vector<std::uint32_t> of;  ///< of each element its cube
 };
 Joined join(const std::vector<Sample>& samples, float edge) {
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
@@ -117,7 +119,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
     const auto code = formats::encode_normal({s.normal.x, s.normal.y, s.normal.z});
     std::uint64_t key = mix64(std::uint64_t(s.material) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 |
                               std::uint64_t(code[1] >> kNormalBits));
-    for (int c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
+    for (int c = 0; c < 3; ++c)
+      key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
     const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
     if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material});
     joined.of.push_back(found->second);
@@ -135,8 +138,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
   return joined;
 }
 
-/// Smooths each sample by its own width, those within a factor of two together. Small ones are joined first: the cost follows from the
-/// widths and not from the number of triangles.
+/// Smooths each sample by its own width, those within a factor of two together. Small ones are joined first: the cost
+/// follows from the widths and not from the number of triangles.
 void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, std::vector<Rgbd>& result) {
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -158,8 +161,9 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, st
 }
 
 /// After smoothing each object shall have the flux that it had, by channel.
-void put_right(const std::vector<Sample>& samples, const std::vector<formats::MeshElement>& elements, std::vector<Rgbd>& irradiance) {
-  std::map<std::uint16_t, std::pair<Rgbd, Rgbd>> flux;   // before, after
+void put_right(const std::vector<Sample>& samples, const std::vector<formats::MeshElement>& elements,
+               std::vector<Rgbd>& irradiance) {
+  std::map<std::uint16_t, std::pair<Rgbd, Rgbd>> flux;  // before, after
   for (std::size_t i = 0; i < samples.size(); ++i) {
     auto& [before, after] = flux.try_emplace(elements[i].object, Rgbd{0.0}, Rgbd{0.0}).first->second;
     before += samples[i].flux;
@@ -167,7 +171,8 @@ void put_right(const std::vector<Sample>& samples, const std::vector<formats::Me
   }
   for (std::size_t i = 0; i < samples.size(); ++i)
     for (int c = 0; c < 3; ++c)
-      if (const auto& [before, after] = flux.at(elements[i].object); after[c] > 0) irradiance[i][c] *= before[c] / after[c];
+      if (const auto& [before, after] = flux.at(elements[i].object); after[c] > 0)
+        irradiance[i][c] *= before[c] / after[c];
 }
 
 }  // namespace
@@ -177,7 +182,7 @@ std::uint32_t MeshCuts::operator()(std::uint32_t surface, std::uint32_t triangle
   for (const SceneFrame* frame : measured_) {
     const Corners t = corners_of(*frame, surface, triangle);
     longest = std::max(longest, double(std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)})));
-    if (surface < frame->static_count) break;   // the same in all frames
+    if (surface < frame->static_count) break;  // the same in all frames
   }
   return std::uint32_t(std::clamp(std::ceil(longest / cell_), 1.0, double(formats::kMostCuts)));
 }
@@ -189,7 +194,7 @@ double kernel_width(double area, double photons, double in_kernel) {
 MeshOptions window_widths(double area, double photons) {
   const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
   MeshOptions result;
-  result.filter.width = width > 0 ? width : 1;   // of a scene without surfaces
+  result.filter.width = width > 0 ? width : 1;  // of a scene without surfaces
   result.cell = kCellOfWindows * result.filter.width;
   return result;
 }
@@ -206,7 +211,7 @@ MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std
   MeshOptions result = options;
   double& width = result.filter.width;
   if (!(width > 0)) width = kernel_width(surface_area(frame), double(std::max<std::uint64_t>(1, photons)));
-  if (!(width > 0)) width = 1;               // of a scene without surfaces
+  if (!(width > 0)) width = 1;  // of a scene without surfaces
   if (!(result.cell > 0)) result.cell = width;
   return result;
 }
@@ -214,7 +219,7 @@ MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std
 void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
   struct Place {
     Side side{};
-    std::uint32_t cuts = 0, cell = 0;        ///< cuts 0: not found
+    std::uint32_t cuts = 0, cell = 0;  ///< cuts 0: not found
   };
   std::vector<Place> places(photons.size());
   parallel_chunks(photons.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
@@ -243,7 +248,7 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
     Cell& cell = cells[place.cell];
     ++cell.photons;
     std::array<double, 3> flux{};
-    for (std::size_t c = 0; c < 3; ++c) {   // unsigned: what overflows in a damaged file wraps
+    for (std::size_t c = 0; c < 3; ++c) {  // unsigned: what overflows in a damaged file wraps
       flux[c] = std::clamp(double(photons[i].flux[c]) / unit_, 0.0, 9e18);
       cell.sums[c] = std::int64_t(std::uint64_t(cell.sums[c]) + std::uint64_t(std::llrint(flux[c])));
     }
@@ -259,10 +264,11 @@ std::vector<formats::MeshElement> all_elements(const SceneFrame& frame, const Me
       const Corners corners = corners_of(frame, s, t);
       const Vec3 across = corners.cross_product();
       const float doubled = length(across);
-      if (!(doubled > 0)) continue;          // nothing arrives there
+      if (!(doubled > 0)) continue;  // nothing arrives there
       const std::uint32_t n = cuts(s, t);
       if (elements.size() + 2 * std::uint64_t(n) * n > kMostElements)
-        throw InputError("--cell: more than " + std::to_string(kMostElements) + " elements of " + std::to_string(cuts.cell()) + " m; give a larger one");
+        throw InputError("--cell: more than " + std::to_string(kMostElements) + " elements of " +
+                         std::to_string(cuts.cell()) + " m; give a larger one");
       for (std::uint16_t side = 0; side < 2; ++side) {
         const Vec3 normal = across * ((side == 1) != frame.surfaces[s].flipped ? -1 / doubled : 1 / doubled);
         for (std::uint32_t cell = 0; cell < n * n; ++cell) {
@@ -303,21 +309,23 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements) {
   for (std::size_t first = 0; first < elements.size();) {
     const std::size_t last = first + std::size_t(elements[first].cuts) * elements[first].cuts;
     bool lit = false;
-    for (std::size_t i = first; i < last; ++i) lit |= elements[i].irradiance != std::array<float, 3>{} || elements[i].photons > 0;
+    for (std::size_t i = first; i < last; ++i)
+      lit |= elements[i].irradiance != std::array<float, 3>{} || elements[i].photons > 0;
     for (std::size_t i = first; i < last && lit; ++i) elements[kept++] = elements[i];
     first = last;
   }
   elements.resize(kept);
 }
 
-void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter, std::span<const float> widths,
-                     std::vector<formats::MeshElement>& elements) {
+void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
+                     std::span<const float> widths, std::vector<formats::MeshElement>& elements) {
   std::vector<Sample> samples(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const formats::MeshElement& e = elements[i];
     const auto n = formats::decode_normal(e.normal);
-    samples[i] = {{e.position[0], e.position[1], e.position[2]}, {float(n[0]), float(n[1]), float(n[2])}, flux[i], e.area, widths.empty() ? float(filter.width) : widths[i],
-                  frame.surfaces[e.surface].material};
+    samples[i] = {
+        {e.position[0], e.position[1], e.position[2]},    {float(n[0]), float(n[1]), float(n[2])}, flux[i], e.area,
+        widths.empty() ? float(filter.width) : widths[i], frame.surfaces[e.surface].material};
   }
   std::vector<Rgbd> irradiance(samples.size(), Rgbd(0.0));
   if (filter.kind == MeshFilter::Kind::none) {
@@ -338,7 +346,8 @@ void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const 
     elements[i].irradiance = {float(irradiance[i].r), float(irradiance[i].g), float(irradiance[i].b)};
 }
 
-std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums, const MeshFilter& filter) {
+std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
+                                                const MeshFilter& filter) {
   std::vector<formats::MeshElement> elements = all_elements(frame, sums.cuts());
   put_sums(sums, elements);
   std::vector<Rgbd> flux;

@@ -1,4 +1,5 @@
-// lib/gather/mesh_elements.h -- light textures: photons counted by small triangles of the surfaces, and smoothed along them.
+// lib/gather/mesh_elements.h -- light textures: photons counted by small triangles of the surfaces, and smoothed along
+// them.
 //
 // Paper: Jimenez, Myszkowski, Pueyo 2005, sections 3 and 6. Method: docs/methods/light_textures.md.
 #pragma once
@@ -21,17 +22,19 @@ inline constexpr float kSameWay = 0.866f;
 struct MeshFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;
-  double width = 0;         ///< m: half the box's edge, or the Gaussian's standard deviation; 0: so wide that about 256 photons count
-  float range = 0.5f;       ///< bilateral: standard deviation of ln irradiance over which elements count as alike
+  double width =
+      0;  ///< m: half the box's edge, or the Gaussian's standard deviation; 0: so wide that about 256 photons count
+  float range = 0.5f;  ///< bilateral: standard deviation of ln irradiance over which elements count as alike
 };
 
 struct MeshOptions {
-  double cell = 0;          ///< m, longest edge of an element; 0: the filter's width
+  double cell = 0;  ///< m, longest edge of an element; 0: the filter's width
   MeshFilter filter;
 };
 
-/// How the triangles of a frame are cut into elements: each edge into so many pieces that none is longer than `cell` [m], at most
-/// formats::kMostCuts. What moves is measured in several frames, so that it has the same elements in all frames of a segment.
+/// How the triangles of a frame are cut into elements: each edge into so many pieces that none is longer than `cell`
+/// [m], at most formats::kMostCuts. What moves is measured in several frames, so that it has the same elements in all
+/// frames of a segment.
 class MeshCuts {
  public:
   /// `measured`: frames of one segment, which must outlive this; at least one.
@@ -44,17 +47,17 @@ class MeshCuts {
   std::vector<const SceneFrame*> measured_;
 };
 
-/// What photons bring to the elements that they arrive at, as whole multiples of a unit: the sums have no order. An element is found by a
-/// short ray onto the surface from the side at which the photon arrived.
+/// What photons bring to the elements that they arrive at, as whole multiples of a unit: the sums have no order. An
+/// element is found by a short ray onto the surface from the side at which the photon arrived.
 class MeshSums {
  public:
   struct Cell {
     std::uint32_t photons = 0;
     std::array<std::int64_t, 3> sums{};
-    double squares = 0;                      ///< of the photons' luminance, unit^2
+    double squares = 0;  ///< of the photons' luminance, unit^2
     bool operator==(const Cell&) const = default;
   };
-  using Side = std::tuple<std::uint32_t, std::uint32_t, std::uint16_t>;   ///< surface, triangle, side
+  using Side = std::tuple<std::uint32_t, std::uint32_t, std::uint16_t>;  ///< surface, triangle, side
 
   /// `unit` [W] > 0.
   MeshSums(const Tracer& tracer, const MeshCuts& cuts, double unit) : tracer_(tracer), cuts_(cuts), unit_(unit) {}
@@ -77,13 +80,15 @@ class MeshSums {
 
 /// Photons that the spatial filter counts in the mean of an element: noise of 1/16.
 inline constexpr double kPhotonsInKernel = 256;
-/// Deviation [m] of the Gaussian that counts `in_kernel` of the photons that are spread over an area [m^2]: it counts as much area as
-/// 4 pi deviations squared.
+/// Deviation [m] of the Gaussian that counts `in_kernel` of the photons that are spread over an area [m^2]: it counts
+/// as much area as 4 pi deviations squared.
 double kernel_width(double area, double photons, double in_kernel = kPhotonsInKernel);
 
-/// Light textures of windows, the photons of many frames. Photons that the filter counts in the mean of a full one: noise of 1/50.
+/// Light textures of windows, the photons of many frames. Photons that the filter counts in the mean of a full one:
+/// noise of 1/50.
 inline constexpr double kPhotonsInWindow = 2500;
-/// Edge of their elements, in deviations of the filter: light is read linearly between elements, so that smaller ones would show no more.
+/// Edge of their elements, in deviations of the filter: light is read linearly between elements, so that smaller ones
+/// would show no more.
 inline constexpr double kCellOfWindows = 2;
 /// Their widths where so many photons arrive in all frames of a full window at surfaces of this area.
 MeshOptions window_widths(double area, double photons);
@@ -97,8 +102,8 @@ MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std
 /// Most elements of a frame, lit or not: 2^25, 2 GB.
 inline constexpr std::uint64_t kMostElements = std::uint64_t(1) << 25;
 
-/// All elements of a frame in the order of the file, both sides of each triangle that has an area, with no light in them. InputError
-/// beyond kMostElements.
+/// All elements of a frame in the order of the file, both sides of each triangle that has an area, with no light in
+/// them. InputError beyond kMostElements.
 std::vector<formats::MeshElement> all_elements(const SceneFrame& frame, const MeshCuts& cuts);
 /// Puts the photons in.
 void put_sums(const MeshSums& sums, std::vector<formats::MeshElement>& elements);
@@ -106,14 +111,16 @@ void put_sums(const MeshSums& sums, std::vector<formats::MeshElement>& elements)
 void leave_out_dark(std::vector<formats::MeshElement>& elements);
 
 /// Sets the irradiance [W/m^2] of all_elements() from their `flux` [W]: flux over area, both weighted by the
-/// same kernel around the element, over elements that face the same way (normals within 30 degrees), lie in its plane within a
-/// width, and have its material: nothing is lost at edges, and light does not go around corners. The bilateral filter then weighs by how alike
-/// irradiance is, as the Gaussian of the same width has it. The whole flux of each object is kept.
-/// `widths` [m]: each element's own, in place of the filter's; 0: nothing arrives there. Empty: the filter's.
-void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter, std::span<const float> widths,
-                     std::vector<formats::MeshElement>& elements);
+/// same kernel around the element, over elements that face the same way (normals within 30 degrees), lie in its plane
+/// within a width, and have its material: nothing is lost at edges, and light does not go around corners. The bilateral
+/// filter then weighs by how alike irradiance is, as the Gaussian of the same width has it. The whole flux of each
+/// object is kept. `widths` [m]: each element's own, in place of the filter's; 0: nothing arrives there. Empty: the
+/// filter's.
+void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
+                     std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 
 /// The elements that light reaches through the filter, in the order of the file.
-std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums, const MeshFilter& filter);
+std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
+                                                const MeshFilter& filter);
 
 }  // namespace tempolux

@@ -11,7 +11,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kSamePlace = 1e-3f;          ///< of a cell: corners closer than this are one
+constexpr float kSamePlace = 1e-3f;  ///< of a cell: corners closer than this are one
 
 /// One number for each side: 32 bits of surface, 31 of triangle, one of side.
 std::uint64_t key(std::uint32_t surface, std::uint32_t triangle, std::uint32_t side) {
@@ -19,7 +19,9 @@ std::uint64_t key(std::uint32_t surface, std::uint32_t triangle, std::uint32_t s
 }
 
 /// Number of a corner among those of its side.
-std::uint32_t corner(std::uint32_t n, std::uint32_t column, std::uint32_t row) { return row * (n + 1) - row * (row - 1) / 2 + column; }
+std::uint32_t corner(std::uint32_t n, std::uint32_t column, std::uint32_t row) {
+  return row * (n + 1) - row * (row - 1) / 2 + column;
+}
 
 /// Corners of a cell: column and row of each.
 std::array<std::array<std::uint32_t, 2>, 3> corners_of(const formats::MeshPlace& p) {
@@ -29,7 +31,8 @@ std::array<std::array<std::uint32_t, 2>, 3> corners_of(const formats::MeshPlace&
 
 std::uint64_t place_of(Vec3 p, float step) {
   std::uint64_t hash = 0;
-  for (int c = 0; c < 3; ++c) hash = mix64(hash + std::uint64_t(std::int64_t(std::floor(double(p[c]) / double(step) + 0.5))));
+  for (int c = 0; c < 3; ++c)
+    hash = mix64(hash + std::uint64_t(std::int64_t(std::floor(double(p[c]) / double(step) + 0.5))));
   return hash;
 }
 
@@ -51,7 +54,8 @@ MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame
       for (const auto& [column, row] : corners_of(formats::mesh_place(n, u, v))) {
         const float x = float(column) / float(n), y = float(row) / float(n);
         const Vec3 place = a * (1 - x - y) + b * x + c * y;
-        meetings.push_back({place_of(place, kSamePlace * float(file.header.cell)), std::uint32_t(i), count + corner(n, column, row)});
+        meetings.push_back(
+            {place_of(place, kSamePlace * float(file.header.cell)), std::uint32_t(i), count + corner(n, column, row)});
       }
     }
     count += (n + 1) * (n + 2) / 2;
@@ -60,7 +64,8 @@ MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame
   join(meetings, elements, frame);
 }
 
-void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements, const SceneFrame& frame) {
+void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements,
+                     const SceneFrame& frame) {
   std::sort(meetings.begin(), meetings.end());
   const auto material = [&](const Meeting& m) { return frame.surfaces[elements[m.element].surface].material; };
   const auto normal = [&](const Meeting& m) {
@@ -74,7 +79,8 @@ void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::
       double area = 0;
       for (std::size_t k = first; k < last; ++k) {
         const formats::MeshElement& e = elements[meetings[k].element];
-        if (material(meetings[m]) != material(meetings[k]) || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay) continue;
+        if (material(meetings[m]) != material(meetings[k]) || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay)
+          continue;
         sum += Rgbd(double(e.irradiance[0]), double(e.irradiance[1]), double(e.irradiance[2])) * double(e.area);
         area += double(e.area);
       }
@@ -88,7 +94,8 @@ Rgb MeshLight::irradiance(const SurfacePoint& hit, Vec3 geometric) const {
   if (found == sides_.end()) return Rgb(0.0f);
   const Side& side = found->second;
   const formats::MeshPlace p = formats::mesh_place(side.cuts, hit.u, hit.v);
-  const std::array<float, 3> weights = p.tip ? std::array{1 - p.y, 1 - p.x, p.x + p.y - 1} : std::array{1 - p.x - p.y, p.x, p.y};
+  const std::array<float, 3> weights =
+      p.tip ? std::array{1 - p.y, 1 - p.x, p.x + p.y - 1} : std::array{1 - p.x - p.y, p.x, p.y};
   const auto corners = corners_of(p);
   Rgb sum{0.0f};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -14,9 +14,9 @@ namespace tempolux {
 
 /// Irradiance [W/m^2] of a .meshirrad file where a ray meets a surface. Thread-safe.
 ///
-/// At a corner of elements it is the mean of those that meet there, weighed by area, that face the same way (normals within 30 degrees) and
-/// have the same material; within an element it is linear between its corners. So no edge between elements is seen, and even light
-/// stays even.
+/// At a corner of elements it is the mean of those that meet there, weighed by area, that face the same way (normals
+/// within 30 degrees) and have the same material; within an element it is linear between its corners. So no edge
+/// between elements is seen, and even light stays even.
 class MeshLight {
  public:
   /// `frame`: that of the file.
@@ -27,20 +27,22 @@ class MeshLight {
 
  private:
   struct Side {
-    std::uint32_t first = 0;                 ///< of its corners
+    std::uint32_t first = 0;  ///< of its corners
     std::uint32_t cuts = 0;
   };
   /// An element at one of its corners.
   struct Meeting {
-    std::uint64_t place = 0;                 ///< hash of where
-    std::uint32_t element = 0, corner = 0;   ///< corner: in corners_
-    bool operator<(const Meeting& o) const { return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner); }
+    std::uint64_t place = 0;                ///< hash of where
+    std::uint32_t element = 0, corner = 0;  ///< corner: in corners_
+    bool operator<(const Meeting& o) const {
+      return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner);
+    }
   };
   void join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements, const SceneFrame& frame);
 
-  std::unordered_map<std::uint64_t, Side> sides_;   ///< by surface, triangle, side
-  std::vector<Rgb> corners_;                 ///< of each side (n + 1) (n + 2) / 2, in rows of equal v
-  std::size_t size_ = 0;                     ///< elements
+  std::unordered_map<std::uint64_t, Side> sides_;  ///< by surface, triangle, side
+  std::vector<Rgb> corners_;                       ///< of each side (n + 1) (n + 2) / 2, in rows of equal v
+  std::size_t size_ = 0;                           ///< elements
 };
 
 }  // namespace tempolux

@@ -61,8 +61,8 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
 /// Adds records at points that none covers yet.
 class Placement {
  public:
-  Placement(const FinalGather& gather, const PixelView& view, const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
-            const RecordSource* source)
+  Placement(const FinalGather& gather, const PixelView& view, const PlacementOptions& options, RecordStore& store,
+            GatherCounts& counts, const RecordSource* source)
       : gather_(gather), view_(view), options_(options), store_(store), counts_(counts), source_(source) {}
 
   /// Points of pixels, in a fixed shuffled order. look(pixel): where to look; note(pixel, seen): what was seen.
@@ -81,20 +81,22 @@ class Placement {
     });
     std::vector<Open> open;
     for (const auto& some : found) open.insert(open.end(), some.begin(), some.end());
-    std::sort(open.begin(), open.end(), [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
+    std::sort(open.begin(), open.end(),
+              [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
     for (std::size_t start = 0; start < open.size(); start += kPlacedTogether)
       add_batch(std::span(open).subspan(start, std::min(kPlacedTogether, open.size() - start)));
   }
 
  private:
   struct Open {
-    std::uint64_t key;   ///< what it is sorted by
+    std::uint64_t key;  ///< what it is sorted by
     std::size_t pixel;
     SeenPoint seen;
   };
 
   bool is_covered(const SeenPoint& seen) const {
-    return store_.covers(seen.surface.position, seen.normal, options_.min_weight, options_.min_radius_px * seen.footprint);
+    return store_.covers(seen.surface.position, seen.normal, options_.min_weight,
+                         options_.min_radius_px * seen.footprint);
   }
 
   void add_batch(std::span<const Open> points) {
@@ -148,7 +150,8 @@ float radius_of(const IrradianceRecord& record, float footprint, const Placement
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   record.radius = radius_of(record, footprint, options);
   record.radius_unclamped = radius_by_distances(record, footprint, options);
-  // double: sums of gradients, whatever the strength of the light, stay finite, and its power of two changes no gradient's share.
+  // double: sums of gradients, whatever the strength of the light, stay finite, and its power of two changes no
+  // gradient's share.
   double kept = std::min(1.0, double(record.radius_unclamped) / double(record.radius)), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
   const double e = channel_sum(Rgbd(record.irradiance)), over = kept * slope * double(record.radius);
@@ -172,9 +175,15 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
   };
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
-    placement.cover(pixels, [&](std::size_t pixel) { return look_at(pixel, {0.5f, 0.5f}); }, [&](std::size_t pixel, const SeenPoint& seen) {
-      glimpses[pixel] = {seen.surface.position, seen.normal, seen.footprint, seen.surface.object, true, seen.by_choice};
-    });
+    placement.cover(
+        pixels,
+        [&](std::size_t pixel) {
+          return look_at(pixel, {0.5f, 0.5f});
+        },
+        [&](std::size_t pixel, const SeenPoint& seen) {
+          glimpses[pixel] = {seen.surface.position, seen.normal, seen.footprint,
+                             seen.surface.object,   true,        seen.by_choice};
+        });
     advance(pixels.size());
   }
   const std::vector<std::size_t> edges = edge_pixels(glimpses, width, height);

@@ -12,23 +12,24 @@
 namespace tempolux {
 
 struct PlacementOptions {
-  float error_bound = 0.2f;           ///< validity radius / harmonic mean distance to what is seen
-  float min_radius_px = 4;            ///< a record is valid this many pixels around it at least
-  /// And as many where its rays met nothing, so that no distance says how far it holds; Mitsuba and PBRT limit all radii to
-  /// 7 and 6 times the least.
+  float error_bound = 0.2f;  ///< validity radius / harmonic mean distance to what is seen
+  float min_radius_px = 4;   ///< a record is valid this many pixels around it at least
+  /// And as many where its rays met nothing, so that no distance says how far it holds; Mitsuba and PBRT limit all
+  /// radii to 7 and 6 times the least.
   float unseen_radius_px = 32;
-  float min_weight = 0.9f;           ///< sum of weights that counts as covered; a record has 1 at its own place
+  float min_weight = 0.9f;  ///< sum of weights that counts as covered; a record has 1 at its own place
 };
 
 /// A surface point that a camera sees at a pixel, directly or through mirrors and glass.
 struct SeenPoint {
   SurfacePoint surface;
-  Vec3 normal;                        ///< shading normal on the side seen
-  float footprint = 0;                ///< m: size of a pixel there
-  bool by_choice = false;             ///< seen through a surface that could have sent the ray elsewhere
+  Vec3 normal;             ///< shading normal on the side seen
+  float footprint = 0;     ///< m: size of a pixel there
+  bool by_choice = false;  ///< seen through a surface that could have sent the ray elsewhere
 };
 
-/// A raster position of a picture. Where the way forks (glass, gloss) it is drawn from `random`, or the likelier one without.
+/// A raster position of a picture. Where the way forks (glass, gloss) it is drawn from `random`, or the likelier one
+/// without.
 struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;
@@ -38,8 +39,8 @@ using PixelView = std::function<std::optional<SeenPoint>(const Look&)>;
 
 /// Where records come from in place of FinalGather::gather, for whoever keeps what rays brought.
 struct RecordSource {
-  /// A record with its radius limited and its surroundings looked at. slot: below kPlacedTogether, its number among those gathered
-  /// side by side.
+  /// A record with its radius limited and its surroundings looked at. slot: below kPlacedTogether, its number among
+  /// those gathered side by side.
   std::function<IrradianceRecord(const SeenPoint&, std::size_t slot, GatherCounts&)> gather;
   /// The record of a slot has become the store's last.
   std::function<void(std::size_t slot)> added;
@@ -51,22 +52,25 @@ inline constexpr std::size_t kPlacedTogether = 256;
 /// gathered in parallel, its records are added in order. Then four more points in each pixel at an edge or behind
 /// glass, so that a frame's samples find records there too. The same records for any number of threads.
 /// Returns how many were added.
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const PlacementOptions& options, RecordStore& store,
-                          GatherCounts& counts, const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
+std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
+                          const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
+                          const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
 
-/// Radius r [m] of a record by R, the harmonic mean distance to what its rays met, those that met nothing left out [Ward, Rubinstein and
-/// Clear 1988]:
+/// Radius r [m] of a record by R, the harmonic mean distance to what its rays met, those that met nothing left out
+/// [Ward, Rubinstein and Clear 1988]:
 ///
-///     1 / r = k / (error_bound R) + (1 - k) / (unseen_radius_px footprints),     k = 0 for 8 such rays or fewer, 1 for 32 or more
+///     1 / r = k / (error_bound R) + (1 - k) / (unseen_radius_px footprints),     k = 0 for 8 such rays or fewer, 1 for
+///     32 or more
 ///
 /// but r is at least min_radius_px footprints [Tabellion and Lamorlette 2004]. The radius follows from distances
-/// alone, and a small thing that few rays meet has no say. If it had, records whose rays missed the thing would reach farther than those
-/// that met it, and the mean would be dark.
+/// alone, and a small thing that few rays meet has no say. If it had, records whose rays missed the thing would reach
+/// farther than those that met it, and the mean would be dark.
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
-/// Sets the radius of a gathered record, whose radius_unclamped is R; radius_unclamped keeps r before min_radius_px. The translational
-/// gradient is reduced
-/// - by how much the least radius is larger than what distances give: near a wall a gradient is large, noisy and holds over that part only
+/// Sets the radius of a gathered record, whose radius_unclamped is R; radius_unclamped keeps r before min_radius_px.
+/// The translational gradient is reduced
+/// - by how much the least radius is larger than what distances give: near a wall a gradient is large, noisy and holds
+/// over that part only
 ///   [Jakob, Mitsuba 0.6];
 /// - to what leaves the irradiance at or above zero within the radius.
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);

@@ -9,12 +9,11 @@
 
 namespace tempolux {
 
-PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
-                           std::uint8_t kinds, Vec3d shift)
-    : options_(options),
-      area_(tracer),
-      index_(photons, kinds, shift) {
-  if (!(options_.max_radius > 0)) options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening, options_.where);
+PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons,
+                           const DensityOptions& options, std::uint8_t kinds, Vec3d shift)
+    : options_(options), area_(tracer), index_(photons, kinds, shift) {
+  if (!(options_.max_radius > 0))
+    options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening, options_.where);
 }
 
 /// The k nearest, or all within max_radius.
@@ -61,9 +60,9 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
     any = true;
   }
   if (!any) return Rgb(0.0f);
-  const double inverse =
-      whole ? 1 / (double(kPi) * double(radius) * double(radius))
-            : area_.inverse(point.position, point.normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
+  const double inverse = whole ? 1 / (double(kPi) * double(radius) * double(radius))
+                               : area_.inverse(point.position, point.normal, radius, options_.area_probes,
+                                               ReachableArea::Kernel::flat, random);
   return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
 }
 

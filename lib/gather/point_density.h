@@ -14,10 +14,10 @@
 namespace tempolux {
 
 struct DensityOptions {
-  int neighbours = 50;   ///< k
-  float max_radius = 0;  ///< m; 0: kSparser times the photons' own (photon_reach)
-  int area_probes = 32;  ///< that must arrive where the disc is not whole
-  std::function<bool(Vec3)> where = {};   ///< places whose photons say what their own radius is; none: all
+  int neighbours = 50;                   ///< k
+  float max_radius = 0;                  ///< m; 0: kSparser times the photons' own (photon_reach)
+  int area_probes = 32;                  ///< that must arrive where the disc is not whole
+  std::function<bool(Vec3)> where = {};  ///< places whose photons say what their own radius is; none: all
 };
 
 /// Density estimates over one set of photons. Thread-safe.
@@ -45,8 +45,8 @@ class PointDensity {
 
  private:
   struct Disc {
-    double radius = 0;          ///< m; 0: no photon is near
-    std::size_t farthest = 0;   ///< of the photons found: not summed
+    double radius = 0;         ///< m; 0: no photon is near
+    std::size_t farthest = 0;  ///< of the photons found: not summed
   };
   Disc find(Vec3 position, Vec3 normal, NeighbourList& found) const;
   Rgb plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const;

@@ -9,13 +9,14 @@
 namespace tempolux {
 namespace {
 
-constexpr double kHeld = 0.95;     // docs/methods/aim.md, "Irradiance points"
-constexpr double kPiece = 0.25;    ///< of a sphere's radius
+constexpr double kHeld = 0.95;   // docs/methods/aim.md, "Irradiance points"
+constexpr double kPiece = 0.25;  ///< of a sphere's radius
 
 /// Halves of the edges divide it in four; piece by piece, until spheres hold all or nothing of it, or it is small.
 class Splitter {
  public:
-  Splitter(std::span<const AimSphere> spheres, std::uint32_t triangle, std::array<Vec3d, 3> corners, std::vector<TrianglePiece>& pieces)
+  Splitter(std::span<const AimSphere> spheres, std::uint32_t triangle, std::array<Vec3d, 3> corners,
+           std::vector<TrianglePiece>& pieces)
       : spheres_(spheres), triangle_(triangle), corners_(corners), pieces_(pieces) {}
 
   void split(const std::array<Vec2, 3>& at) {
@@ -30,7 +31,8 @@ class Splitter {
       const double away = length(middle - sphere.centre);
       if (away > sphere.radius + reach) continue;
       if (away <= sphere.radius) within |= 1u << k;
-      const bool whole = std::ranges::all_of(p, [&](Vec3d corner) { return length(corner - sphere.centre) <= sphere.radius; });
+      const bool whole =
+          std::ranges::all_of(p, [&](Vec3d corner) { return length(corner - sphere.centre) <= sphere.radius; });
       split_it = split_it || (!whole && longest > kPiece * sphere.radius);
     }
     const std::array<Vec2, 3> half{between(at[1], at[2]), between(at[2], at[0]), between(at[0], at[1])};
@@ -66,7 +68,8 @@ std::vector<TrianglePiece> pieces_in(const Surface& surface, std::span<const Aim
   parallel_chunks(triangles.size(), kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto& t = triangles[i];
-      Splitter(spheres, std::uint32_t(i), {Vec3d(surface.position(t[0])), Vec3d(surface.position(t[1])), Vec3d(surface.position(t[2]))},
+      Splitter(spheres, std::uint32_t(i),
+               {Vec3d(surface.position(t[0])), Vec3d(surface.position(t[1])), Vec3d(surface.position(t[2]))},
                found[first / kChunk])
           .split({Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}});
     }

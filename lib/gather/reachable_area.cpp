@@ -12,10 +12,10 @@
 namespace tempolux {
 namespace {
 
-constexpr int kRim = 16;             ///< places on the rim that are looked at first
-constexpr int kMostProbes = 32;      ///< times the probes that must arrive
+constexpr int kRim = 16;         ///< places on the rim that are looked at first
+constexpr int kMostProbes = 32;  ///< times the probes that must arrive
 constexpr int kMostBends = 4;
-constexpr int kMostInColumn = 8;     ///< surfaces on top of each other
+constexpr int kMostInColumn = 8;  ///< surfaces on top of each other
 
 }  // namespace
 
@@ -41,7 +41,8 @@ bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
 }
 
 Ray Reach::across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const {
-  return {position + up * (2 * offset_), normalize(outwards - up * dot(outwards, up)) + up * Clearance::kRise, 0, reach, true};
+  return {position + up * (2 * offset_), normalize(outwards - up * dot(outwards, up)) + up * Clearance::kRise, 0, reach,
+          true};
 }
 
 /// m: how far one comes along a ray that has met something.
@@ -80,8 +81,10 @@ ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tra
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
-/// whole_towards() from `start` (start_of), looking `down` metres from the rim (depth_of): worked out once for all spokes.
-inline bool ReachableArea::whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift, float down) const {
+/// whole_towards() from `start` (start_of), looking `down` metres from the rim (depth_of): worked out once for all
+/// spokes.
+inline bool ReachableArea::whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift,
+                                      float down) const {
   const Vec3 rim = start + normal * lift + outwards * radius;
   Hit hit;
   return reach_.free(start, rim) && tracer_.intersect({rim, -normal, 0, down, true}, hit) &&
@@ -94,7 +97,8 @@ bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn, 
   const float down = depth_of(radius, lift);
   for (int i = 0; i < kRim; ++i) {
     const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
-    if (!whole_from(start, normal, frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi), radius, lift, down)) return false;
+    if (!whole_from(start, normal, frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi), radius, lift, down))
+      return false;
   }
   return true;
 }
@@ -104,9 +108,10 @@ bool ReachableArea::whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, flo
 }
 
 /// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
-/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with the
-/// probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1): weights
-/// themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel: u = 0.
+/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with
+/// the probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1):
+/// weights themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel:
+/// u = 0.
 inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
   const float half = std::max(4 * reach_.offset(), height);
   Vec3 top = position + across + normal * half;
@@ -132,8 +137,9 @@ inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, floa
 /// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives) if they
 /// are independent [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in
 /// the mean. Spread evenly they are less noisy, but the mean is low by up to 1 / (2 m): m arrive as soon as m - 1/2 are
-/// to be expected. So for the flat kernel they are spread, for footprints, many of which light a place, they are independent. With the
-/// round kernel the area counts by its weight, which is what the columns are drawn by: density 2 (1 - d^2) / pi.
+/// to be expected. So for the flat kernel they are spread, for footprints, many of which light a place, they are
+/// independent. With the round kernel the area counts by its weight, which is what the columns are drawn by: density 2
+/// (1 - d^2) / pi.
 double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel,
                               const PathRandom& random) const {
   const Frame frame(normal);
@@ -146,7 +152,7 @@ double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int prob
     Vec2 d = sample_disc_concentric(round ? random.get2(i, Purpose::place) : sobol_owen_2d(i, key));
     if (round) {
       const float uniform = std::min(1.0f, d.x * d.x + d.y * d.y), inward = 1 / std::sqrt(1 + std::sqrt(1 - uniform));
-      d = {d.x * inward, d.y * inward};   // d^2 = 1 - sqrt(1 - uniform)
+      d = {d.x * inward, d.y * inward};  // d^2 = 1 - sqrt(1 - uniform)
     }
     const float height = radius / kFlattening * std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
     const float here = column(position, normal, (frame.tangent * d.x + frame.bitangent * d.y) * radius, height,

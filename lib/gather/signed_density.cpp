@@ -13,24 +13,27 @@ double largest(Rgb flux) { return double(std::max({std::abs(flux.r), std::abs(fl
 
 }  // namespace
 
-SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options,
-                             Vec3d shift)
+SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons,
+                             const DensityOptions& options, Vec3d shift)
     : options_(options), area_(standing), index_(photons, kind_bit(formats::PathKind::indirect), shift) {
   if (!(options_.max_radius > 0) && index_.size() > 0)
     options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
 }
 
-void SignedDensity::find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area, NeighbourList& found) const {
+void SignedDensity::find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area,
+                         NeighbourList& found) const {
   index_.find_within({position, normal, radius, kMinCos, kFlattening, kAllKinds}, found);
   if (found.count() == 0 || area.known) return;
   area.known = true;
   area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));
-  area.inverse = area.whole || !(radius > 4 * area_.offset())
-                     ? 1 / (double(kPi) * double(radius) * double(radius))
-                     : area_.inverse(position, normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
+  area.inverse =
+      area.whole || !(radius > 4 * area_.offset())
+          ? 1 / (double(kPi) * double(radius) * double(radius))
+          : area_.inverse(position, normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
 }
 
-double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const {
+double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
+                                     Area& area) const {
   thread_local NeighbourList found;
   if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
   find(position, normal, radius, random, area, found);
@@ -40,15 +43,15 @@ double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, c
   return sum * area.inverse;
 }
 
-std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
-                                                       Area& area) const {
+std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius,
+                                                       const PathRandom& random, Area& area) const {
   thread_local NeighbourList found;
   if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
   find(position, normal, radius, random, area, found);
   if (found.count() == 0) return std::nullopt;
   Change change;
   for (std::size_t i = 0; i < found.count(); ++i) {
-    if (!(found.distance2()[i] < radius * radius)) continue;   // the static estimate leaves out the one that it touches
+    if (!(found.distance2()[i] < radius * radius)) continue;  // the static estimate leaves out the one that it touches
     const std::uint32_t photon = found.photons()[i];
     const Vec3 place = index_.position(photon);
     const bool flat = area.whole && std::abs(dot(place - position, normal)) < 4 * area_.offset();

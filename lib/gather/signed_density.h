@@ -13,17 +13,19 @@
 
 namespace tempolux {
 
-/// Density estimates over the indirect photons of a dynamic map, in discs that are given: their radii come from the static photons,
-/// as those from few dynamic ones are noise. Occlusion and area are those of the standing scene, as PointDensity has
-/// them. Thread-safe.
+/// Density estimates over the indirect photons of a dynamic map, in discs that are given: their radii come from the
+/// static photons, as those from few dynamic ones are noise. Occlusion and area are those of the standing scene, as
+/// PointDensity has them. Thread-safe.
 class SignedDensity {
  public:
   /// shift: m, added to the photons' positions.
-  SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options, Vec3d shift);
+  SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options,
+                Vec3d shift);
 
   struct Change {
-    Rgbd irradiance{0.0};   ///< W/m^2: sum of flux with its sign / area
-    double influence = 0;   ///< W/m^2: sum of the largest channel of |flux| / area; what comes and what goes do not cancel
+    Rgbd irradiance{0.0};  ///< W/m^2: sum of flux with its sign / area
+    double influence =
+        0;  ///< W/m^2: sum of the largest channel of |flux| / area; what comes and what goes do not cancel
   };
   /// m: largest radius of a disc; if the options have none, PointDensity::kSparser times the photons' own reach.
   float max_radius() const { return options_.max_radius; }
@@ -37,7 +39,7 @@ class SignedDensity {
   /// What can be reached of a disc of the standing scene: the same for all maps of a segment.
   struct Area {
     bool known = false, whole = false;
-    double inverse = 0;   ///< 1/m^2
+    double inverse = 0;  ///< 1/m^2
   };
   /// The same; `area` is found if it is not known yet and needed.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;

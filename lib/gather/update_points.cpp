@@ -17,13 +17,14 @@ using formats::Photon;
 
 /// Without branches: it is asked of millions of photons, few of which are near.
 bool inside(const Box3& box, Vec3 p, float margin) {
-  return (p.x >= box.lower.x - margin) & (p.x <= box.upper.x + margin) & (p.y >= box.lower.y - margin) & (p.y <= box.upper.y + margin) &
-         (p.z >= box.lower.z - margin) & (p.z <= box.upper.z + margin);
+  return (p.x >= box.lower.x - margin) & (p.x <= box.upper.x + margin) & (p.y >= box.lower.y - margin) &
+         (p.y <= box.upper.y + margin) & (p.z >= box.lower.z - margin) & (p.z <= box.upper.z + margin);
 }
 
 bool near_any(const MovingBoxes& boxes, Vec3 p, float margin) {
   return inside(boxes.all, p, margin) &&
-         std::any_of(boxes.surfaces.begin(), boxes.surfaces.end(), [&](const Box3& box) { return !box.empty() && inside(box, p, margin); });
+         std::any_of(boxes.surfaces.begin(), boxes.surfaces.end(),
+                     [&](const Box3& box) { return !box.empty() && inside(box, p, margin); });
 }
 
 /// Do lights move or change, so that what they give is another everywhere?
@@ -36,7 +37,8 @@ bool lights_change(const SceneFrame& frame) {
 }
 
 bool any_caustic(std::span<const Photon> photons) {
-  return std::any_of(photons.begin(), photons.end(), [](const Photon& photon) { return photon.kind == PathKind::caustic; });
+  return std::any_of(photons.begin(), photons.end(),
+                     [](const Photon& photon) { return photon.kind == PathKind::caustic; });
 }
 
 /// m: the largest radius of an estimate, as far as points tell; 0 if they do not.
@@ -47,25 +49,30 @@ float largest_radius(const PointOptions& options, std::span<const IrradiancePoin
   return largest;
 }
 
-Rgb not_negative(const Rgbd& sum) { return Rgb(Rgbd{std::max(0.0, sum.r), std::max(0.0, sum.g), std::max(0.0, sum.b)}); }
+Rgb not_negative(const Rgbd& sum) {
+  return Rgb(Rgbd{std::max(0.0, sum.r), std::max(0.0, sum.g), std::max(0.0, sum.b)});
+}
 
 }  // namespace
 
 std::function<bool(Vec3, const Photon&)> static_photons_read(const SceneFrame& frame, const PointOptions& options,
-                                                            std::span<const IrradiancePoint> points,
-                                                            std::span<const Photon> dynamic_photons) {
+                                                             std::span<const IrradiancePoint> points,
+                                                             std::span<const Photon> dynamic_photons) {
   // Points whose disc what moves may cut are anew: of a radius or less from it, and their photons as far again.
   const float reach = 2 * largest_radius(options, points);
-  return [boxes = moving_boxes(frame), reach, caustic = any_caustic(dynamic_photons)](Vec3 place, const Photon& photon) {
-    return !(reach > 0) || (caustic && photon.kind == PathKind::caustic) || near_any(boxes, place, reach);
-  };
+  return
+      [boxes = moving_boxes(frame), reach, caustic = any_caustic(dynamic_photons)](Vec3 place, const Photon& photon) {
+        return !(reach > 0) || (caustic && photon.kind == PathKind::caustic) || near_any(boxes, place, reach);
+      };
 }
 
-PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& options, std::vector<IrradiancePoint>& points) {
+PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& options,
+                                std::vector<IrradiancePoint>& points) {
   PointUpdateCounts counts;
   const SceneFrame& frame = in.whole.frame();
   // Points that found fewer static photons than they wanted have the largest radius of all.
-  DensityOptions density{options.neighbours, largest_radius(options, points), std::min(options.area_probes, kChangeProbes)};
+  DensityOptions density{options.neighbours, largest_radius(options, points),
+                         std::min(options.area_probes, kChangeProbes)};
   const SignedDensity density_of_change(in.standing, in.dynamic_photons.photons, density, in.dynamic_shift);
   density.max_radius = density_of_change.max_radius();
   const MovingBoxes boxes = moving_boxes(frame);
@@ -89,7 +96,8 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
     std::size_t count = 0;
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[others[i]];
-      const auto change = density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]));
+      const auto change =
+          density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]));
       if (!change) continue;
       point.indirect = not_negative(Rgbd(point.indirect) + change->irradiance);
       ++count;
@@ -100,9 +108,10 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
 
   const PhotonMaps maps{in.static_photons, in.dynamic_photons, in.static_shift, in.dynamic_shift};
   // Beside what moves: all photons that an estimate there may ask for.
-  const formats::PhotonBlock near = anew.empty() ? formats::PhotonBlock{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
-    return near_any(boxes, place, widest + density.max_radius);
-  });
+  const formats::PhotonBlock near =
+      anew.empty() ? formats::PhotonBlock{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
+        return near_any(boxes, place, widest + density.max_radius);
+      });
   std::vector<Rgb> caustic;
   for (const IrradiancePoint& point : points) caustic.push_back(point.caustic);
   PointOptions limited = options;
@@ -111,8 +120,10 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
 
   // Caustic light has footprints instead of discs: all of it anew if any is another.
   if (any_caustic(in.dynamic_photons.photons)) {
-    const formats::PhotonBlock all = whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
-    const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0}, kind_bit(PathKind::caustic), {});
+    const formats::PhotonBlock all =
+        whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
+    const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0},
+                                      kind_bit(PathKind::caustic), {});
     estimate_caustic(in.whole, footprints, points);
   } else {
     for (std::size_t i = 0; i < points.size(); ++i) points[i].caustic = caustic[i];

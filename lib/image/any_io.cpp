@@ -20,7 +20,8 @@ namespace tempolux {
 namespace {
 
 constexpr const char* kHelper = "tempolux-oiio";
-constexpr std::uint64_t kLibraries = 2ull << 30;   ///< address space of OpenImageIO and its 261 libraries, with room to spare
+constexpr std::uint64_t kLibraries = 2ull
+                                     << 30;  ///< address space of OpenImageIO and its 261 libraries, with room to spare
 
 /// "exr", "hdr", "png", or OpenImageIO's name of a format the helper may open; "" for everything else.
 std::string format_of(const ByteFile& file) {
@@ -82,7 +83,9 @@ std::optional<Interleaved> parse(const std::vector<unsigned char>& printed, std:
   ImagePipeHead head;
   if (printed.size() < sizeof head) return {};
   std::memcpy(&head, printed.data(), sizeof head);
-  if (head.magic != ImagePipeHead{}.magic || head.width < 1 || head.height < 1 || head.channels < 1 || head.channels > 4) return {};
+  if (head.magic != ImagePipeHead{}.magic || head.width < 1 || head.height < 1 || head.channels < 1 ||
+      head.channels > 4)
+    return {};
   const std::uint64_t pixels = std::uint64_t(head.width) * std::uint64_t(head.height);
   const std::uint64_t bytes = pixels * std::uint64_t(head.channels) * sizeof(float);
   if (pixels > max_pixels || printed.size() - sizeof head != bytes) return {};
@@ -92,8 +95,9 @@ std::optional<Interleaved> parse(const std::vector<unsigned char>& printed, std:
 }
 
 Image load_by_helper(const std::string& path, const std::string& format, const ImageReadOptions& options) {
-  const std::string program = helper_program(kHelper, path + ": reading " + format,
-                                             "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG", options.module_folders);
+  const std::string program =
+      helper_program(kHelper, path + ": reading " + format,
+                     "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG", options.module_folders);
   // Pixels as floats of four channels at most, and as much again for what the libraries decode.
   const std::uint64_t most = options.max_pixels * 4 * sizeof(float);
   ChildLimits limits;
@@ -115,8 +119,7 @@ Image load_image(const std::string& path, const ImageReadOptions& options) {
   if (format == "png") return load_png(path, options.max_pixels);
   if (format.empty())
     throw InputError(
-        path +
-        ": byte 0: not an image we read (OpenEXR, PNG, Radiance HDR, JPEG, TIFF); convert it to EXR or PNG");
+        path + ": byte 0: not an image we read (OpenEXR, PNG, Radiance HDR, JPEG, TIFF); convert it to EXR or PNG");
   return load_by_helper(path, format, options);
 }
 

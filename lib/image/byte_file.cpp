@@ -35,8 +35,7 @@ void ByteFile::read_at(std::uint64_t offset, void* to, std::size_t count) const 
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw ResourceError(path_ + ": cannot read: " + std::strerror(errno));
     if (got == 0)
-      throw InputError(path_ + ": byte " + std::to_string(offset) +
-                       ": the file ends here, too early; write it again");
+      throw InputError(path_ + ": byte " + std::to_string(offset) + ": the file ends here, too early; write it again");
     next += got;
     offset += std::uint64_t(got);
     count -= std::size_t(got);

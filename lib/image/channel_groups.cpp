@@ -25,7 +25,8 @@ bool is_in_group(std::string_view channel, std::string_view group) {
 
 void keep_channels(const std::vector<std::string>& groups, Image& image) {
   const auto kept = [&](const std::string& group) {
-    return std::any_of(image.channels.begin(), image.channels.end(), [&](const Channel& c) { return is_in_group(c.name, group); });
+    return std::any_of(image.channels.begin(), image.channels.end(),
+                       [&](const Channel& c) { return is_in_group(c.name, group); });
   };
   for (const std::string& group : groups)
     if (!kept(group)) {
@@ -34,7 +35,8 @@ void keep_channels(const std::vector<std::string>& groups, Image& image) {
       throw InputError("no channels '" + group + "'; there are " + list);
     }
   std::erase_if(image.channels, [&](const Channel& channel) {
-    return std::none_of(groups.begin(), groups.end(), [&](const std::string& group) { return is_in_group(channel.name, group); });
+    return std::none_of(groups.begin(), groups.end(),
+                        [&](const std::string& group) { return is_in_group(channel.name, group); });
   });
 }
 

@@ -9,8 +9,9 @@
 
 namespace tempolux {
 
-/// Is the channel one of the group? RGBA: R G B A; layers: the colours of emission, specular, direct, caustic, indirect and volume; id: id.object;
-/// motion: forward.*, backward.*, valid, speed; any other group: the channel of this name and GROUP.*.
+/// Is the channel one of the group? RGBA: R G B A; layers: the colours of emission, specular, direct, caustic, indirect
+/// and volume; id: id.object; motion: forward.*, backward.*, valid, speed; any other group: the channel of this name
+/// and GROUP.*.
 bool is_in_group(std::string_view channel, std::string_view group);
 
 /// Leaves the channels of these groups alone. InputError for a group of which the image has none.

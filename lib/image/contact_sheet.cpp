@@ -35,8 +35,7 @@ Picture shrink(const Picture& from, int width, int height) {
         }
       const std::size_t at = 3 * (std::size_t(y) * std::size_t(width) + std::size_t(x));
       for (std::size_t c = 0; c < 3; ++c)
-        to.rgb[at + c] =
-            std::uint8_t(std::lround(255 * linear_to_srgb(float(sum[c] / ((x1 - x0) * (y1 - y0))))));
+        to.rgb[at + c] = std::uint8_t(std::lround(255 * linear_to_srgb(float(sum[c] / ((x1 - x0) * (y1 - y0))))));
     }
   }
   return to;
@@ -65,8 +64,7 @@ Picture contact_sheet(const std::vector<Picture>& pictures, int columns, int max
   int cell_width = 0, cell_height = 0;
   std::vector<Picture> small;
   for (const Picture& picture : pictures) {
-    if (picture.width < 1 || picture.height < 1)
-      throw std::invalid_argument("contact_sheet: an empty picture");
+    if (picture.width < 1 || picture.height < 1) throw std::invalid_argument("contact_sheet: an empty picture");
     small.push_back(fitted(picture, max_width));
     cell_width = std::max(cell_width, small.back().width);
     cell_height = std::max(cell_height, small.back().height);

@@ -18,10 +18,8 @@ std::string digest_of(const Image& image) {
   for (const Channel* channel : sorted) {
     hasher.add(channel->name);
     hasher.add(std::uint32_t(channel->ids.empty() ? 0 : 1));
-    if (channel->ids.empty())
-      hasher.add_array(std::span<const float>(channel->values));
-    else
-      hasher.add_array(std::span<const std::uint32_t>(channel->ids));
+    if (channel->ids.empty()) hasher.add_array(std::span<const float>(channel->values));
+    else hasher.add_array(std::span<const std::uint32_t>(channel->ids));
   }
   return hasher.hex();
 }

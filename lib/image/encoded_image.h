@@ -23,8 +23,8 @@ struct ImageHeader {
   bool has_alpha = false;     ///< of a WebP
 };
 
-/// Format and size of a PNG, JPEG or WebP file from its first bytes; nothing is decoded, nothing allocated. Throws InputError
-/// "PLACE: ..." for other formats (naming those we know) and for a damaged header.
+/// Format and size of a PNG, JPEG or WebP file from its first bytes; nothing is decoded, nothing allocated. Throws
+/// InputError "PLACE: ..." for other formats (naming those we know) and for a damaged header.
 ImageHeader read_image_header(std::span<const unsigned char> bytes, const std::string& place);
 
 /// Pixels as they are in a file, still encoded; row 0 on top, channels of a pixel together.
@@ -36,8 +36,9 @@ struct CodedPixels {
 };
 
 /// Decodes an image. What the file says about its colour space (gAMA, iCCP, ...) is not looked at: glTF 2.0, 3.8.2,
-/// leaves that to the texture. WebP is decoded by a helper process (lib/core/unpack.h). Throws InputError "PLACE: ..." for a damaged or truncated file, one whose size is not
-/// what the header said or over max_pixels, and for JPEG in CMYK.
+/// leaves that to the texture. WebP is decoded by a helper process (lib/core/unpack.h). Throws InputError "PLACE: ..."
+/// for a damaged or truncated file, one whose size is not what the header said or over max_pixels, and for JPEG in
+/// CMYK.
 CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels);
 
 }  // namespace tempolux

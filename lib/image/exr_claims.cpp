@@ -14,8 +14,7 @@ namespace {
 constexpr std::int32_t kLargestSide = 65536;
 constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
 constexpr std::uint64_t kFreeDisplayBytes = 256ull << 20;
-constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800,
-                        kMultipartFlag = 0x1000;
+constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800, kMultipartFlag = 0x1000;
 
 /// Compressions by their number in the file: lines of a chunk, and how many bytes of samples one byte of file
 /// can make at most: deflate 1032, run lengths 64, Pxr24 drops a quarter before deflate, Piz 410 (a run of
@@ -24,16 +23,8 @@ struct CompressionFacts {
   std::int32_t lines;
   std::uint64_t expansion;
 };
-constexpr std::array<CompressionFacts, 10> kCompressions{{{1, 1},
-                                                          {1, 64},
-                                                          {1, 1032},
-                                                          {16, 1032},
-                                                          {32, 410},
-                                                          {16, 1376},
-                                                          {32, 11},
-                                                          {32, 11},
-                                                          {32, 66048},
-                                                          {256, 66048}}};
+constexpr std::array<CompressionFacts, 10> kCompressions{
+    {{1, 1}, {1, 64}, {1, 1032}, {16, 1032}, {32, 410}, {16, 1376}, {32, 11}, {32, 11}, {32, 66048}, {256, 66048}}};
 
 class HeaderReader {
  public:
@@ -66,8 +57,7 @@ class HeaderReader {
     std::string text;
     for (char c; (c = number<char>()) != 0;) {
       text += c;
-      if (text.size() > 255)
-        fail(std::string("name of ") + of + " longer than 255 bytes; the header is damaged");
+      if (text.size() > 255) fail(std::string("name of ") + of + " longer than 255 bytes; the header is damaged");
     }
     return text;
   }
@@ -104,14 +94,33 @@ std::vector<ExrClaims::ClaimedChannel> read_channels(HeaderReader& in) {
   return channels;
 }
 
-/// Bytes of a value; 0: as many as the attribute says. OpenEXR takes so many whatever the attribute says, and would go on
-/// to read the rest of the header at another place than we.
+/// Bytes of a value; 0: as many as the attribute says. OpenEXR takes so many whatever the attribute says, and would go
+/// on to read the rest of the header at another place than we.
 std::int32_t size_of_type(std::string_view type) {
-  constexpr std::pair<std::string_view, std::int32_t> kSizes[] = {
-      {"box2f", 16}, {"box2i", 16}, {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1}, {"double", 8},
-      {"envmap", 1}, {"float", 4},  {"int", 4},             {"keycode", 28},    {"lineOrder", 1},      {"m33d", 72},
-      {"m33f", 36},  {"m44d", 128}, {"m44f", 64},           {"rational", 8},    {"tiledesc", 9},       {"timecode", 8},
-      {"v2d", 16},   {"v2f", 8},    {"v2i", 8},             {"v3d", 24},        {"v3f", 12},           {"v3i", 12}};
+  constexpr std::pair<std::string_view, std::int32_t> kSizes[] = {{"box2f", 16},
+                                                                  {"box2i", 16},
+                                                                  {"chromaticities", 32},
+                                                                  {"compression", 1},
+                                                                  {"deepImageState", 1},
+                                                                  {"double", 8},
+                                                                  {"envmap", 1},
+                                                                  {"float", 4},
+                                                                  {"int", 4},
+                                                                  {"keycode", 28},
+                                                                  {"lineOrder", 1},
+                                                                  {"m33d", 72},
+                                                                  {"m33f", 36},
+                                                                  {"m44d", 128},
+                                                                  {"m44f", 64},
+                                                                  {"rational", 8},
+                                                                  {"tiledesc", 9},
+                                                                  {"timecode", 8},
+                                                                  {"v2d", 16},
+                                                                  {"v2f", 8},
+                                                                  {"v2i", 8},
+                                                                  {"v3d", 24},
+                                                                  {"v3f", 12},
+                                                                  {"v3i", 12}};
   const auto found = std::ranges::find(kSizes, type, &std::pair<std::string_view, std::int32_t>::first);
   return found == std::end(kSizes) ? 0 : found->second;
 }
@@ -120,8 +129,8 @@ std::int32_t size_of_type(std::string_view type) {
 void check_preview(HeaderReader& in, std::int32_t size) {
   const std::uint64_t width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>();
   if (width > 65536 || height > 65536 || 8 + 4 * width * height != std::uint64_t(size))
-    in.fail("a preview of " + std::to_string(width) + " x " + std::to_string(height) + " pixels in " + std::to_string(size) +
-            " bytes; the header is damaged");
+    in.fail("a preview of " + std::to_string(width) + " x " + std::to_string(height) + " pixels in " +
+            std::to_string(size) + " bytes; the header is damaged");
 }
 
 /// One part's attributes up to the empty name that ends them. False: an empty header, which ends the parts.
@@ -144,7 +153,8 @@ bool read_part(HeaderReader& in, ExrClaims& part, std::uint64_t& chunk_count) {
     if (name == "displayWindow" && type == "box2i") part.display = read_window(in);
     if (type == "chlist") {
       std::vector<ExrClaims::ClaimedChannel> channels = read_channels(in);
-      if (in.position() < end) in.fail_at(start, "attribute " + one_line(name) + " is shorter than it says; the header is damaged");
+      if (in.position() < end)
+        in.fail_at(start, "attribute " + one_line(name) + " is shorter than it says; the header is damaged");
       if (name == "channels") part.channels = std::move(channels);
     }
     if (name == "compression" && type == "compression") part.compression = in.number<std::uint8_t>();
@@ -165,8 +175,7 @@ bool read_part(HeaderReader& in, ExrClaims& part, std::uint64_t& chunk_count) {
   return any;
 }
 
-void check_window(const HeaderReader& in, const PixelWindow& window, const char* name,
-                  std::uint64_t max_pixels) {
+void check_window(const HeaderReader& in, const PixelWindow& window, const char* name, std::uint64_t max_pixels) {
   constexpr std::int32_t limit = 1 << 30;
   const bool sane = std::abs(std::int64_t(window.x0)) < limit && std::abs(std::int64_t(window.y0)) < limit &&
                     window.width() > 0 && window.height() > 0;
@@ -180,8 +189,8 @@ void check_window(const HeaderReader& in, const PixelWindow& window, const char*
 }
 
 /// Windows and chunks: every part's, since OpenEXR makes offset tables for all of them.
-void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chunk_count,
-                std::uint64_t file_size, std::uint64_t max_pixels) {
+void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chunk_count, std::uint64_t file_size,
+                std::uint64_t max_pixels) {
   check_window(in, part.data, "dataWindow", max_pixels);
   check_window(in, part.display, "displayWindow", max_pixels);
   if (part.channels.empty()) in.fail("no channels; there is nothing to read");
@@ -189,31 +198,28 @@ void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chu
     in.fail("compression absent or unknown; the header is damaged or the file too new");
   if (part.tile_width > 1u << 30 || part.tile_height > 1u << 30) in.fail("tile size out of range");
   const auto up = [](std::int64_t a, std::int64_t b) { return std::uint64_t((a + b - 1) / b); };
-  const std::uint64_t chunks =
-      part.tile_width > 0 && part.tile_height > 0
-          ? up(part.data.width(), part.tile_width) * up(part.data.height(), part.tile_height)
-          : up(part.data.height(), part.lines_per_chunk());
+  const std::uint64_t chunks = part.tile_width > 0 && part.tile_height > 0
+                                   ? up(part.data.width(), part.tile_width) * up(part.data.height(), part.tile_height)
+                                   : up(part.data.height(), part.lines_per_chunk());
   // A chunk has 8 bytes in the offset table and 8 of its own before any sample.
   if (std::max(chunks, chunk_count) > file_size / 16)
-    in.fail("claims " + std::to_string(std::max(chunks, chunk_count)) + " chunks in " +
-            std::to_string(file_size) + " bytes; the file is truncated or damaged");
+    in.fail("claims " + std::to_string(std::max(chunks, chunk_count)) + " chunks in " + std::to_string(file_size) +
+            " bytes; the file is truncated or damaged");
 }
 
 void check_samples(const HeaderReader& in, const ExrClaims& part, std::uint64_t file_size) {
   if (part.deep) in.fail("deep pixels; flatten the image first");
   std::uint64_t bytes_per_pixel = 0;
   for (const auto& channel : part.channels) {
-    if (channel.type < 0 || channel.type > 2)
-      in.fail("channel " + one_line(channel.name) + " has an unknown type");
+    if (channel.type < 0 || channel.type > 2) in.fail("channel " + one_line(channel.name) + " has an unknown type");
     if (channel.x_sampling != 1 || channel.y_sampling != 1)
-      in.fail("channel " + one_line(channel.name) +
-              " is subsampled; write it with one sample for each pixel");
+      in.fail("channel " + one_line(channel.name) + " is subsampled; write it with one sample for each pixel");
     bytes_per_pixel += channel.type == 1 ? 2 : 4;
   }
   const std::uint64_t bytes = bytes_per_pixel * std::uint64_t(part.data.width() * part.data.height());
   if (bytes / kCompressions[std::size_t(part.compression)].expansion > file_size)
-    in.fail("claims " + std::to_string(bytes) + " bytes of samples, more than the file's " +
-            std::to_string(file_size) + " can hold; it is truncated or damaged");
+    in.fail("claims " + std::to_string(bytes) + " bytes of samples, more than the file's " + std::to_string(file_size) +
+            " can hold; it is truncated or damaged");
   // The display window's rest is not in the file: memory for it is given freely up to a limit, then as
   // deflate would.
   const std::uint64_t shown = bytes_per_pixel * std::uint64_t(part.display.width() * part.display.height());
@@ -231,8 +237,7 @@ ExrClaims read_exr_claims(const ByteFile& file, std::uint64_t max_pixels) {
   if (file.size() < 8 || in.number<std::uint32_t>() != 20000630u)
     in.fail_at(0, "not an OpenEXR file; frames are .exr files as in formats/frames/frames.md");
   const auto version = in.number<std::uint32_t>();
-  if ((version & 0xff) != 2 ||
-      (version & ~(0xffu | kTiledFlag | kLongNamesFlag | kDeepFlag | kMultipartFlag)))
+  if ((version & 0xff) != 2 || (version & ~(0xffu | kTiledFlag | kLongNamesFlag | kDeepFlag | kMultipartFlag)))
     in.fail_at(4, "OpenEXR version " + std::to_string(version) + "; version 2 is read");
 
   ExrClaims first;

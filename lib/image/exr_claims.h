@@ -33,7 +33,7 @@ struct ExrClaims {
   std::uint32_t tile_width = 0, tile_height = 0;  ///< 0: scan lines
   bool deep = false;
   bool multipart = false;
-  std::uint64_t header_bytes = 0;                 ///< of a file of one part: where its offset table begins
+  std::uint64_t header_bytes = 0;        ///< of a file of one part: where its offset table begins
   std::int32_t lines_per_chunk() const;  ///< of scan-line parts
 };
 

@@ -34,7 +34,8 @@
 namespace tempolux {
 namespace {
 
-// Lines that a thread decompresses at a time, and compresses: one chunk of ZIP, so that 540 lines keep many threads busy.
+// Lines that a thread decompresses at a time, and compresses: one chunk of ZIP, so that 540 lines keep many threads
+// busy.
 constexpr int kReadLines = 64, kSlabLines = 16;
 constexpr float kLargestHalf = 65504;
 // OpenEXR's level 4 of deflate; the default of a later OpenEXR must not change our bytes.
@@ -47,8 +48,8 @@ bool is_colour(const std::string& channel) {
 }
 
 std::string pixel_place(const std::string& path, const std::string& channel, std::size_t index, int width) {
-  return path + ": channel " + one_line(channel) + ": pixel (" + std::to_string(index % std::size_t(width)) +
-         ", " + std::to_string(index / std::size_t(width)) + "): ";
+  return path + ": channel " + one_line(channel) + ": pixel (" + std::to_string(index % std::size_t(width)) + ", " +
+         std::to_string(index / std::size_t(width)) + "): ";
 }
 
 /// First index at which `bad` holds, or values.size().
@@ -65,8 +66,7 @@ void check_writable(const std::string& path, const Image& image, bool half) {
   std::set<std::string> names;
   for (const Channel& channel : image.channels) {
     if (channel.name.empty() || channel.name.size() > 255 || !names.insert(channel.name).second)
-      throw std::invalid_argument("save_exr: channel name \"" + channel.name +
-                                  "\" empty, too long or there twice");
+      throw std::invalid_argument("save_exr: channel name \"" + channel.name + "\" empty, too long or there twice");
     if (std::max(channel.values.size(), channel.ids.size()) != image.pixel_count() ||
         (!channel.values.empty() && !channel.ids.empty()))
       throw std::invalid_argument("save_exr: channel " + channel.name + " does not have the image's size");
@@ -85,8 +85,7 @@ void check_writable(const std::string& path, const Image& image, bool half) {
     throw InputError(place + (std::isnan(value) ? "not a number" : "infinite") + "; nothing was written");
   }
   const auto check_finite = [&](const std::string& name, double value) {
-    if (!std::isfinite(value))
-      throw InputError(path + ": attribute " + name + ": not finite; nothing was written");
+    if (!std::isfinite(value)) throw InputError(path + ": attribute " + name + ": not finite; nothing was written");
   };
   for (const auto& [name, value] : image.numbers) check_finite(name, value);
   for (const auto& [name, matrix] : image.matrices)
@@ -107,10 +106,9 @@ Imf::Header make_bare_header(const Image& image, const ExrWriteOptions& options)
                      zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
   header.zipCompressionLevel() = kDeflateLevel;
   for (const Channel& channel : image.channels)
-    header.channels().insert(channel.name,
-                             Imf::Channel(!channel.ids.empty()                      ? Imf::UINT
-                                          : options.half && is_colour(channel.name) ? Imf::HALF
-                                                                                    : Imf::FLOAT));
+    header.channels().insert(channel.name, Imf::Channel(!channel.ids.empty()                      ? Imf::UINT
+                                                        : options.half && is_colour(channel.name) ? Imf::HALF
+                                                                                                  : Imf::FLOAT));
   return header;
 }
 
@@ -118,18 +116,13 @@ Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
   Imf::Header header = make_bare_header(image, options);
   for (const auto& [name, text] : image.text) header.insert(name, Imf::StringAttribute(text));
   for (const auto& [name, number] : image.numbers) {
-    if (name == "framesPerSecond")
-      Imf::addFramesPerSecond(header, Imf::guessExactFps(number));
-    else
-      header.insert(name, Imf::DoubleAttribute(number));
+    if (name == "framesPerSecond") Imf::addFramesPerSecond(header, Imf::guessExactFps(number));
+    else header.insert(name, Imf::DoubleAttribute(number));
   }
   for (const auto& [name, matrix] : image.matrices) {
-    if (name == "worldToCamera")
-      Imf::addWorldToCamera(header, to_imath<Imath::M44f>(matrix));
-    else if (name == "worldToNDC")
-      Imf::addWorldToNDC(header, to_imath<Imath::M44f>(matrix));
-    else
-      header.insert(name, Imf::M44dAttribute(to_imath<Imath::M44d>(matrix)));
+    if (name == "worldToCamera") Imf::addWorldToCamera(header, to_imath<Imath::M44f>(matrix));
+    else if (name == "worldToNDC") Imf::addWorldToNDC(header, to_imath<Imath::M44f>(matrix));
+    else header.insert(name, Imf::M44dAttribute(to_imath<Imath::M44d>(matrix)));
   }
   return header;
 }
@@ -153,7 +146,8 @@ class MemoryOut : public Imf::OStream {
 
 /// Lines [first, first + count) of the image as chunks, each: int32 line, int32 size, bytes.
 std::string encode_slab(const Image& image, const ExrWriteOptions& options, int first, int count) {
-  if (options.compression == ExrWriteOptions::Compression::none && !options.half) return plain_lines(image, first, count);
+  if (options.compression == ExrWriteOptions::Compression::none && !options.half)
+    return plain_lines(image, first, count);
   Imf::Header header = make_bare_header(image, options);
   const Imath::Box2i window({0, first}, {image.width - 1, first + count - 1});
   header.dataWindow() = window;
@@ -163,8 +157,8 @@ std::string encode_slab(const Image& image, const ExrWriteOptions& options, int 
   Imf::FrameBuffer lines;
   for (const Channel& channel : image.channels) {
     const Imf::PixelType type = header.channels()[channel.name].type;
-    const void* samples = type == Imf::UINT ? static_cast<const void*>(channel.ids.data() + begin)
-                                            : channel.values.data() + begin;
+    const void* samples =
+        type == Imf::UINT ? static_cast<const void*>(channel.ids.data() + begin) : channel.values.data() + begin;
     if (type == Imf::HALF) {
       const float* values = channel.values.data() + begin;
       halves.emplace_back(values, values + width * std::size_t(count));
@@ -254,12 +248,9 @@ void read_attributes(const Imf::Header& header, Image& image) {
     const std::string name = it.name();
     const Imf::Attribute* attribute = &it.attribute();
     if (structural.contains(name)) continue;
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(attribute))
-      image.text[name] = text->value();
-    if (const auto* d = dynamic_cast<const Imf::DoubleAttribute*>(attribute))
-      image.numbers[name] = d->value();
-    if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(attribute))
-      image.numbers[name] = double(f->value());
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(attribute)) image.text[name] = text->value();
+    if (const auto* d = dynamic_cast<const Imf::DoubleAttribute*>(attribute)) image.numbers[name] = d->value();
+    if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(attribute)) image.numbers[name] = double(f->value());
     if (const auto* i = dynamic_cast<const Imf::IntAttribute*>(attribute)) image.numbers[name] = i->value();
     if (const auto* r = dynamic_cast<const Imf::RationalAttribute*>(attribute))
       image.numbers[name] = double(r->value());
@@ -270,7 +261,8 @@ void read_attributes(const Imf::Header& header, Image& image) {
   }
 }
 
-/// Reads lines [first, last) of the data window into the image, which has the data window's size; with the first the attributes.
+/// Reads lines [first, last) of the data window into the image, which has the data window's size; with the first the
+/// attributes.
 void read_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int first, int last) {
   const bool done = read_plain_lines(file, claims, image, first, last);
   if (done && first != 0) return;
@@ -278,8 +270,7 @@ void read_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int
   FileIn in(file);
   Imf::MultiPartInputFile parts(in, 0, false);
   if (!parts.partComplete(0))
-    throw InputError(file.path() +
-                     ": offset table: lines are missing, the writer did not finish; write it again");
+    throw InputError(file.path() + ": offset table: lines are missing, the writer did not finish; write it again");
   Imf::InputPart part(parts, 0);
   if (first == 0) read_attributes(part.header(), image);
   if (done) return;
@@ -288,8 +279,8 @@ void read_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int
   for (Channel& channel : image.channels) {
     const bool ids = !channel.ids.empty();
     void* samples = ids ? static_cast<void*>(channel.ids.data()) : channel.values.data();
-    lines.insert(channel.name, Imf::Slice::Make(ids ? Imf::UINT : Imf::FLOAT, samples, window, 4,
-                                                4 * std::size_t(image.width)));
+    lines.insert(channel.name,
+                 Imf::Slice::Make(ids ? Imf::UINT : Imf::FLOAT, samples, window, 4, 4 * std::size_t(image.width)));
   }
   part.setFrameBuffer(lines);
   part.readPixels(data.y0 + first, data.y0 + last - 1);
@@ -316,9 +307,8 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrR
 
   const int height = image.height;
   const int slab = claims.tile_width > 0 ? height : std::max(kReadLines, claims.lines_per_chunk());
-  parallel_chunks(std::size_t(height), std::size_t(slab), [&](std::size_t first, std::size_t last) {
-    read_lines(file, claims, image, int(first), int(last));
-  });
+  parallel_chunks(std::size_t(height), std::size_t(slab),
+                  [&](std::size_t first, std::size_t last) { read_lines(file, claims, image, int(first), int(last)); });
   return image;
 }
 
@@ -392,15 +382,12 @@ Image load_exr(const std::string& path, const ExrReadOptions& options) {
   Image image;
   try {
     image = read_data_window(file, claims, options);
-  } catch (const InputError&) {
-    throw;
-  } catch (const ResourceError&) {
+  } catch (const InputError&) { throw; } catch (const ResourceError&) {
     throw;
   } catch (const std::bad_alloc&) {
     throw ResourceError(path + ": not enough memory for its pixels");
   } catch (const std::exception& e) {
-    throw InputError(path + ": pixels: " + one_line(e.what()) +
-                     "; the file is damaged or truncated: write it again");
+    throw InputError(path + ": pixels: " + one_line(e.what()) + "; the file is damaged or truncated: write it again");
   }
   if (options.our_names) name_as_ours(image);
   if (claims.data != claims.display) image = placed(std::move(image), claims.data, claims.display);

@@ -34,17 +34,18 @@ struct ExrWriteOptions {
 void save_exr(const std::string& path, const Image& image, const ExrWriteOptions& options = {});
 
 struct ExrReadOptions {
-  std::uint64_t max_pixels = 512ull << 20;  ///< of the data window and of the display window
-  bool allow_nan = false;                   ///< NaN anywhere and infinity in colour are let through
-  bool only_rgb = false;                    ///< of a file that has R, G and B these alone
-  std::function<bool(const std::string&)> wanted{}; ///< which channels, by their names; empty: all
-  bool our_names = false;                   ///< channels of other programs get our names (foreign_names.h); `wanted` is asked by these
+  std::uint64_t max_pixels = 512ull << 20;           ///< of the data window and of the display window
+  bool allow_nan = false;                            ///< NaN anywhere and infinity in colour are let through
+  bool only_rgb = false;                             ///< of a file that has R, G and B these alone
+  std::function<bool(const std::string&)> wanted{};  ///< which channels, by their names; empty: all
+  bool our_names = false;  ///< channels of other programs get our names (foreign_names.h); `wanted` is asked by these
 };
 
 /// Reads a scan-line or tiled single-part EXR (of a multi-part file: the first part; of mip maps: the full
 /// size), all channels, in the order of their names, half and float as float, uint as ids; string, double,
 /// float, int, rational and matrix attributes. The image is the display window: pixels of the data window
-/// outside it are cut off. Pixels outside the data window show nothing: 0 in every channel, Z +inf, id.object FFFFFFFF hex.
+/// outside it are cut off. Pixels outside the data window show nothing: 0 in every channel, Z +inf, id.object FFFFFFFF
+/// hex.
 ///
 /// Sizes are checked against max_pixels and against the file's bytes before anything is allocated by them.
 /// Throws InputError "FILE: PLACE: WHAT; REMEDY", one line, for a file that is incomplete, truncated,

@@ -11,19 +11,19 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "EXR files are little-endian, and so is what is copied here");
 
-constexpr std::size_t kChunkHead = 8;   // int32 line, int32 bytes
+constexpr std::size_t kChunkHead = 8;  // int32 line, int32 bytes
 
 /// Samples of one channel within a line of the file, and where in the image they go.
 struct Stretch {
-  std::size_t at = 0;          ///< byte within the line
-  char* to = nullptr;          ///< its first line
+  std::size_t at = 0;  ///< byte within the line
+  char* to = nullptr;  ///< its first line
 };
 
 /// Where in a line the image's channels are; nothing if one of them is not of 4 bytes. line_bytes: of all channels.
 std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_t& line_bytes) {
   std::vector<const ExrClaims::ClaimedChannel*> claimed;
   for (const ExrClaims::ClaimedChannel& channel : claims.channels) claimed.push_back(&channel);
-  std::ranges::sort(claimed, {}, &ExrClaims::ClaimedChannel::name);   // as samples are, whatever the header's order
+  std::ranges::sort(claimed, {}, &ExrClaims::ClaimedChannel::name);  // as samples are, whatever the header's order
   const auto width = std::size_t(image.width);
   std::vector<Stretch> found;
   line_bytes = 0;
@@ -31,7 +31,8 @@ std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_
     constexpr std::int32_t kHalf = 1;
     if (Channel* to = image.find(channel->name)) {
       if (channel->type == kHalf) return {};
-      found.push_back({line_bytes, to->ids.empty() ? reinterpret_cast<char*>(to->values.data()) : reinterpret_cast<char*>(to->ids.data())});
+      found.push_back({line_bytes, to->ids.empty() ? reinterpret_cast<char*>(to->values.data())
+                                                   : reinterpret_cast<char*>(to->ids.data())});
     }
     line_bytes += (channel->type == kHalf ? 2 : 4) * width;
   }
@@ -43,7 +44,9 @@ std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_
 
 bool read_plain_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int first, int last) {
   constexpr std::int32_t kNone = 0;
-  if (claims.compression != kNone || claims.tile_width != 0 || claims.multipart || claims.deep || claims.header_bytes == 0) return false;
+  if (claims.compression != kNone || claims.tile_width != 0 || claims.multipart || claims.deep ||
+      claims.header_bytes == 0)
+    return false;
   std::size_t line_bytes = 0;
   const std::vector<Stretch> wanted = stretches(claims, image, line_bytes);
   if (wanted.empty() || line_bytes > 0x7fffffff) return false;
@@ -79,7 +82,8 @@ std::string plain_lines(const Image& image, int first, int count) {
     std::memcpy(to, head, sizeof head);
     to += kChunkHead;
     for (const Channel* channel : channels) {
-      const void* samples = channel->ids.empty() ? static_cast<const void*>(channel->values.data()) : channel->ids.data();
+      const void* samples =
+          channel->ids.empty() ? static_cast<const void*>(channel->values.data()) : channel->ids.data();
       std::memcpy(to, static_cast<const char*>(samples) + std::size_t(y) * row_bytes, row_bytes);
       to += row_bytes;
     }

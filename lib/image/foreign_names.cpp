@@ -8,20 +8,34 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNothingDepth = 1e10f;   // what Blender writes where nothing is
+constexpr float kNothingDepth = 1e10f;  // what Blender writes where nothing is
 
 /// A pass of another program: what its channels' names end with, before the last dot and after it.
 struct Pass {
   std::string_view layer, component, ours;
 };
-constexpr std::array<Pass, 22> kPasses{{{"Combined", "R", "R"}, {"Combined", "G", "G"}, {"Combined", "B", "B"}, {"Combined", "A", "A"},
-                                        {"Depth", "Z", "Z"}, {"depth", "Z", "Z"}, {"depth", "z", "Z"}, {"Z", "Z", "Z"},
-                                        {"Normal", "X", "N.X"}, {"Normal", "Y", "N.Y"}, {"Normal", "Z", "N.Z"},
-                                        {"Vector", "X", "backward.u"}, {"Vector", "Y", "backward.v"},
-                                        {"Vector", "Z", "forward.u"}, {"Vector", "W", "forward.v"},
+constexpr std::array<Pass, 22> kPasses{{{"Combined", "R", "R"},
+                                        {"Combined", "G", "G"},
+                                        {"Combined", "B", "B"},
+                                        {"Combined", "A", "A"},
+                                        {"Depth", "Z", "Z"},
+                                        {"depth", "Z", "Z"},
+                                        {"depth", "z", "Z"},
+                                        {"Z", "Z", "Z"},
+                                        {"Normal", "X", "N.X"},
+                                        {"Normal", "Y", "N.Y"},
+                                        {"Normal", "Z", "N.Z"},
+                                        {"Vector", "X", "backward.u"},
+                                        {"Vector", "Y", "backward.v"},
+                                        {"Vector", "Z", "forward.u"},
+                                        {"Vector", "W", "forward.v"},
                                         {"Denoising Depth", "Z", "Z"},
-                                        {"Denoising Normal", "X", "N.X"}, {"Denoising Normal", "Y", "N.Y"}, {"Denoising Normal", "Z", "N.Z"},
-                                        {"Denoising Albedo", "R", "albedo.R"}, {"Denoising Albedo", "G", "albedo.G"}, {"Denoising Albedo", "B", "albedo.B"}}};
+                                        {"Denoising Normal", "X", "N.X"},
+                                        {"Denoising Normal", "Y", "N.Y"},
+                                        {"Denoising Normal", "Z", "N.Z"},
+                                        {"Denoising Albedo", "R", "albedo.R"},
+                                        {"Denoising Albedo", "G", "albedo.G"},
+                                        {"Denoising Albedo", "B", "albedo.B"}}};
 
 /// "VIEW.Combined.R" -> "VIEW", "Combined", "R".
 struct Parts {
@@ -62,19 +76,23 @@ std::string our_name(const std::string& channel) {
 
 void name_as_ours(Image& image) {
   const std::string view = view_of(image);
-  for (const bool for_denoisers : {false, true})   // these look through mirrors and average over edges: second to the plain ones
+  for (const bool for_denoisers :
+       {false, true})  // these look through mirrors and average over edges: second to the plain ones
     for (Channel& channel : image.channels) {
       const Parts parts = parts_of(channel.name);
       const Pass* pass = pass_of(parts);
-      if (!pass || parts.layer.starts_with("Denoising") != for_denoisers || image.find(pass->ours) || (!view.empty() && parts.view != view)) continue;
+      if (!pass || parts.layer.starts_with("Denoising") != for_denoisers || image.find(pass->ours) ||
+          (!view.empty() && parts.view != view))
+        continue;
       const bool turned = parts.layer == "Vector" && pass->ours.starts_with("forward");
-      channel.name = pass->ours;   // parts looks into the name before
+      channel.name = pass->ours;  // parts looks into the name before
       for (float& value : channel.values) {
         if (channel.name == "Z" && value >= kNothingDepth) value = INFINITY;
         if (turned) value = -value;
       }
     }
-  std::sort(image.channels.begin(), image.channels.end(), [](const Channel& a, const Channel& b) { return a.name < b.name; });
+  std::sort(image.channels.begin(), image.channels.end(),
+            [](const Channel& a, const Channel& b) { return a.name < b.name; });
 }
 
 }  // namespace tempolux

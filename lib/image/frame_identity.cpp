@@ -3,9 +3,7 @@
 namespace tempolux {
 namespace {
 
-std::string attribute_of(const formats::Concern& concern) {
-  return std::string(kIdentityPrefix).append(concern.name);
-}
+std::string attribute_of(const formats::Concern& concern) { return std::string(kIdentityPrefix).append(concern.name); }
 
 }  // namespace
 

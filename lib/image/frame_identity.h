@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-inline constexpr std::string_view kIdentityPrefix = "tempolux:identity.";   ///< before a concern's name
+inline constexpr std::string_view kIdentityPrefix = "tempolux:identity.";  ///< before a concern's name
 
 /// Writes the attributes tempolux:identity.CONCERN for all concerns of the scene; an unknown hash is written empty.
 void set_identity(Image& image, const formats::Identity& identity);

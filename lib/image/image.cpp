@@ -16,8 +16,8 @@ std::string joined(const std::string& layer, const char* component) {
 }  // namespace
 
 const Channel* Image::find(std::string_view name) const {
-  const auto found = std::find_if(channels.begin(), channels.end(),
-                                  [&](const Channel& channel) { return channel.name == name; });
+  const auto found =
+      std::find_if(channels.begin(), channels.end(), [&](const Channel& channel) { return channel.name == name; });
   return found == channels.end() ? nullptr : &*found;
 }
 
@@ -40,8 +40,7 @@ std::array<const std::vector<float>*, 3> Image::rgb(const std::string& layer) co
     const Channel* channel = find(joined(layer, components[c]));
     if (!channel || !channel->ids.empty()) {
       std::string known;
-      for (const std::string& name : layers())
-        known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
+      for (const std::string& name : layers()) known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
       throw InputError("no colour layer \"" + (layer.empty() ? "RGB" : layer) + "\"; the image has " +
                        (known.empty() ? "none" : known));
     }
@@ -57,8 +56,7 @@ std::vector<std::string> Image::layers() const {
     if (channel.name.size() > 2 && channel.name.ends_with(".R"))
       names.insert(channel.name.substr(0, channel.name.size() - 2));
   }
-  std::erase_if(
-      names, [&](const std::string& name) { return !find(joined(name, "G")) || !find(joined(name, "B")); });
+  std::erase_if(names, [&](const std::string& name) { return !find(joined(name, "G")) || !find(joined(name, "B")); });
   return {names.begin(), names.end()};
 }
 

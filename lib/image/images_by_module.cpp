@@ -25,9 +25,7 @@ class Answer {
                           std::int32_t bits) -> void* {
       try {
         return static_cast<Answer*>(user)->resize_(width, height, channels, bits);
-      } catch (const std::bad_alloc&) {
-        return nullptr;
-      }
+      } catch (const std::bad_alloc&) { return nullptr; }
     };
     request.say = [](void* user, const char* message) { static_cast<Answer*>(user)->message_ = message; };
     const std::int32_t result = entry(&request);

@@ -1,5 +1,6 @@
-// lib/image/images_by_module.h -- images for programs that seldom need one: what reads them (OpenEXR, libpng, libjpeg) is
-// linked by the module tempolux-images.so and opened with the first image. Linked, it was a fifth of scene-plan's work.
+// lib/image/images_by_module.h -- images for programs that seldom need one: what reads them (OpenEXR, libpng, libjpeg)
+// is linked by the module tempolux-images.so and opened with the first image. Linked, it was a fifth of scene-plan's
+// work.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ struct PixelsRequest {
   /// bits 8 or 16: codes in as many bits; 32: floats. Null: no memory.
   void* (*allocate)(void* user, std::int32_t width, std::int32_t height, std::int32_t channels, std::int32_t bits);
   void (*say)(void* user, const char* message);  ///< what went wrong
-  void* user;                  ///< of both
+  void* user;                                    ///< of both
 };
 
 enum PixelsResult : std::int32_t {

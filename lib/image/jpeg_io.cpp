@@ -111,8 +111,7 @@ CodedPixels decode_jpeg(std::span<const unsigned char> bytes, const std::string&
   pixels.height = int(session.info.image_height);
   pixels.channels = session.info.num_components;
   const std::uint64_t count = std::uint64_t(pixels.width) * std::uint64_t(pixels.height);
-  if (count > max_pixels)
-    fail(std::to_string(count) + " pixels, over the limit of " + std::to_string(max_pixels));
+  if (count > max_pixels) fail(std::to_string(count) + " pixels, over the limit of " + std::to_string(max_pixels));
   const std::size_t row = std::size_t(pixels.width) * std::size_t(pixels.channels);
   pixels.bytes.resize(row * std::size_t(pixels.height));
   if (!read_rows(session, pixels.bytes.data(), row)) fail(one_line(session.message) + "; the file is damaged");

@@ -9,8 +9,7 @@ namespace {
 
 const Channel& channel_of(const Image& image, const char* channel, bool ids, const std::string& name) {
   const Channel* found = image.find(channel);
-  if (!found)
-    throw InputError(name + ": has no channel '" + channel + "'; pixel flow has it (formats/flow/flow.md)");
+  if (!found) throw InputError(name + ": has no channel '" + channel + "'; pixel flow has it (formats/flow/flow.md)");
   if (found->ids.empty() == ids)
     throw InputError(name + ": channel " + channel + ": is not of type " + (ids ? "uint" : "float") +
                      "; pixel flow has it so (formats/flow/flow.md)");
@@ -23,7 +22,7 @@ std::string place(const std::string& name, const char* channel, std::size_t pixe
 }
 
 /// One component of a vector field, checked.
-void take(const Image& image, const char* channel, float Vec2::* component, std::vector<Vec2>& field,
+void take(const Image& image, const char* channel, float Vec2::*component, std::vector<Vec2>& field,
           const std::string& name) {
   const std::vector<float>& values = channel_of(image, channel, false, name).values;
   for (std::size_t p = 0; p < values.size(); ++p) {

@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kRows = 16;   ///< of a chunk
+constexpr std::size_t kRows = 16;  ///< of a chunk
 
 std::vector<float> channel_or_zero(const Image& image, const char* name) {
   const Channel* channel = image.find(name);
@@ -18,9 +18,15 @@ std::vector<float> channel_or_zero(const Image& image, const char* name) {
 }  // namespace
 
 PixelSurfaces::PixelSurfaces(const Image& image)
-    : object(image.pixel_count()), w(image.pixel_count()), w_right(image.pixel_count()), w_down(image.pixel_count()),
-      nx(channel_or_zero(image, "N.X")), ny(channel_or_zero(image, "N.Y")), nz(channel_or_zero(image, "N.Z")),
-      width_(image.width), height_(image.height) {
+    : object(image.pixel_count()),
+      w(image.pixel_count()),
+      w_right(image.pixel_count()),
+      w_down(image.pixel_count()),
+      nx(channel_or_zero(image, "N.X")),
+      ny(channel_or_zero(image, "N.Y")),
+      nz(channel_or_zero(image, "N.Z")),
+      width_(image.width),
+      height_(image.height) {
   if (const Channel* ids = image.find("id.object"); ids && !ids->ids.empty()) object = ids->ids;
   if (const Channel* z = image.find("Z"); z && !z->values.empty())
     for (std::size_t p = 0; p < w.size(); ++p) w[p] = inverse_depth(z->values[p]);
@@ -58,8 +64,7 @@ std::vector<std::uint8_t> PixelSurfaces::edges() const {
         const std::size_t p = std::size_t(y) * std::size_t(width_) + std::size_t(x);
         for (int j = std::max(-1, -y); j <= std::min(1, height_ - 1 - y); ++j)
           for (int i = std::max(-1, -x); i <= std::min(1, width_ - 1 - x); ++i)
-            if ((i != 0 || j != 0) &&
-                !(same(p, i, j) && same(p + std::size_t(std::ptrdiff_t(j) * width_ + i), -i, -j)))
+            if ((i != 0 || j != 0) && !(same(p, i, j) && same(p + std::size_t(std::ptrdiff_t(j) * width_ + i), -i, -j)))
               edge[p] = 1;
       }
   });

@@ -104,13 +104,11 @@ Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std
   Raw raw;
   if (!start_reading(session, handle.png, handle.info, raw)) fail(one_line(session.message));
   const std::uint64_t pixels = std::uint64_t(raw.width) * raw.height;
-  if (pixels > max_pixels)
-    fail(std::to_string(pixels) + " pixels, over the limit of " + std::to_string(max_pixels));
+  if (pixels > max_pixels) fail(std::to_string(pixels) + " pixels, over the limit of " + std::to_string(max_pixels));
   // Deflate makes at most 1032 bytes of one; a palette's index becomes at most 4 bytes, a bit at most 8 times
   // that.
   const std::size_t row = std::size_t(raw.width) * std::size_t(raw.channels * raw.bits / 8);
-  if (row * raw.height / (1032 * 32) > bytes.size())
-    fail("claims more pixels than its bytes can hold; it is damaged");
+  if (row * raw.height / (1032 * 32) > bytes.size()) fail("claims more pixels than its bytes can hold; it is damaged");
   raw.bytes.resize(row * raw.height);
   std::vector<png_bytep> rows(raw.height);
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = raw.bytes.data() + y * row;
@@ -122,9 +120,7 @@ Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std
 std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
   const std::size_t codes = raw.bits == 16 ? 65536 : 256;
   const bool power = !raw.srgb && raw.gamma > 0 && std::abs(raw.gamma - 0.45455) > 0.005;
-  transfer = !power                                   ? "sRGB"
-             : raw.gamma > 0.995 && raw.gamma < 1.005 ? "linear"
-                                                      : "gamma " + std::to_string(raw.gamma);
+  transfer = !power ? "sRGB" : raw.gamma > 0.995 && raw.gamma < 1.005 ? "linear" : "gamma " + std::to_string(raw.gamma);
   std::vector<float> table(codes);
   for (std::size_t code = 0; code < codes; ++code) {
     const double encoded = double(code) / double(codes - 1);
@@ -135,7 +131,7 @@ std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
   return table;
 }
 
-constexpr int kDeflateLevel = 3;   ///< a quarter of level 6's time, 4 % more bytes of rendered frames
+constexpr int kDeflateLevel = 3;  ///< a quarter of level 6's time, 4 % more bytes of rendered frames
 
 bool write_all(PngSession& session, png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(session.back)) return false;
@@ -166,8 +162,8 @@ Image load_png(const std::string& path, std::uint64_t max_pixels) {
   image.height = int(raw.height);
   for (const char* name : {"R", "G", "B"}) image.add(name);
   if (alpha) image.add("A");
-  image.text["tempolux:source"] = "PNG, " + std::to_string(raw.bits) + " bits, " + transfer + " to linear" +
-                                  (alpha ? ", premultiplied" : "");
+  image.text["tempolux:source"] =
+      "PNG, " + std::to_string(raw.bits) + " bits, " + transfer + " to linear" + (alpha ? ", premultiplied" : "");
 
   const auto channels = std::size_t(raw.channels);
   const auto code = [&](std::size_t sample) {
@@ -176,8 +172,7 @@ Image load_png(const std::string& path, std::uint64_t max_pixels) {
   };
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
     const float a = alpha ? float(code(i * channels + channels - 1)) / float(linear.size() - 1) : 1.0f;
-    for (std::size_t c = 0; c < 3; ++c)
-      image.channels[c].values[i] = a * linear[code(i * channels + (grey ? 0 : c))];
+    for (std::size_t c = 0; c < 3; ++c) image.channels[c].values[i] = a * linear[code(i * channels + (grey ? 0 : c))];
     if (alpha) image.channels[3].values[i] = a;
   }
   return image;

@@ -20,9 +20,7 @@ constexpr std::uint32_t kNothingId = 0xffffffffu;
 
 using Planes = std::vector<const std::vector<float>*>;
 
-std::string component(const std::string& layer, const char* name) {
-  return layer.empty() ? name : layer + "." + name;
-}
+std::string component(const std::string& layer, const char* name) { return layer.empty() ? name : layer + "." + name; }
 
 /// The planes LAYER.a, LAYER.b ... or none unless all are there.
 Planes planes_of(const Image& image, const std::string& layer, std::initializer_list<const char*> names) {
@@ -47,8 +45,7 @@ Content find_content(const Image& image, const std::string& layer) {
   if (auto planes = planes_of(image, layer, {"R", "G", "B"}); !planes.empty()) return {Kind::colour, planes};
   if (const Channel* channel = image.find(layer)) {
     if (!channel->ids.empty()) return {Kind::ids, {}, &channel->ids};
-    const bool depth =
-        layer == "Z" || (layer.ends_with(".Z") && !image.find(layer.substr(0, layer.size() - 1) + "X"));
+    const bool depth = layer == "Z" || (layer.ends_with(".Z") && !image.find(layer.substr(0, layer.size() - 1) + "X"));
     return {depth ? Kind::depth : Kind::colour, {&channel->values}};
   }
   if (auto planes = planes_of(image, layer, {"X", "Y", "Z"}); !planes.empty()) return {Kind::vector, planes};
@@ -183,18 +180,14 @@ Picture make_picture(const Image& image, const PreviewOptions& options) {
   const auto scale = float(std::exp2(stops));
   const Planes& planes = content.planes;
   switch (content.kind) {
-    case Content::Kind::depth:
-      return depth_picture(image, *planes[0]);
-    case Content::Kind::vector:
-      return vector_picture(image, planes);
-    case Content::Kind::ids:
-      return id_picture(image, *content.ids);
+    case Content::Kind::depth: return depth_picture(image, *planes[0]);
+    case Content::Kind::vector: return vector_picture(image, planes);
+    case Content::Kind::ids: return id_picture(image, *content.ids);
     case Content::Kind::motion:
       return shade_pixels(image, [&](std::size_t i) {
         return Encoded{0.5f + 0.5f * scale * (*planes[0])[i], 0.5f + 0.5f * scale * (*planes[1])[i], 0.5f};
       });
-    case Content::Kind::colour:
-      break;
+    case Content::Kind::colour: break;
   }
   return colour_picture(image, planes, scale);
 }

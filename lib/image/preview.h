@@ -17,9 +17,8 @@ struct Picture {
 };
 
 struct PreviewOptions {
-  std::string layer;  ///< "" is RGB; or "indirect", "Z", "N", "id.object", "P" ...
-  std::optional<double>
-      exposure_stops;  ///< absent: auto, so that the layer's 98th percentile luminance maps to 0.9
+  std::string layer;                     ///< "" is RGB; or "indirect", "Z", "N", "id.object", "P" ...
+  std::optional<double> exposure_stops;  ///< absent: auto, so that the layer's 98th percentile luminance maps to 0.9
 };
 
 /// Exposure in stops that "auto" chooses for a layer; use one value for a whole sequence.

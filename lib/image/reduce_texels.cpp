@@ -11,7 +11,7 @@ namespace {
 
 /// The part of `from` samples that sample `to_index` of `to` covers, and its first sample's share.
 struct Span {
-  int first, last;       ///< inclusive
+  int first, last;  ///< inclusive
   float first_share, last_share;
   Span(int to_index, int to, int from) {
     const double scale = double(from) / to, begin = to_index * scale, end = std::min(double(from), begin + scale);
@@ -101,8 +101,7 @@ void halve(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
         float mean;
         if (covered > 0 && !is_alpha)
           mean = ((v[0] * shares[0] + v[1] * shares[1]) + (v[2] * shares[2] + v[3] * shares[3])) / covered;
-        else
-          mean = ((v[0] + v[1]) + (v[2] + v[3])) / 4;
+        else mean = ((v[0] + v[1]) + (v[2] + v[3])) / 4;
         put(to, kBits, out + c, (is_alpha ? kind.alpha : kind.colour)->nearest(mean));
       }
     }
@@ -144,17 +143,18 @@ const TexelCodes& TexelCodes::of(int bits, bool srgb) {
 std::uint32_t TexelCodes::nearest(float of) const {
   if (!(of > 0)) return 0;
   std::uint32_t code = start_[std::size_t(std::min(of, 1.0f) * kSteps)];
-  code += of >= from_[code + 1];   // of 8 bits no step holds more than one border
+  code += of >= from_[code + 1];  // of 8 bits no step holds more than one border
   while (of >= from_[code + 1]) ++code;
   return std::max(code, 1u);
 }
 
 TexelLevel reduce_texels(const TexelLevel& from, int width, int height, const TexelKind& kind) {
-  TexelLevel to{width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height) * std::size_t(kind.channels) * std::size_t(kind.bits / 8))};
+  TexelLevel to{width, height,
+                std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height) * std::size_t(kind.channels) *
+                                          std::size_t(kind.bits / 8))};
   if (from.width == 2 * width && from.height == 2 * height)
     kind.bits == 8 ? halve<8>(from, kind, to) : halve<16>(from, kind, to);
-  else
-    reduce_any(from, kind, to);
+  else reduce_any(from, kind, to);
   return to;
 }
 

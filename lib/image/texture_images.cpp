@@ -8,7 +8,9 @@
 namespace tempolux {
 
 TextureImages::TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits)
-    : images_(std::move(images)), limits_(limits), entries_(std::make_unique<Entry[]>(kTextureTransfers * images_.size())) {}
+    : images_(std::move(images)),
+      limits_(limits),
+      entries_(std::make_unique<Entry[]>(kTextureTransfers * images_.size())) {}
 
 const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer transfer) const {
   Entry& entry = entries_[kTextureTransfers * image + std::size_t(transfer)];
@@ -17,7 +19,8 @@ const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer t
   const EncodedImage& source = images_[image];
   std::unique_ptr<TexturePyramid> pyramid;
   try {
-    pyramid = std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer, limits_.reduce_to);
+    pyramid =
+        std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer, limits_.reduce_to);
   } catch (const std::bad_alloc&) {
     throw ResourceError(source.place + ": not enough memory to decode it; reduce textures with --reduce-textures");
   }

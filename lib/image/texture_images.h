@@ -14,10 +14,10 @@
 namespace tempolux {
 
 struct TextureLimits {
-  int max_side = 16384;                      ///< px: larger images are refused before anything is decoded
-  std::uint64_t max_pixels = 1ull << 28;     ///< of one image: more are refused
-  int reduce_to = 1 << 30;                   ///< px on a side: larger images are reduced when they are decoded
-  std::uint64_t max_bytes = 4ull << 30;      ///< of all decoded pyramids together
+  int max_side = 16384;                   ///< px: larger images are refused before anything is decoded
+  std::uint64_t max_pixels = 1ull << 28;  ///< of one image: more are refused
+  int reduce_to = 1 << 30;                ///< px on a side: larger images are reduced when they are decoded
+  std::uint64_t max_bytes = 4ull << 30;   ///< of all decoded pyramids together
 };
 
 /// Thread-safe. What no one looks at is never decoded.

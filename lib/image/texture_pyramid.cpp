@@ -111,13 +111,11 @@ bool TexturePyramid::any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, Text
   if (!std::isfinite(lower.x + lower.y + upper.x + upper.y)) return true;
   // The finest level at which the window is small; one texel more on each side for what a read mixes in.
   std::size_t l = 0;
-  while (l + 1 < levels_.size() && (size.x * float(levels_[l].width) > float(kWindow) ||
-                                    size.y * float(levels_[l].height) > float(kWindow)))
+  while (l + 1 < levels_.size() &&
+         (size.x * float(levels_[l].width) > float(kWindow) || size.y * float(levels_[l].height) > float(kWindow)))
     ++l;
   const TexelLevel& level = levels_[l];
-  const auto steps = [&](float extent, int texels) {
-    return int(std::min(extent * float(texels), float(texels))) + 4;
-  };
+  const auto steps = [&](float extent, int texels) { return int(std::min(extent * float(texels), float(texels))) + 4; };
   const int nx = steps(size.x, level.width), ny = steps(size.y, level.height);
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {

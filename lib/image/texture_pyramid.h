@@ -49,7 +49,7 @@ class TexturePyramid {
   Rgba texel(const TexelLevel& level, int x, int y) const;
 
   int channels_ = 0, bits_ = 8;
-  bool cutout_ = false;                         ///< means of colours are weighted by alpha
+  bool cutout_ = false;  ///< means of colours are weighted by alpha
   const TexelCodes* colour_ = nullptr;
   const TexelCodes* alpha_ = nullptr;
   std::vector<TexelLevel> levels_;

@@ -24,12 +24,12 @@ const std::vector<std::uint32_t>& whys_in(const Image& image, const std::string&
 /// How many pixels a cause has.
 struct WhyCount {
   std::string name;
-  std::uint64_t pixels = 0;   ///< that have it
-  std::uint64_t first = 0;    ///< that have it and none that stands before it in formats::kWhys
+  std::uint64_t pixels = 0;  ///< that have it
+  std::uint64_t first = 0;   ///< that have it and none that stands before it in formats::kWhys
 };
 
-/// One entry for each of formats::kWhys, then "unknown" for bits without a name if there are any. The sum of `first` is the
-/// number of pixels that are not 0.
+/// One entry for each of formats::kWhys, then "unknown" for bits without a name if there are any. The sum of `first` is
+/// the number of pixels that are not 0.
 std::vector<WhyCount> count_whys(const std::vector<std::uint32_t>& whys);
 
 /// Each pixel in the colour of its first cause; black where `why` is 0; brown for bits without a name.

@@ -12,22 +12,25 @@
 
 namespace tempolux {
 
-/// What was seen from a place along sixteen spokes across its surface: light known there may be taken for light at places
-/// inside the polygon of the spokes' ends, and nowhere else. Between two spokes a straight wall is found exactly.
+/// What was seen from a place along sixteen spokes across its surface: light known there may be taken for light at
+/// places inside the polygon of the spokes' ends, and nowhere else. Between two spokes a straight wall is found
+/// exactly.
 struct Clearance {
   static constexpr std::uint32_t kSpokes = 16;
-  static constexpr std::uint64_t kFull = 255;                   ///< a spoke that nothing ended
+  static constexpr std::uint64_t kFull = 255;  ///< a spoke that nothing ended
   using Shares = std::array<std::uint64_t, 2>;
-  static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};   ///< no spoke was ended
+  static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};  ///< no spoke was ended
   /// cosine between the normals of two places of one surface, at least: more is a bend, not a wall.
   static constexpr float kBend = 0.7f;
   /// tangent of the angle by which spokes rise: lower things do not part light.
   static constexpr float kRise = 0.05f;
 
-  float reach = INFINITY;         ///< m: how far was looked
-  Shares shares = kOpen;          ///< spoke k: byte k mod 8 of word k / 8, the lowest first: its length in 1/255 of reach, rounded down
+  float reach = INFINITY;  ///< m: how far was looked
+  Shares shares =
+      kOpen;  ///< spoke k: byte k mod 8 of word k / 8, the lowest first: its length in 1/255 of reach, rounded down
 
-  /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)|, f = (k mod 4) / 4, turned by k / 4 quadrants.
+  /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)|, f = (k mod 4) / 4, turned by k / 4
+  /// quadrants.
   static Vec2 spoke(std::uint32_t k) {
     const float f = float(k % 4) / 4, x = (1 - f) / kLength[k % 4], y = f / kLength[k % 4];
     switch (k / 4) {
@@ -43,15 +46,16 @@ struct Clearance {
     word = (word & ~(kFull << 8 * (k % 8))) | share << 8 * (k % 8);
   }
   /// To look this many radii far: then the polygon holds the disc of that radius.
-  static constexpr float kPerRadius = 1.0277402f;   // 1 / cos of half of 26.6 degrees, the widest angle between spokes
+  static constexpr float kPerRadius = 1.0277402f;  // 1 / cos of half of 26.6 degrees, the widest angle between spokes
 
-  /// Is the place `d` [m] away inside? normal: the place's own, as when it was looked. Height above the plane does not count.
+  /// Is the place `d` [m] away inside? normal: the place's own, as when it was looked. Height above the plane does not
+  /// count.
   bool contains(Vec3 d, Vec3 normal) const {
     if (shares == kOpen) return length2(d) < reach * reach;
     const Frame frame(normal);
     float x = dot(d, frame.tangent), y = dot(d, frame.bitangent);
     std::uint32_t first = 0;
-    for (; first < 12 && !(x > 0 && y >= 0); first += 4) x = std::exchange(y, -x);   // back by a quadrant each
+    for (; first < 12 && !(x > 0 && y >= 0); first += 4) x = std::exchange(y, -x);  // back by a quadrant each
     const float sum = std::abs(x) + std::abs(y);
     if (!(sum > 0)) return true;
     // d = sum ((1 - t) v_k + t v_k+1), v the spokes of |x| + |y| = 1: inside if sum ((1 - t) / r_k + t / r_k+1) < 1.

@@ -9,19 +9,21 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kNormalBins = 8;     ///< per octahedral coordinate
-constexpr float kFacesCell = 0.5f;           ///< cosine between a cell's direction and a point's normal, at least: a bin is 50 degrees wide
-constexpr int kCandidates = 8;               ///< points near a hit that are asked
+constexpr std::uint32_t kNormalBins = 8;  ///< per octahedral coordinate
+constexpr float kFacesCell =
+    0.5f;  ///< cosine between a cell's direction and a point's normal, at least: a bin is 50 degrees wide
+constexpr int kCandidates = 8;  ///< points near a hit that are asked
 constexpr int kMaxProbes = 16;
 constexpr float kCellsPerSpacing = 1.4f;
-constexpr int kCellBits = 19;                ///< of a cell's number along an axis
-constexpr float kRounding = 0x1p-20f;        ///< of coordinates
+constexpr int kCellBits = 19;          ///< of a cell's number along an axis
+constexpr float kRounding = 0x1p-20f;  ///< of coordinates
 
-constexpr float kBeside = 1.5f;              ///< spacings: how far off the neighbours are that are compared
-constexpr double kPhotons = 50;               ///< of an estimate: PointOptions::neighbours as it is shipped
-constexpr double kSure = 3;                   ///< standard errors
-constexpr std::size_t kProof = 2;            ///< neighbours that a point needs, of the 7 that a wide surface has: fewer show nothing
-constexpr float kOnePlane = 0.95f;           ///< cosine between normals: what faces elsewhere is not in a shadow's edge
+constexpr float kBeside = 1.5f;  ///< spacings: how far off the neighbours are that are compared
+constexpr double kPhotons = 50;  ///< of an estimate: PointOptions::neighbours as it is shipped
+constexpr double kSure = 3;      ///< standard errors
+constexpr std::size_t kProof =
+    2;  ///< neighbours that a point needs, of the 7 that a wide surface has: fewer show nothing
+constexpr float kOnePlane = 0.95f;  ///< cosine between normals: what faces elsewhere is not in a shadow's edge
 
 /// 3 bits of each octahedral coordinate.
 std::uint32_t normal_bin(Vec3 n) {
@@ -99,12 +101,15 @@ bool PointLookup::stands_for(const Light& light, const Question& q) const {
   const Vec3 d = q.position - light.position;
   const float reach = kReach * spacing_;
   if (!(length2(d) < reach * reach) || !(dot(light.normal, q.normal) > Clearance::kBend) ||
-      std::abs(dot(d, light.normal + q.normal)) > 2 * (Clearance::kRise * length(d) + kRounding * max_component(abs(q.position))))
-    return false;   // higher or lower than spokes look: there may be a sheet between
-  Clearance::Shares shares{light.clearance[0].load(std::memory_order_relaxed), light.clearance[1].load(std::memory_order_relaxed)};
+      std::abs(dot(d, light.normal + q.normal)) >
+          2 * (Clearance::kRise * length(d) + kRounding * max_component(abs(q.position))))
+    return false;  // higher or lower than spokes look: there may be a sheet between
+  Clearance::Shares shares{light.clearance[0].load(std::memory_order_relaxed),
+                           light.clearance[1].load(std::memory_order_relaxed)};
   if (shares[0] == kNotLooked || shares[1] == kNotLooked) {
     shares = look_(light.position, light.normal, reach).shares;
-    for (std::size_t i = 0; i < 2; ++i) light.clearance[i].store(shares[i] = std::max<std::uint64_t>(1, shares[i]), std::memory_order_relaxed);
+    for (std::size_t i = 0; i < 2; ++i)
+      light.clearance[i].store(shares[i] = std::max<std::uint64_t>(1, shares[i]), std::memory_order_relaxed);
   }
   return Clearance{reach, shares}.contains(d, light.normal);
 }
@@ -167,7 +172,8 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   // What hides behind this surface, as the outer leaf of a double wall, tells nothing of it: another object, as a rule.
   std::erase_if(beside, [&](std::uint32_t i) { return points_[i].object != points_[light.point].object; });
   const bool torn = !indirect.even() && std::any_of(beside.begin(), beside.end(), [&](std::uint32_t bright) {
-    return std::any_of(beside.begin(), beside.end(), [&](std::uint32_t dark) { return apart(points_[bright], points_[dark]); });
+    return std::any_of(beside.begin(), beside.end(),
+                       [&](std::uint32_t dark) { return apart(points_[bright], points_[dark]); });
   });
   const auto uneven = std::uint8_t(kKnown | (direct.even() && proven ? 0 : kDirect) | (torn ? kIndirect : 0));
   light.uneven.store(uneven, std::memory_order_relaxed);

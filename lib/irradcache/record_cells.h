@@ -11,8 +11,8 @@
 namespace tempolux {
 
 inline constexpr std::size_t kFirstBuckets = 256;
-inline constexpr float kOffPlane = 0.05f;   ///< of the radius: how far off the plane between the normals a point may be
-inline constexpr double kSphereRounding = 1e-6;   ///< distances are of float: a sphere may reach this much farther
+inline constexpr float kOffPlane = 0.05f;  ///< of the radius: how far off the plane between the normals a point may be
+inline constexpr double kSphereRounding = 1e-6;  ///< distances are of float: a sphere may reach this much farther
 
 /// One cell of a level.
 struct Cell {

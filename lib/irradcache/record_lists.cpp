@@ -61,7 +61,7 @@ void RecordStore::list(Level& level, std::uint32_t record) const {
   const Entry entry = entry_of(record);
   for_each_cell_of(level, records_[record], [&](Cell cell) {
     Bucket& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
-    if (bucket.ends_with(record)) return;   // two cells of one hash: once
+    if (bucket.ends_with(record)) return;  // two cells of one hash: once
     bucket.add(entry);
     ++level.listed;
   });
@@ -82,12 +82,14 @@ void RecordStore::pack(Level& level) const {
   std::vector<std::uint32_t> last(count, kNobody), next(count + 1);
   const auto for_each_listed = [&](const auto& body) {
     std::fill(last.begin(), last.end(), kNobody);
-    for (const Listed& listed : all)   // two cells of one hash: once
-      if (const std::uint32_t at = listed.hash & mask; std::exchange(last[at], listed.record) != listed.record) body(at, listed.record);
+    for (const Listed& listed : all)  // two cells of one hash: once
+      if (const std::uint32_t at = listed.hash & mask; std::exchange(last[at], listed.record) != listed.record)
+        body(at, listed.record);
   };
   for_each_listed([&](std::uint32_t at, std::uint32_t) { ++next[at]; });
   level.first.assign(count + 1, 0);
-  for (std::size_t b = 0; b < count; ++b) level.first[b + 1] = level.first[b] + std::uint32_t((next[b] + kLanes - 1) / kLanes);
+  for (std::size_t b = 0; b < count; ++b)
+    level.first[b + 1] = level.first[b] + std::uint32_t((next[b] + kLanes - 1) / kLanes);
   level.eights.assign(level.first[count], {});
   std::fill(next.begin(), next.end(), 0);
   for_each_listed([&](std::uint32_t at, std::uint32_t record) {

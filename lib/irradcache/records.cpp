@@ -12,7 +12,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kMostLevels = 277;   ///< powers of two that a radius above 0 in float may lie below
+constexpr std::size_t kMostLevels = 277;  ///< powers of two that a radius above 0 in float may lie below
 
 bool is_usable(const IrradianceRecord& r) {
   bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance));
@@ -27,18 +27,24 @@ float least_cosine_of(float error_bound) {
 }
 
 template <class Found>
-inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found) {
-  constexpr float kSlack = 1e-5f;   // rounding differs between lanes and one by one: that decides
+inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine,
+                                const Found& found) {
+  constexpr float kSlack = 1e-5f;  // rounding differs between lanes and one by one: that decides
   const auto all = [](float x) { return _mm256_set1_ps(x); };
   const __m256 least = all(least_cosine - kSlack), reach = all(1 + kSlack);
   for (const Eight& e : eights) {
     const auto of = [](const float* lanes) { return _mm256_load_ps(lanes); };
-    const __m256 dx = all(position.x) - of(e.x), dy = all(position.y) - of(e.y), dz = all(position.z) - of(e.z), r = of(e.radius);
-    const __m256 cosine = all(normal.x) * of(e.normal_x) + all(normal.y) * of(e.normal_y) + all(normal.z) * of(e.normal_z);
+    const __m256 dx = all(position.x) - of(e.x), dy = all(position.y) - of(e.y), dz = all(position.z) - of(e.z),
+                 r = of(e.radius);
+    const __m256 cosine =
+        all(normal.x) * of(e.normal_x) + all(normal.y) * of(e.normal_y) + all(normal.z) * of(e.normal_z);
     const __m256 near = _mm256_cmp_ps(dx * dx + dy * dy + dz * dz, r * r * reach, _CMP_LT_OQ);
-    for (int lanes = _mm256_movemask_ps(_mm256_and_ps(near, _mm256_cmp_ps(cosine, least, _CMP_GT_OQ))); lanes; lanes &= lanes - 1) {
+    for (int lanes = _mm256_movemask_ps(_mm256_and_ps(near, _mm256_cmp_ps(cosine, least, _CMP_GT_OQ))); lanes;
+         lanes &= lanes - 1) {
       const auto i = std::size_t(std::countr_zero(unsigned(lanes)));
-      if (found(Entry{{e.x[i], e.y[i], e.z[i]}, e.radius[i], {e.normal_x[i], e.normal_y[i], e.normal_z[i]}, e.record[i]})) return true;
+      if (found(
+              Entry{{e.x[i], e.y[i], e.z[i]}, e.radius[i], {e.normal_x[i], e.normal_y[i], e.normal_z[i]}, e.record[i]}))
+        return true;
     }
   }
   return false;
@@ -129,7 +135,8 @@ inline bool RecordStore::any_near(float least_cosine, Vec3 position, Vec3 normal
   return false;
 }
 
-inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const {
+inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position,
+                                    Vec3 normal) const {
   const Vec3 d = position - entry.position;
   const float d2 = length2(d);
   if (d2 >= radius * radius) return 0;
@@ -151,7 +158,8 @@ inline void RecordStore::accumulate(const Entry& entry, float radius, float leas
   const Vec3 d = position - entry.position;
   const Vec3 turn = cross(entry.normal, normal);
   for (int c = 0; c < 3; ++c) {
-    const float there = r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
+    const float there =
+        r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
     sum[c] += w * std::max(0.0f, there);
   }
   result.weight += w;

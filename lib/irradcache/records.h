@@ -32,21 +32,22 @@ struct IrradianceRecord {
 struct InterpolationOptions {
   /// Records whose normal is farther off do not count: n n_i > least_cosine, in [0, 1).
   float least_cosine = 0.94f;
-  bool only_read = false;               ///< all records come at once
+  bool only_read = false;  ///< all records come at once
 };
 
-/// least_cosine of records placed with this error bound (lib/gather/place_records.h): on curved surfaces a bright spot rises
-/// over the horizon faster than gradients tell, and a ball lit from the side came out 4 % dark there with 20 degrees, 1 %
-/// with 10. As radii do, the angle follows the bound,
+/// least_cosine of records placed with this error bound (lib/gather/place_records.h): on curved surfaces a bright spot
+/// rises over the horizon faster than gradients tell, and a ball lit from the side came out 4 % dark there with 20
+/// degrees, 1 % with 10. As radii do, the angle follows the bound,
 ///     1 - least_cosine = 0.375 error_bound^2,   50 degrees x error_bound,
 /// but stays from 5 to 20 degrees: normals of fine meshes turn more than that within a pixel, and wider it is wrong.
 float least_cosine_of(float error_bound);
 /// Cosine of 20 degrees, about.
 inline constexpr float kWideCosine = 0.94f;
 
-/// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of
-/// a hierarchy of hashed grids whose cells are a power of two, from one to two radii wide. What a look-up costs does not grow with the
-/// number of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
+/// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level
+/// of a hierarchy of hashed grids whose cells are a power of two, from one to two radii wide. What a look-up costs does
+/// not grow with the number of records, only with how many overlap there. Look-ups are thread-safe while nothing is
+/// added.
 class RecordStore {
  public:
   explicit RecordStore(const InterpolationOptions& options = {}) : options_(options) {}
@@ -58,8 +59,8 @@ class RecordStore {
 
   /// False, and the record is left out and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
-  /// The same for many. A store that is only read takes its records by one call of this: its lists are made once, each in one
-  /// piece of memory.
+  /// The same for many. A store that is only read takes its records by one call of this: its lists are made once, each
+  /// in one piece of memory.
   void add(std::span<const IrradianceRecord> records);
   /// Gives a record a smaller radius. Not of a store that is only read.
   void shrink(std::uint32_t record, float radius);
@@ -67,8 +68,8 @@ class RecordStore {
   std::uint64_t refused() const { return refused_; }
 
   struct Interpolated {
-    Rgb irradiance{0.0f};               ///< >= 0
-    float weight = 0;                   ///< sum of the records' weights, each in [0, 1]; 0: no record is valid here
+    Rgb irradiance{0.0f};  ///< >= 0
+    float weight = 0;      ///< sum of the records' weights, each in [0, 1]; 0: no record is valid here
     int count = 0;
   };
   /// Weighted mean of the valid records' extrapolations by their gradients:
@@ -77,18 +78,18 @@ class RecordStore {
   ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - least_cosine)))      where both are positive
   ///
   /// the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which go to zero at the border of validity, so
-  /// that no record is seen to begin. Every extrapolation is clamped at 0. A record is left out if the point is not on one
-  /// surface with it: |(x - x_i) . (n + n_i)/2| > 0.05 r_i, which is 0 along circles. Behind it as Ward 1988; in front as
-  /// well, or the bright ground below the rim of a plate shines on top of the plate. And if something is in between
-  /// (clearance). Where no record counts those in the
-  /// angle of kWideCosine do.
+  /// that no record is seen to begin. Every extrapolation is clamped at 0. A record is left out if the point is not on
+  /// one surface with it: |(x - x_i) . (n + n_i)/2| > 0.05 r_i, which is 0 along circles. Behind it as Ward 1988; in
+  /// front as well, or the bright ground below the rim of a plate shines on top of the plate. And if something is in
+  /// between (clearance). Where no record counts those in the angle of kWideCosine do.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Weighted mean of further_share over the records that are valid at a place; 0 if none is.
   float expected_further_share(Vec3 position, Vec3 normal) const;
   /// Sum of the weights at a record's own place of those added before it, but for those marked (empty: none is).
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
-  /// Is the sum of the weights there at least `weight`? Looks no farther once it is. Or is it, were no radius larger than
-  /// least_reach, in the angle of kWideCosine? Where normals turn faster than records may be fine, they need not be finer.
+  /// Is the sum of the weights there at least `weight`? Looks no farther once it is. Or is it, were no radius larger
+  /// than least_reach, in the angle of kWideCosine? Where normals turn faster than records may be fine, they need not
+  /// be finer.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
   /// Irradiance by interpolate(); none where no record counts.
   std::optional<Rgb> irradiance(Vec3 position, Vec3 normal) const;
@@ -117,14 +118,14 @@ class RecordStore {
 
    private:
     std::vector<Eight> eights_;
-    std::uint32_t count_ = 0, last_ = 0;   ///< last_: the record that came last
+    std::uint32_t count_ = 0, last_ = 0;  ///< last_: the record that came last
   };
   struct Level {
-    int exponent = 0;                   ///< cells are 2^exponent m wide
+    int exponent = 0;  ///< cells are 2^exponent m wide
     double inverse_cell = 0;
-    std::size_t listed = 0;             ///< entries in all buckets
+    std::size_t listed = 0;  ///< entries in all buckets
     std::vector<std::uint32_t> members;
-    std::vector<Bucket> buckets;        ///< by the hash of the cell, a power of two of them: what may be valid in it
+    std::vector<Bucket> buckets;  ///< by the hash of the cell, a power of two of them: what may be valid in it
     /// If only read, in place of buckets: bucket b is eights[first[b]] to eights[first[b + 1]].
     std::vector<std::uint32_t> first;
     std::vector<Eight> eights;
@@ -133,10 +134,12 @@ class RecordStore {
   Level* keep(const IrradianceRecord& record);
   void list(Level& level, std::uint32_t record) const;
   /// body(cell) for the cells that a record may be valid in.
-  template <class Body> void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
+  template <class Body>
+  void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
   Entry entry_of(std::uint32_t record) const;
   void pack(Level& level) const;
-  /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until true.
+  /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until
+  /// true.
   template <class Found>
   static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);
   /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
@@ -150,7 +153,7 @@ class RecordStore {
 
   InterpolationOptions options_;
   std::vector<IrradianceRecord> records_;
-  std::vector<Level> levels_;           ///< those that have members, in the order they came
+  std::vector<Level> levels_;  ///< those that have members, in the order they came
   std::uint64_t refused_ = 0;
 };
 

@@ -39,7 +39,7 @@ Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_rad
     const Vec3d off = sphere.centre - middle;
     squares += sphere.weight / sum * (dot(off, off) + sphere.radius * sphere.radius);
   }
-  std::vector<double> around;   // radii
+  std::vector<double> around;  // radii
   for (double radius = 2 * std::sqrt(squares); radius <= scene_radius; radius *= 2) around.push_back(radius);
   const double aimed = 1 - kUniform - (around.empty() ? 0 : kAround);
   for (const AimSphere& sphere : spheres) add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
@@ -50,7 +50,8 @@ Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_rad
 
 /// One more disc, chosen with probability `share`.
 void Aim::add(Vec3d centre, double radius, double share) {
-  const double ratio = scene_radius_ / radius, below = discs_.empty() ? kUniform : discs_.back().below + discs_.back().share;
+  const double ratio = scene_radius_ / radius,
+               below = discs_.empty() ? kUniform : discs_.back().below + discs_.back().share;
   discs_.push_back({centre - Vec3d(scene_centre_), radius, below, share, share * ratio * ratio});
 }
 
@@ -64,7 +65,8 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
     x = p.x * scene_radius_;
     y = p.y * scene_radius_;
   } else {
-    const auto after = std::upper_bound(discs_.begin(), discs_.end(), u, [](double at, const Disc& d) { return at < d.below; });
+    const auto after =
+        std::upper_bound(discs_.begin(), discs_.end(), u, [](double at, const Disc& d) { return at < d.below; });
     chosen = std::size_t(after - discs_.begin()) - 1;
     const Disc& d = discs_[chosen];
     const Vec2 p = disc_point((u - d.below) / d.share, v);
@@ -99,10 +101,12 @@ Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   while (chosen + 1 < given_ && left >= discs_[chosen].share) left -= discs_[chosen++].share;
   const Vec3d to = discs_[chosen].centre - from;
   // Uniform over the cone: 1 - cos of the angle to its axis is uniform.
-  const double off = std::min(left / discs_[chosen].share, 1.0) * one_minus_cos(discs_[chosen].radius, to), phi = 2 * M_PI * double(u.y);
+  const double off = std::min(left / discs_[chosen].share, 1.0) * one_minus_cos(discs_[chosen].radius, to),
+               phi = 2 * M_PI * double(u.y);
   const double across = std::sqrt(off * (2 - off));
   const Frame axes(Vec3(to * (1 / length(to))));
-  const Vec3 direction = normalize(axes.to_world({float(across * std::cos(phi)), float(across * std::sin(phi)), float(1 - off)}));
+  const Vec3 direction =
+      normalize(axes.to_world({float(across * std::cos(phi)), float(across * std::sin(phi)), float(1 - off)}));
   return {direction, density_towards(from, direction, chosen)};
 }
 
@@ -110,7 +114,8 @@ double Aim::density_towards(Vec3 place, Vec3 direction) const {
   return density_towards(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
 }
 
-/// A ray meets a sphere, or not; that of the chosen one does, whatever rounding says of the rim. `place`: from the scene's centre.
+/// A ray meets a sphere, or not; that of the chosen one does, whatever rounding says of the rim. `place`: from the
+/// scene's centre.
 double Aim::density_towards(Vec3d place, Vec3 direction, std::size_t chosen) const {
   double density = 0;
   for (std::size_t k = 0; k < given_; ++k) {

@@ -71,9 +71,8 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
     table.sphere_radius = 0.5 * length(Vec3d(any.bounds.upper) - Vec3d(any.bounds.lower)) * (1 + 1e-5);
   }
   for (std::uint32_t s = 0; s < any.surfaces.size(); ++s) {
-    const bool emits = std::any_of(frames.begin(), frames.end(), [&](const SceneFrame& f) {
-      return f.materials[f.surfaces[s].material].emissive();
-    });
+    const bool emits = std::any_of(frames.begin(), frames.end(),
+                                   [&](const SceneFrame& f) { return f.materials[f.surfaces[s].material].emissive(); });
     if (!emits) continue;
     table.surfaces.push_back(s);
     table.shares.emplace_back(any, s);

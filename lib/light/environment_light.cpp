@@ -98,18 +98,24 @@ void EnvironmentLight::build_distribution() {
   cell_guides_.resize(height_ + 1);
   parallel_chunks(height_ + 1, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row)
-      cell_guides_[row] = Guide<64>([&](double u) { return column_for(std::uint32_t(row), u, {0, width_ - 1}); }, width_ - 1);
+      cell_guides_[row] = Guide<64>(
+          [&](double u) {
+            return column_for(std::uint32_t(row), u, {0, width_ - 1});
+          },
+          width_ - 1);
   });
 }
 
 /// The row and the column, among those given, that a number falls in.
 std::uint32_t EnvironmentLight::row_for(double u1, Guide<64>::Range rows) const {
-  return std::uint32_t(std::upper_bound(row_end_.begin() + rows.first, row_end_.begin() + rows.last, u1) - row_end_.begin());
+  return std::uint32_t(std::upper_bound(row_end_.begin() + rows.first, row_end_.begin() + rows.last, u1) -
+                       row_end_.begin());
 }
 
 std::uint32_t EnvironmentLight::column_for(std::uint32_t row, double u2, Guide<64>::Range columns) const {
   const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
-  return std::uint32_t(std::upper_bound(ends + columns.first, ends + columns.last, std::uint32_t(u2 * ends[width_ - 1])) - ends);
+  return std::uint32_t(
+      std::upper_bound(ends + columns.first, ends + columns.last, std::uint32_t(u2 * ends[width_ - 1])) - ends);
 }
 
 EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {

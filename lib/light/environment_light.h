@@ -17,11 +17,12 @@ namespace tempolux {
 /// the polar angle, which the cell's mean stands for.
 class EnvironmentLight {
  public:
-  /// The environment must outlive it. Memory: 4 bytes per pixel and 260 per row. `even`: directions are drawn as if so many times the mean
-  /// luminance were added everywhere: with 1, half of them fall evenly over the sphere.
+  /// The environment must outlive it. Memory: 4 bytes per pixel and 260 per row. `even`: directions are drawn as if so
+  /// many times the mean luminance were added everywhere: with 1, half of them fall evenly over the sphere.
   explicit EnvironmentLight(const Environment& environment, double even = 0);
 
-  /// A place in the map: cell (row, column) and where in it, in [0, 1]. Several questions about one direction need it once.
+  /// A place in the map: cell (row, column) and where in it, in [0, 1]. Several questions about one direction need it
+  /// once.
   struct Place {
     std::uint32_t row, column;
     double x, y;
@@ -34,7 +35,7 @@ class EnvironmentLight {
   Rgbd integral() const { return integral_; }
 
   struct Sample {
-    Vec3 direction{};            ///< unit, towards where the light comes from
+    Vec3 direction{};  ///< unit, towards where the light comes from
     Rgb radiance{0.0f};
     double pdf_solid_angle = 0;  ///< [1/sr]
   };
@@ -71,12 +72,12 @@ class EnvironmentLight {
 
   const Environment& environment_;
   std::uint32_t width_, height_;
-  double even_ = 0;                       ///< W/m^2/sr, of the luminance that directions are drawn by
+  double even_ = 0;  ///< W/m^2/sr, of the luminance that directions are drawn by
   Rgbd integral_{0.0};
-  std::vector<double> row_end_;           ///< cumulative probability of the height + 1 rows of cells
-  std::vector<std::uint32_t> cell_end_;   ///< cumulative within each row; what emits has 1 at least
-  Guide<64> row_guide_;                   ///< of row_end_
-  std::vector<Guide<64>> cell_guides_;    ///< of cell_end_, by row
+  std::vector<double> row_end_;          ///< cumulative probability of the height + 1 rows of cells
+  std::vector<std::uint32_t> cell_end_;  ///< cumulative within each row; what emits has 1 at least
+  Guide<64> row_guide_;                  ///< of row_end_
+  std::vector<Guide<64>> cell_guides_;   ///< of cell_end_, by row
 };
 
 }  // namespace tempolux

@@ -10,8 +10,8 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBits = 20;                                        ///< of a coordinate
-constexpr std::int64_t kHalf = std::int64_t(1) << (kBits - 1);   ///< cells on either side of the origin
+constexpr int kBits = 20;                                       ///< of a coordinate
+constexpr std::int64_t kHalf = std::int64_t(1) << (kBits - 1);  ///< cells on either side of the origin
 constexpr std::uint64_t kMask = (std::uint64_t(1) << kBits) - 1;
 
 /// 0 to 5: the axis along which the normal is longest, and its sign.
@@ -79,20 +79,25 @@ const LightGrid::Cell* LightGrid::find(Vec3 position, Vec3 normal) const {
   return nullptr;
 }
 
-bool LightGrid::sample_sky(const Cell& cell, float u, float u2, EnvironmentLight::Sample& sample, double& density) const {
+bool LightGrid::sample_sky(const Cell& cell, float u, float u2, EnvironmentLight::Sample& sample,
+                           double& density) const {
   if (!sky_) return false;
-  const auto part = std::uint32_t(std::min<std::ptrdiff_t>(std::upper_bound(cell.end.begin(), cell.end.end(), u) - cell.end.begin(), kParts - 1));
+  const auto part = std::uint32_t(
+      std::min<std::ptrdiff_t>(std::upper_bound(cell.end.begin(), cell.end.end(), u) - cell.end.begin(), kParts - 1));
   const double first = part > 0 ? double(cell.end[part - 1]) : 0, share = double(cell.end[part]) - first;
   if (!(share > 0)) return false;
   const double across = std::clamp((double(u) - first) / share, 0.0, 1 - 0x1p-53);
-  if (!sky_->sample((part / kAcross + across) / kDown, std::min((part % kAcross + double(u2)) / kAcross, 1 - 0x1p-53), sample)) return false;
+  if (!sky_->sample((part / kAcross + across) / kDown, std::min((part % kAcross + double(u2)) / kAcross, 1 - 0x1p-53),
+                    sample))
+    return false;
   density = sample.pdf_solid_angle * share * kParts;
   return density > 0;
 }
 
 std::uint32_t LightGrid::part_of(Vec3 direction) const {
   const Vec2 u = sky_->numbers_of(direction);
-  return std::min(std::uint32_t(u.x * kDown), kDown - 1) * kAcross + std::min(std::uint32_t(u.y * kAcross), kAcross - 1);
+  return std::min(std::uint32_t(u.x * kDown), kDown - 1) * kAcross +
+         std::min(std::uint32_t(u.y * kAcross), kAcross - 1);
 }
 
 double LightGrid::sky_density(const Cell& cell, Vec3 direction) const {

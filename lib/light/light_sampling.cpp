@@ -44,7 +44,8 @@ bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double 
   const double left = u * total;
   if (left < environment_weight || total <= environment_weight)
     return sample_environment(point, normal, u_float, left / environment_weight, share * environment_weight / total, s);
-  return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight), share * (1 - environment_weight / total), s);
+  return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight),
+                    share * (1 - environment_weight / total), s);
 }
 
 /// u in [0, 1) chooses among the directional lights, which have this probability together.
@@ -80,18 +81,20 @@ bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 poi
 }
 
 /// u_float: what u comes from. Where its 24 bits are used up, bits of the other coordinate take their place.
-bool Lights::Impl::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability, LightSample& s) const {
+bool Lights::Impl::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
+                                      LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  if (!(sky_by_normal && normal != Vec3{} ? sky_by_normal->sample(normal, u1, u2, found) : environment->sample(u1, u2, found))) return false;
+  if (!(sky_by_normal && normal != Vec3{} ? sky_by_normal->sample(normal, u1, u2, found)
+                                          : environment->sample(u1, u2, found)))
+    return false;
   return take_from_sky(found, point, found.pdf_solid_angle * probability, s);
 }
 
 /// A point or spot light.
-bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double probability,
-                                 LightSample& s) const {
+bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const {
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0)) return false;
@@ -107,10 +110,10 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
   return falloff > 0;
 }
 
-/// What Lights::sample has of the light in the slot, chosen with this probability. left: what the choice left of its number,
-/// if joint in place of u.x.
-inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left, Vec2 u, bool joint,
-                               LightSample& sample) const {
+/// What Lights::sample has of the light in the slot, chosen with this probability. left: what the choice left of its
+/// number, if joint in place of u.x.
+inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left,
+                                      Vec2 u, bool joint, LightSample& sample) const {
   const Impl& m = *this;
   if (slot >= m.triangles.size())
     return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
@@ -138,30 +141,34 @@ Lights::Impl::Shares Lights::Impl::shares_of(const LightGrid::Cell& cell, From f
   return sun < 1 ? Shares{std::min(1.0, sky / (1 - sun)), 0} : Shares{sky > 0 ? 1.0 : 0.0, 0};
 }
 
-bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const {
+bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from,
+                          LightSample& sample) const {
   sample = {};
   if (const LightGrid::Cell* cell = known(point, normal))
     return sample_learned(*cell, point, normal, u_choice, u, joint, from, sample) && is_finite(sample.radiance);
   const LightTree::Start start = tree.start(point, normal);
-  const double distant = distant_irradiance(normal, from), share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
+  const double distant = distant_irradiance(normal, from),
+               share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
     // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
-    return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
+    return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) &&
+           is_finite(sample.radiance);
   }
   return sample_tree(start, 1 - share, point, normal, to_float(stretch(u_choice, share, 1 - share)), u, joint, sample);
 }
 
 /// A light that is somewhere; probability: of choosing one of them.
-bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
-                               bool joint, LightSample& sample) const {
+bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal,
+                               float u_choice, Vec2 u, bool joint, LightSample& sample) const {
   if (tree.empty()) return false;
   LightTree::Choice choice;
   if (!tree.choose(start, point, normal, u_choice, choice)) return false;
-  return sample_slot(tree_slot[choice.light], point, normal, choice.probability * probability, choice.left, u, joint, sample);
+  return sample_slot(tree_slot[choice.light], point, normal, choice.probability * probability, choice.left, u, joint,
+                     sample);
 }
 
-bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
-                                  From from, LightSample& s) const {
+bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
+                                  bool joint, From from, LightSample& s) const {
   const Shares shares = shares_of(cell, from);
   const auto sky = float(shares.sky), sun = float(shares.suns);
   if (u_choice < sky) {
@@ -174,7 +181,8 @@ bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 
   if (u_choice < sun) return sample_sun(point, normal, u_choice / sun, double(sun), s);
   const float lamps = 1 - sky - sun;
   if (!(lamps > 0)) return false;
-  return sample_tree(tree.start(point, normal), double(lamps), point, normal, to_float(double((u_choice - sun) / lamps)), u, joint, s);
+  return sample_tree(tree.start(point, normal), double(lamps), point, normal,
+                     to_float(double((u_choice - sun) / lamps)), u, joint, s);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
@@ -192,8 +200,8 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) c
   return impl_->sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.radiance);
 }
 
-float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
-                              Vec3 on_light, Vec3, From from) const {
+float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
+                              Vec3, From from) const {
   const Impl& m = *impl_;
   if (m.first_slot[surface] == kNone) return 0;
   const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
@@ -213,7 +221,8 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   return pdf < INFINITY ? pdf : 0;
 }
 
-float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction, From from) const {
+float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction,
+                              From from) const {
   if (!(impl_->environment_weight > 0)) return 0;
   if (const LightGrid::Cell* cell = impl_->known(point, normal)) {
     const float learned = float(Impl::shares_of(*cell, from).sky * impl_->grid->sky_density(*cell, direction));
@@ -222,7 +231,9 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
   double total = 0;
   const double share = impl_->distant_share(point, normal, from, total);
   const float pdf =
-      float((impl_->sky_by_normal && normal != Vec3{} ? impl_->sky_by_normal->pdf_solid_angle(normal, place, direction) : environment_->pdf_solid_angle(place, direction)) * share * impl_->environment_weight / total);
+      float((impl_->sky_by_normal && normal != Vec3{} ? impl_->sky_by_normal->pdf_solid_angle(normal, place, direction)
+                                                      : environment_->pdf_solid_angle(place, direction)) *
+            share * impl_->environment_weight / total);
   return pdf < INFINITY ? pdf : 0;
 }
 

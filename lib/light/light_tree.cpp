@@ -168,10 +168,8 @@ void LightTree::collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std
     set_child(nodes_[at], i, p.bounds);
     nodes_[at].leaf[i] = p.leaf;
     nodes_[at].child[i] = p.leaf ? p.light : std::uint32_t(nodes_.size());
-    if (p.leaf)
-      place_[p.light] = place;
-    else
-      collapse(pairs, chosen[i], place);
+    if (p.leaf) place_[p.light] = place;
+    else collapse(pairs, chosen[i], place);
   }
 }
 
@@ -204,8 +202,7 @@ std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::s
   for (int axis = 0; axis < 3 && by_cost; ++axis) {
     if (!(extent[axis] > 0)) continue;
     std::array<Group, kBucketCount> buckets;
-    for (std::size_t i = first; i < last; ++i)
-      buckets[std::size_t(bucket_of(items[i], axis))].add(items[i].bounds);
+    for (std::size_t i = first; i < last; ++i) buckets[std::size_t(bucket_of(items[i], axis))].add(items[i].bounds);
     std::array<double, kBucketCount> below{};
     Group group;
     for (std::size_t b = 0; b + 1 < kBucketCount; ++b) {
@@ -225,8 +222,8 @@ std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::s
   }
   const auto begin = items.begin() + std::ptrdiff_t(first), end = items.begin() + std::ptrdiff_t(last);
   if (best_axis >= 0) {
-    const auto cut = std::stable_partition(
-        begin, end, [&](const Item& item) { return bucket_of(item, best_axis) < best_bucket; });
+    const auto cut =
+        std::stable_partition(begin, end, [&](const Item& item) { return bucket_of(item, best_axis) < best_bucket; });
     return std::size_t(cut - items.begin());
   }
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
@@ -241,8 +238,7 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
   float factor[kWidth];
   const float no_normal = normal == Vec3{} ? 1.0f : 0.0f;
   for (int i = 0; i < kWidth; ++i) {
-    const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y,
-                z = node.centre[2][i] - point.z;
+    const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y, z = node.centre[2][i] - point.z;
     const float distance2 = x * x + y * y + z * z, radius = node.radius[i];
     const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
     const float sin_size = std::min(1.0f, radius * inverse), cos_size = safe_sqrt(1 - sin_size * sin_size);

@@ -50,8 +50,9 @@ class LightTree {
   }
   void start(Vec3 point, Vec3 normal, Start& start) const;
   bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
-  /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`: unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at
-  /// a node of which no light can reach the point.
+  /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`: unit, or
+  /// zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at a node of which no
+  /// light can reach the point.
   bool choose(Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Probability with which choose() takes this light. [1]
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;

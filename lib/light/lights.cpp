@@ -14,12 +14,9 @@ namespace {
 
 EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
   switch (kind) {
-    case PunctualLight::Kind::point:
-      return EmissionSlot::Kind::point;
-    case PunctualLight::Kind::spot:
-      return EmissionSlot::Kind::spot;
-    case PunctualLight::Kind::directional:
-      return EmissionSlot::Kind::directional;
+    case PunctualLight::Kind::point: return EmissionSlot::Kind::point;
+    case PunctualLight::Kind::spot: return EmissionSlot::Kind::spot;
+    case PunctualLight::Kind::directional: return EmissionSlot::Kind::directional;
   }
   return EmissionSlot::Kind::point;
 }
@@ -52,7 +49,10 @@ LightBounds bounds_of(const PlacedLight& placed) {
 }  // namespace
 
 Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table)
-    : frame(&frame_), sphere_centre(Vec3(table.sphere_centre)), sphere_radius(table.sphere_radius), environment(table.environment),
+    : frame(&frame_),
+      sphere_centre(Vec3(table.sphere_centre)),
+      sphere_radius(table.sphere_radius),
+      environment(table.environment),
       aim(table.aim, sphere_centre, sphere_radius) {
   if (environment) environment_weight = max_component(environment->integral()) / 4;
   add_slots(table);
@@ -112,7 +112,8 @@ std::vector<LightBounds> Lights::Impl::tree_bounds() const {
   std::vector<LightBounds> bounds;
   bounds.reserve(tree_slot.size());
   for (const std::uint32_t slot : tree_slot)
-    bounds.push_back(slot < triangles.size() ? bounds_of(triangles[slot]) : bounds_of(frame->lights[slots[slot].light]));
+    bounds.push_back(slot < triangles.size() ? bounds_of(triangles[slot])
+                                             : bounds_of(frame->lights[slots[slot].light]));
   return bounds;
 }
 
@@ -130,7 +131,8 @@ bool Lights::has_placed() const { return !impl_->tree.empty(); }
 
 std::vector<Lights::Sun> Lights::suns() const {
   std::vector<Sun> suns;
-  for (const std::uint32_t i : impl_->suns) suns.push_back({-impl_->frame->lights[i].direction, impl_->frame->lights[i].light.intensity});
+  for (const std::uint32_t i : impl_->suns)
+    suns.push_back({-impl_->frame->lights[i].direction, impl_->frame->lights[i].light.intensity});
   return suns;
 }
 

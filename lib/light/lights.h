@@ -21,8 +21,8 @@
 namespace tempolux {
 
 /// One slot of the emission table: an emissive triangle (both sides, twice the flux, if its material is
-/// double sided), a punctual light, or the environment. Slots and probabilities are frozen over a segment: a lamp that dims or
-/// moves keeps its slot and changes the photon's weight.
+/// double sided), a punctual light, or the environment. Slots and probabilities are frozen over a segment: a lamp that
+/// dims or moves keeps its slot and changes the photon's weight.
 struct EmissionSlot {
   enum class Kind : std::uint8_t { triangle, point, spot, directional, environment };
   Kind kind = Kind::triangle;
@@ -46,7 +46,7 @@ struct EmissionTable {
   Vec3d sphere_centre{};                ///< scene sphere over the segment, scene space, m
   double sphere_radius = 0;
   std::shared_ptr<const EnvironmentLight> environment;  ///< nullptr: none; its Environment must outlive it
-  std::vector<AimSphere> aim;            ///< where photons of directional lights and the environment go; empty: everywhere
+  std::vector<AimSphere> aim;  ///< where photons of directional lights and the environment go; empty: everywhere
 };
 
 /// The triangles of table.surfaces[index] as lights of a frame, in their order.
@@ -54,8 +54,8 @@ std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size
 
 /// The segment's table: made from all of its frames if something that emits moves, else from one.
 EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options);
-/// The table of frames that are evaluated already, all of one segment (the same surfaces and lights in the same order); at
-/// least one. To be the segment's table they must be all frames at which an emitter's size differs.
+/// The table of frames that are evaluated already, all of one segment (the same surfaces and lights in the same order);
+/// at least one. To be the segment's table they must be all frames at which an emitter's size differs.
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
 /// Content hash of what the segment freezes beyond its static geometry: probabilities of lights, distance scales, and
@@ -67,10 +67,11 @@ struct LightSample {
   Vec3 wi{};                  ///< unit, from the point towards the light
   Vec3 position{};            ///< on the light; for directional lights and the environment beyond the scene
   float position_offset = 0;  ///< m: the shadow ray ends this far before position
-  Rgb radiance{0.0f};         ///< L / pdf of an area light or the environment, I / d^2 or E of a delta light: multiply by f cos
+  Rgb radiance{
+      0.0f};  ///< L / pdf of an area light or the environment, I / d^2 or E of a delta light: multiply by f cos
   float pdf_solid_angle = 0;  ///< [1/sr], choice included; 0 if delta
   bool delta = false;
-  bool distant = false;       ///< of the environment or a directional light
+  bool distant = false;  ///< of the environment or a directional light
 };
 
 struct PhotonEmission {
@@ -88,11 +89,11 @@ class Lights {
   ~Lights();
   Lights(Lights&&) noexcept;
 
-  /// From now on samples are drawn by what the grid has learned of what reaches a place, where it knows the place; nullptr: no
-  /// more. The grid must outlive this. Probabilities alone change: no bias.
+  /// From now on samples are drawn by what the grid has learned of what reaches a place, where it knows the place;
+  /// nullptr: no more. The grid must outlive this. Probabilities alone change: no bias.
   void use(const LightGrid* grid);
-  /// From now on directions of the environment are drawn by radiance and by the cosine (SkyByNormal), where sample() is given a
-  /// normal and no grid knows the place. No bias. Some milliseconds.
+  /// From now on directions of the environment are drawn by radiance and by the cosine (SkyByNormal), where sample() is
+  /// given a normal and no grid knows the place. No bias. Some milliseconds.
   void weigh_sky_by_cosine();
   /// Directional lights that shine, and the environment: is there light from far away?
   bool has_distant() const;

@@ -1,5 +1,5 @@
-// lib/light/lights_impl.h -- what Lights keeps: shared by lights.cpp (making it), light_sampling.cpp (light samples) and
-// photon_emission.cpp (photons).
+// lib/light/lights_impl.h -- what Lights keeps: shared by lights.cpp (making it), light_sampling.cpp (light samples)
+// and photon_emission.cpp (photons).
 #pragma once
 
 #include <algorithm>
@@ -31,21 +31,22 @@ struct Lights::Impl {
   std::vector<std::uint32_t> tree_slot;   // and back
   std::vector<std::uint32_t> suns;        // indices of directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
-  std::unique_ptr<SkyByNormal> sky_by_normal;   // if directions of the environment are drawn by the cosine, too
-  double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
-  Aim aim;                                // of the photons of suns and environment
-  bool any_distant = false;       // an environment that is not black, or a sun
+  std::unique_ptr<SkyByNormal> sky_by_normal;  // if directions of the environment are drawn by the cosine, too
+  double environment_weight = 0;    // irradiance by the environment, the mean over all normals; 0: none or black
+  Aim aim;                          // of the photons of suns and environment
+  bool any_distant = false;         // an environment that is not black, or a sun
   const LightGrid* grid = nullptr;  // what is known of what reaches a place
   LightTree tree{{}};
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
   void build_tree();
 
-  Rgbd slot_flux(std::size_t slot) const;   ///< W
+  Rgbd slot_flux(std::size_t slot) const;  ///< W
   std::vector<LightBounds> tree_bounds() const;
-  bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
-  bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
-                   LightSample& sample) const;
+  bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
+                      From from, LightSample& sample) const;
+  bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
+                   bool joint, LightSample& sample) const;
   bool take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   const LightGrid::Cell* known(Vec3 point, Vec3 normal) const { return grid ? grid->find(point, normal) : nullptr; }
@@ -73,7 +74,8 @@ struct Lights::Impl {
   }
   std::size_t slot_at(double u) const;
   Vec2 direction_numbers(std::size_t slot, const std::array<double, 4>& u) const;
-  void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction, PhotonEmission& e) const;
+  void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
+                     PhotonEmission& e) const;
   void emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
   void emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
 };

@@ -33,8 +33,8 @@ std::size_t Lights::Impl::slot_at(double u) const {
   return slot;
 }
 
-/// On a two-sided triangle numbers u[2] below 1/2 leave the front, the others the back; each half is stretched to [0, 1). The floor
-/// of 2 u[2] is 1 for the back and needs no branch that would be taken at random.
+/// On a two-sided triangle numbers u[2] below 1/2 leave the front, the others the back; each half is stretched to [0,
+/// 1). The floor of 2 u[2] is 1 for the back and needs no branch that would be taken at random.
 Vec2 Lights::Impl::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
   const bool halves = slot < triangles.size() && triangles[slot].two_sided;
   return {to_float(halves ? 2 * u[2] - std::floor(2 * u[2]) : u[2]), to_float(u[3])};
@@ -117,12 +117,9 @@ void Lights::emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmis
     const double below = slot > 0 ? m.cumulative[slot - 1] : 0;
     const double u0 = stretch(u[i][0], below, m.slots[slot].probability);
     e.flux = m.photon_flux[slot];
-    if (slot < m.triangles.size())
-      m.emit_triangle(slot, u0, u[i], directions[i], e);
-    else if (m.slots[slot].kind == EmissionSlot::Kind::environment)
-      m.emit_environment(slot, u0, u[i], e);
-    else
-      m.emit_punctual(m.frame->lights[m.slots[slot].light], u0, u[i], e);
+    if (slot < m.triangles.size()) m.emit_triangle(slot, u0, u[i], directions[i], e);
+    else if (m.slots[slot].kind == EmissionSlot::Kind::environment) m.emit_environment(slot, u0, u[i], e);
+    else m.emit_punctual(m.frame->lights[m.slots[slot].light], u0, u[i], e);
     if (!is_finite(e.flux)) refuse_flux(m.frame->scene, max_component(m.slot_flux(slot)));
   }
 }

@@ -10,7 +10,6 @@
 namespace tempolux {
 namespace {
 
-
 double one_minus_cos(double angle) {
   const double s = std::sin(angle / 2);
   return 2 * s * s;
@@ -43,20 +42,16 @@ double SpotProfile::sample_one_minus_cos(double u) const {
 Rgbd punctual_flux(const PunctualLight& light, double disc_radius) {
   const Rgbd intensity{light.intensity};
   switch (light.kind) {
-    case PunctualLight::Kind::point:
-      return intensity * (4 * kPiD);
-    case PunctualLight::Kind::spot:
-      return intensity * SpotProfile(light).solid_angle();
-    case PunctualLight::Kind::directional:
-      return intensity * (kPiD * disc_radius * disc_radius);
+    case PunctualLight::Kind::point: return intensity * (4 * kPiD);
+    case PunctualLight::Kind::spot: return intensity * SpotProfile(light).solid_angle();
+    case PunctualLight::Kind::directional: return intensity * (kPiD * disc_radius * disc_radius);
   }
   return {};
 }
 
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2) {
   double omc = 2 * u1;
-  if (placed.light.kind == PunctualLight::Kind::spot)
-    omc = SpotProfile(placed.light).sample_one_minus_cos(u1);
+  if (placed.light.kind == PunctualLight::Kind::spot) omc = SpotProfile(placed.light).sample_one_minus_cos(u1);
   const double r = std::sqrt(std::max(0.0, omc * (2 - omc))), phi = 2 * kPiD * u2;
   return normalize(
       Frame(placed.direction).to_world({float(r * std::cos(phi)), float(r * std::sin(phi)), float(1 - omc)}));

@@ -8,12 +8,13 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kInside = 4;       ///< places along either side of a part at which the cosine is looked at
-constexpr double kLeastOfMean = 0.05;            ///< of the mean share, for parts that seem to be below
+constexpr std::uint32_t kInside = 4;   ///< places along either side of a part at which the cosine is looked at
+constexpr double kLeastOfMean = 0.05;  ///< of the mean share, for parts that seem to be below
 /// A bin of normals is about 1/8 wide: what is half of that below the horizon of its middle is above it for some.
 constexpr double kAroundHorizon = 1.0 / 16;
 
-/// The octahedral map [Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014].
+/// The octahedral map [Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2),
+/// 2014].
 std::uint32_t bin_of(Vec3 n) {
   const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   float x = n.x / sum, y = n.z / sum;
@@ -23,7 +24,9 @@ std::uint32_t bin_of(Vec3 n) {
     x = fold;
   }
   constexpr auto kSide = float(SkyByNormal::kSide);
-  const auto index = [](float v) { return std::min(std::uint32_t(std::max(0.0f, (v + 1) * 0.5f * kSide)), SkyByNormal::kSide - 1); };
+  const auto index = [](float v) {
+    return std::min(std::uint32_t(std::max(0.0f, (v + 1) * 0.5f * kSide)), SkyByNormal::kSide - 1);
+  };
   return index(y) * SkyByNormal::kSide + index(x);
 }
 
@@ -47,8 +50,10 @@ SkyByNormal::SkyByNormal(const EnvironmentLight& environment) : environment_(env
     for (std::size_t part = first; part < last; ++part)
       for (std::uint32_t i = 0; i < kInside * kInside; ++i) {
         EnvironmentLight::Sample sample;
-        const double u1 = double(part / kAcross) + (i / kInside + 0.5) / kInside, u2 = double(part % kAcross) + (i % kInside + 0.5) / kInside;
-        if (environment.sample(u1 / kDown, u2 / kAcross, sample)) directions[part * kInside * kInside + i] = sample.direction;
+        const double u1 = double(part / kAcross) + (i / kInside + 0.5) / kInside,
+                     u2 = double(part % kAcross) + (i % kInside + 0.5) / kInside;
+        if (environment.sample(u1 / kDown, u2 / kAcross, sample))
+          directions[part * kInside * kInside + i] = sample.direction;
       }
   });
   ends_.resize(kNormals);
@@ -84,14 +89,17 @@ bool SkyByNormal::sample(Vec3 normal, double u1, double u2, EnvironmentLight::Sa
   const double first = part > 0 ? double(ends.end[part - 1]) : 0, share = double(ends.end[part]) - first;
   if (!(share > 0)) return false;
   const double across = std::clamp((u1 - first) / share, 0.0, 1 - 0x1p-53);
-  if (!environment_.sample((part / kAcross + across) / kDown, std::min((part % kAcross + u2) / kAcross, 1 - 0x1p-53), sample)) return false;
+  if (!environment_.sample((part / kAcross + across) / kDown, std::min((part % kAcross + u2) / kAcross, 1 - 0x1p-53),
+                           sample))
+    return false;
   sample.pdf_solid_angle *= share * kParts;
   return sample.pdf_solid_angle > 0;
 }
 
 double SkyByNormal::pdf_solid_angle(Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const {
   const Vec2 u = environment_.numbers_of(place, direction);
-  const std::uint32_t part = std::min(std::uint32_t(u.x * kDown), kDown - 1) * kAcross + std::min(std::uint32_t(u.y * kAcross), kAcross - 1);
+  const std::uint32_t part =
+      std::min(std::uint32_t(u.x * kDown), kDown - 1) * kAcross + std::min(std::uint32_t(u.y * kAcross), kAcross - 1);
   const Ends& ends = ends_[bin_of(normal)];
   const double share = double(ends.end[part]) - (part > 0 ? double(ends.end[part - 1]) : 0);
   return share * kParts * environment_.pdf_solid_angle(place, direction);

@@ -18,7 +18,9 @@ constexpr double kLeast = 0.01;
 
 }  // namespace
 
-SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2) { return {unit(Vec3d(to0)), unit(Vec3d(to1)), unit(Vec3d(to2))}; }
+SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2) {
+  return {unit(Vec3d(to0)), unit(Vec3d(to1)), unit(Vec3d(to2))};
+}
 
 Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec2 u) {
   const auto& [a, b, c] = t;
@@ -44,8 +46,9 @@ Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, 
   if (!(length2(c2) > 0)) return {0, 0};
   c2 = unit(dot(c2, a + c) < 0 ? -c2 : c2);
   const double part = 2 * std::atan2(std::abs(dot(a, cross(b, c2))), 1 + dot(a, b) + dot(b, c2) + dot(c2, a));
-  const double whole = length2(b - c2);   // twice 1 - b.c2, with its digits
-  return {float(std::clamp(part / solid_angle, 0.0, 1.0)), float(whole > 0 ? std::clamp(length2(b - w) / whole, 0.0, 1.0) : 0)};
+  const double whole = length2(b - c2);  // twice 1 - b.c2, with its digits
+  return {float(std::clamp(part / solid_angle, 0.0, 1.0)),
+          float(whole > 0 ? std::clamp(length2(b - w) / whole, 0.0, 1.0) : 0)};
 }
 
 BilinearWarp::BilinearWarp(std::array<double, 4> values) : w_(values) {

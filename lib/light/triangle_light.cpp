@@ -48,7 +48,9 @@ struct View {
   }
   /// For samples by area, Heitz' map: cosine over distance^3, as the triangle's own cosine is height / distance.
   BilinearWarp factors(Vec3 normal) const {
-    const auto factor = [normal](Vec3 v, double l) { return (normal == Vec3{} ? l : double(dot(v, normal))) / (l * l * l * l); };
+    const auto factor = [normal](Vec3 v, double l) {
+      return (normal == Vec3{} ? l : double(dot(v, normal))) / (l * l * l * l);
+    };
     const Vec3 middle = (v1 + v2) * 0.5f;
     return BilinearWarp({factor(v0, l0), factor(v1, l1), factor(v2, l2), factor(middle, length(middle))});
   }
@@ -72,8 +74,7 @@ Vec2 project(const TriangleLight& t, const View& view, Vec3d w) {
 
 TriangleLight::TriangleLight(const Surface& surface, std::uint32_t index, const Material& material) {
   const auto& corners = surface.primitive->triangles[index];
-  const Vec3 p0 = surface.position(corners[0]), p1 = surface.position(corners[1]),
-             p2 = surface.position(corners[2]);
+  const Vec3 p0 = surface.position(corners[0]), p1 = surface.position(corners[1]), p2 = surface.position(corners[2]);
   corner = p0;
   edge1 = p1 - p0;
   edge2 = p2 - p0;

@@ -26,11 +26,12 @@ struct TriangleLight {
   double area = 0;     ///< m^2
   Rgb radiance{0.0f};  ///< W/(m^2 sr)
   bool two_sided = false;
-  bool varies = false; ///< radiance is the mean; that of a point is emitted_at's
+  bool varies = false;  ///< radiance is the mean; that of a point is emitted_at's
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
-  /// A triangle of a surface of the frame. Where a texture or alpha makes its emission vary, radiance is the mean over the triangle.
+  /// A triangle of a surface of the frame. Where a texture or alpha makes its emission vary, radiance is the mean over
+  /// the triangle.
   TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, const EmissionShares& shares);
   /// Radiance of the point of barycentrics (b1, b2), times the share of rays that meet it there.
   Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {
@@ -53,9 +54,9 @@ struct TrianglePoint {
 /// A point of the triangle as seen from `from`; false if it shows no emitting side there, or lies edge-on.
 ///
 /// Where the triangle fills between 0.02 sr and all but 0.02 sr of the half sphere, in solid angle:
-/// Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995; uniform, or nearly in proportion to the cosine at a
-/// surface of this unit normal, if it is not zero. Elsewhere uniform in area, by Heitz'
-/// map. pdf_triangle takes the same decision from the same numbers.
+/// Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995; uniform, or nearly in proportion to the cosine at
+/// a surface of this unit normal, if it is not zero. Elsewhere uniform in area, by Heitz' map. pdf_triangle takes the
+/// same decision from the same numbers.
 bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample);
 /// Density per solid angle of sample_triangle at `position`; 0 where it would have returned false.
 double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position);

@@ -14,7 +14,7 @@ struct AlbedoPair {
 namespace albedo_table {
 inline constexpr int kRows = 28, kColumns = 48;
 inline constexpr double kMinAlpha = 0.0004;
-}
+}  // namespace albedo_table
 
 /// Albedo of the single-scattering lobe of ggx.h for one alpha. Bicubic in a table of 28 x 48
 /// (albedo_table.cpp) over alpha^(1/4) and the square root of x = cos (1 + alpha) / (cos + alpha): a + b is
@@ -33,8 +33,8 @@ class GgxAlbedo {
 
  private:
   float alpha_ = 1;
-  int row_ = albedo_table::kRows - 4;   ///< first of the four rows in use
-  float weight_[4] = {0, 0, 0, 1};      ///< of each
+  int row_ = albedo_table::kRows - 4;  ///< first of the four rows in use
+  float weight_[4] = {0, 0, 0, 1};     ///< of each
 };
 
 namespace albedo_table {

@@ -41,8 +41,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
   const float metallic = material.metallic;
   transmission_ = material.transmission * (1 - metallic);
   if (transmission_ > 0) {
-    const float ior =
-        material.ior > 0 ? material.ior : 1e4f;  // ior 0: reflects everything, says KHR_materials_ior
+    const float ior = material.ior > 0 ? material.ior : 1e4f;  // ior 0: reflects everything, says KHR_materials_ior
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
@@ -82,10 +81,8 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
   }
   // A lobe that reflects everything leaves nothing to the Lambert lobe.
   const float rest = 1 - mean_albedo_;
-  if (rest > 1e-6f)
-    coupling_scale_ = 1 / std::sqrt(rest);
-  else
-    diffuse_ = false;
+  if (rest > 1e-6f) coupling_scale_ = 1 / std::sqrt(rest);
+  else diffuse_ = false;
 }
 
 Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
@@ -181,8 +178,7 @@ float Bsdf::multiple_share(const Reflection& r) {
 /// Of event S, without P(S): visible normals and, for what is reflected more than once, the cosine.
 float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
   const float share = multiple_share(r);
-  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) +
-         share * pdf_hemisphere_cos(wi.z);
+  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
 }
 
 float Bsdf::gloss_density(Vec3 wi, const Direction& wo) const {
@@ -193,7 +189,8 @@ float Bsdf::gloss_density(Vec3 wi, const Direction& wo) const {
 float Bsdf::pdf_specular(Vec3 wi, const Direction& wo) const {
   float density = rough_ && wi.z != 0 && wo.w.z > 0 ? transmission_ * rough_->pdf(wi, wo.w) : 0;
   if (!specular_ || delta_ || !(wi.z > 0) || !(wo.w.z > 0)) return density;
-  return density + (1 - diffuse_probability(wo.reflected)) * specular_density(wi, wo.w, wo.reflected) * (1 - transmission_);
+  return density +
+         (1 - diffuse_probability(wo.reflected)) * specular_density(wi, wo.w, wo.reflected) * (1 - transmission_);
 }
 
 void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
@@ -247,7 +244,7 @@ void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
 
 void Bsdf::sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const {
   s.wi = rough_->sample(wo.w, u_lobe, u);
-  if (s.wi.z == 0) return;   // lost at the wrong side of the surface
+  if (s.wi.z == 0) return;  // lost at the wrong side of the surface
   s.transmitted = s.wi.z < 0;
   const float density = pdf_specular(s.wi, wo);
   if (!(density > 0)) return;
@@ -269,7 +266,7 @@ Bsdf::Sample Bsdf::sample(const Direction& wo, float u_lobe, Vec2 u) const {
   }
   s = sample_opaque(wo, std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_)), u);
   s.pdf_solid_angle *= 1 - transmission_;
-  if (rough_ && !s.diffuse && s.pdf_solid_angle > 0) {   // the lobes of event S overlap
+  if (rough_ && !s.diffuse && s.pdf_solid_angle > 0) {  // the lobes of event S overlap
     const float density = pdf_specular(s.wi, wo);
     s.weight = density > 0 ? eval_specular(along(s.wi), wo) * (s.wi.z / density) : Rgb(0.0f);
     s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
@@ -284,10 +281,8 @@ Bsdf::Sample Bsdf::sample_opaque(const Direction& wo, float u_lobe, Vec2 u) cons
   if (!(wo.w.z > 0)) return s;
   const Reflection& r = wo.reflected;
   const float p = diffuse_probability(r);
-  if (u_lobe < p)
-    sample_diffuse(wo.w, u, r, s);
-  else if (specular_ && max_component(r.single) > 0)
-    sample_specular(wo.w, (u_lobe - p) / (1 - p), u, r, s);
+  if (u_lobe < p) sample_diffuse(wo.w, u, r, s);
+  else if (specular_ && max_component(r.single) > 0) sample_specular(wo.w, (u_lobe - p) / (1 - p), u, r, s);
   return s;
 }
 

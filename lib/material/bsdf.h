@@ -52,7 +52,7 @@ class Bsdf {
   bool has_lambert() const { return lambert_; }
   bool has_diffuse() const { return diffuse_; }  ///< a Lambert lobe that reflects
   bool has_specular() const { return specular_ || transmission_ > 0; }
-  bool specular_is_delta() const { return !rough_ && (delta_ || !specular_); }   ///< all S lobes
+  bool specular_is_delta() const { return !rough_ && (delta_ || !specular_); }  ///< all S lobes
   /// Which light eval_specular passes on: share of light samples to be aimed at the side z < 0. 1 inside a solid
   /// of rough glass, where the light is outside; 0 outside of one, where what is beyond meets its other side.
   float light_share_beyond() const { return light_share_beyond_; }
@@ -73,9 +73,9 @@ class Bsdf {
   struct Direction {
     Vec3 w{};
     struct Reflection {
-      Rgb single{0.0f}, multiple{0.0f};   ///< by one and by several microfacet reflections
-      float lost = 0;                     ///< 1 - E: what GGX alone would lose at F = 1
-    } reflected;                          ///< none below the surface
+      Rgb single{0.0f}, multiple{0.0f};  ///< by one and by several microfacet reflections
+      float lost = 0;                    ///< 1 - E: what GGX alone would lose at F = 1
+    } reflected;                         ///< none below the surface
   };
   Direction along(Vec3 w) const { return {w, w.z > 0 ? reflection(w.z) : Reflection{}}; }
 
@@ -86,11 +86,10 @@ class Bsdf {
   Rgb eval_specular(Vec3 wi, Vec3 wo) const { return eval_specular(along(wi), along(wo)); }
 
   struct Sample {
-    Vec3 wi{};         ///< unit, away from the surface
-    Rgb weight{0.0f};  ///< f cos / pdf of the chosen lobe's component, divided by its choice probability
-    float pdf_solid_angle =
-        0;                 ///< of wi by all non-delta lobes [1/sr]; for a delta lobe its choice probability
-    bool diffuse = false;  ///< event D, else S
+    Vec3 wi{};                  ///< unit, away from the surface
+    Rgb weight{0.0f};           ///< f cos / pdf of the chosen lobe's component, divided by its choice probability
+    float pdf_solid_angle = 0;  ///< of wi by all non-delta lobes [1/sr]; for a delta lobe its choice probability
+    bool diffuse = false;       ///< event D, else S
     bool delta = false;
     bool transmitted = false;  ///< wi is on the other side, z < 0
   };
@@ -151,7 +150,7 @@ class Bsdf {
   float eta_ = 1;            ///< index on wo's side / index beyond; 1 for a thin wall's way through
   float eta_reflected_ = 1;  ///< the same for its Fresnel term
   float light_share_beyond_ = 0;
-  std::optional<RoughGlass> rough_;   ///< empty: the glass is smooth, or there is none
+  std::optional<RoughGlass> rough_;  ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
 

@@ -23,8 +23,6 @@ inline float fresnel_dielectric(float cos_o, float eta, float& cos_t) {
 }
 
 /// Direction beyond the boundary z = 0 of light seen along wo (z > 0): away from the surface, z < 0.
-inline Vec3 refract(Vec3 wo, float eta, float cos_t) {
-  return normalize(Vec3{-eta * wo.x, -eta * wo.y, -cos_t});
-}
+inline Vec3 refract(Vec3 wo, float eta, float cos_t) { return normalize(Vec3{-eta * wo.x, -eta * wo.y, -cos_t}); }
 
 }  // namespace tempolux

@@ -29,8 +29,8 @@ float GlassLoss::at(int side, float cos_theta) const {
   for (int p = 0; p < 4; ++p)
     for (int r = 0; r < 4; ++r) {
       const float* e = &glass_table::kLoss[side][first_[0] + p][first_[1] + r][column];
-      loss += weight_[0][p] * weight_[1][r] *
-              (across[0] * e[0] + across[1] * e[1] + across[2] * e[2] + across[3] * e[3]);
+      loss +=
+          weight_[0][p] * weight_[1][r] * (across[0] * e[0] + across[1] * e[1] + across[2] * e[2] + across[3] * e[3]);
     }
   return std::clamp(loss, 0.0f, 1.0f);
 }
@@ -38,7 +38,8 @@ float GlassLoss::at(int side, float cos_theta) const {
 float GlassLoss::mean(int side) const {
   float mean = 0;
   for (int p = 0; p < 4; ++p)
-    for (int r = 0; r < 4; ++r) mean += weight_[0][p] * weight_[1][r] * glass_table::kMean[side][first_[0] + p][first_[1] + r];
+    for (int r = 0; r < 4; ++r)
+      mean += weight_[0][p] * weight_[1][r] * glass_table::kMean[side][first_[0] + p][first_[1] + r];
   return std::max(1e-7f, mean);
 }
 

@@ -24,9 +24,9 @@ class GlassLoss {
   float column(int side, float cos_theta) const;
 
   float alpha_;
-  float critical_;       ///< cos of the critical angle
-  int first_[2];         ///< of four planes and four rows in use
-  float weight_[2][4];   ///< of each
+  float critical_;      ///< cos of the critical angle
+  int first_[2];        ///< of four planes and four rows in use
+  float weight_[2][4];  ///< of each
 };
 
 namespace glass_table {

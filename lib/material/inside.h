@@ -51,7 +51,7 @@ class Inside {
       if (front) enter(material);
       else leave(material);
     } else if (!front && count_ == 0) {
-      enter(material);   // reflected where the path started
+      enter(material);  // reflected where the path started
     }
   }
 
@@ -72,7 +72,7 @@ class Inside {
     for (--count_; at < count_; ++at) within_[at] = within_[at + 1];
   }
 
-  std::uint32_t within_[kDeepest];   ///< the innermost last
+  std::uint32_t within_[kDeepest];  ///< the innermost last
   int count_ = 0;
 };
 

@@ -27,7 +27,7 @@ RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
   if (thin) {
     share_beyond_ = through;
   } else {
-    const float ratio = loss_.mean(0) / (loss_.mean(1) * index * index);   // d / b
+    const float ratio = loss_.mean(0) / (loss_.mean(1) * index * index);  // d / b
     const float b = std::min(through, through > 0 ? 1 / std::max(1.0f, ratio) : 0.0f);
     share_beyond_ = side_ == 0 ? b : b * ratio;
   }
@@ -72,7 +72,7 @@ RoughGlass::Pair RoughGlass::single(Vec3 wi, Vec3 wo) const {
   const float cos_oh = dot(wo, h), cos_ih = dot(wi, h);
   if (!(cos_oh > 0) || !(cos_ih < 0)) return {};
   const float share = 1 - fresnel_dielectric(std::min(1.0f, cos_oh), eta_, cos_t);
-  const float slope = cos_ih + eta_ * cos_oh, turned = -cos_ih / std::max(1e-20f, slope * slope);   // dh / dwi
+  const float slope = cos_ih + eta_ * cos_oh, turned = -cos_ih / std::max(1e-20f, slope * slope);  // dh / dwi
   const float d = share * ggx::distribution(h, alpha2_) * cos_oh * turned;
   return {4 * d * ggx::visibility(cos_i, wo.z, alpha2_), 4 * d * 0.5f / (wo.z + ggx::smith_root(wo.z, alpha2_))};
 }
@@ -80,8 +80,7 @@ RoughGlass::Pair RoughGlass::single(Vec3 wi, Vec3 wo) const {
 float RoughGlass::eval(Vec3 wi, Vec3 wo) const {
   const bool beyond = wi.z < 0;
   const float share = beyond ? share_beyond_ : 1 - share_beyond_;
-  return single(wi, wo).f +
-         share * kInvPi * loss(beyond, std::abs(wi.z)) * loss(false, wo.z) / mean_loss(beyond);
+  return single(wi, wo).f + share * kInvPi * loss(beyond, std::abs(wi.z)) * loss(false, wo.z) / mean_loss(beyond);
 }
 
 float RoughGlass::pdf(Vec3 wi, Vec3 wo) const {

@@ -28,13 +28,13 @@ class RoughGlass {
   /// index >= 1, of the solid; alpha of GGX in (0, 1]; outside: wo is outside the solid (no matter if thin).
   RoughGlass(float index, float alpha, bool thin, bool outside);
 
-  float eval(Vec3 wi, Vec3 wo) const;   ///< f [1/sr], without a tint
-  float pdf(Vec3 wi, Vec3 wo) const;    ///< of sample() [1/sr]
+  float eval(Vec3 wi, Vec3 wo) const;  ///< f [1/sr], without a tint
+  float pdf(Vec3 wi, Vec3 wo) const;   ///< of sample() [1/sr]
   /// A direction wi above or below; eval |cos| / pdf is its weight. Not unit or on no side: lost (rare).
   Vec3 sample(Vec3 wo, float u_lobe, Vec2 u) const;
 
  private:
-  struct Pair {   ///< of directions: what one microfacet scatters, and the density of sample() that does
+  struct Pair {  ///< of directions: what one microfacet scatters, and the density of sample() that does
     float f = 0, pdf = 0;
   };
   Pair single(Vec3 wi, Vec3 wo) const;
@@ -42,14 +42,14 @@ class RoughGlass {
   float mean_loss(bool beyond) const;
   float multiple_density(float cos_i) const;
 
-  GlassLoss loss_;        ///< of a solid
-  GgxAlbedo wall_;        ///< of a thin wall: that of a mirror
+  GlassLoss loss_;  ///< of a solid
+  GgxAlbedo wall_;  ///< of a thin wall: that of a mirror
   float alpha_, alpha2_;
-  float eta_;             ///< index on wo's side / beyond, of the Fresnel term
+  float eta_;  ///< index on wo's side / beyond, of the Fresnel term
   bool thin_;
-  int side_;              ///< of wo: 0 outside, 1 inside
-  float share_beyond_;    ///< of f_ms
-  float spread2_, log_spread_;   ///< of multiple_density
+  int side_;                    ///< of wo: 0 outside, 1 inside
+  float share_beyond_;          ///< of f_ms
+  float spread2_, log_spread_;  ///< of multiple_density
 };
 
 }  // namespace tempolux

@@ -13,7 +13,7 @@ inline constexpr float kLooksAway = 1e-4f;
 /// the shading normal looks away from wo the geometric one takes its place.
 struct SeenSide {
   Vec3 normal_geometric, normal;
-  Frame frame;                     ///< z = normal
+  Frame frame;  ///< z = normal
   Vec3 wo_local;
 
   SeenSide(const SurfacePoint& point, Vec3 wo)

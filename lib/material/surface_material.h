@@ -10,14 +10,14 @@ namespace tempolux {
 
 /// Width of what a ray stands for, for choosing the level of textures: it grows by `spread` metres per metre.
 ///
-/// A camera ray starts with a pixel's angle and keeps it through events S (curved mirrors, and what gloss spreads, are not
-/// accounted for). After an event D, and from lights, there is none: the finest level is read. Coarse levels keep the mean of an
-/// image, but light goes neither by the mean roughness, normal or metalness nor by what an image has beside the chart that
-/// a surface shows, and a cone depends on which end a path is begun from: what photons met of a lamp far away would be another
-/// surface than what eyes meet of a wall near by. Cones of a fiftieth cost a fox's ground 0.2 % of its light, and made caustics of
-/// AlphaBlendModeTest's bed 3 % brighter by photons than by paths.
+/// A camera ray starts with a pixel's angle and keeps it through events S (curved mirrors, and what gloss spreads, are
+/// not accounted for). After an event D, and from lights, there is none: the finest level is read. Coarse levels keep
+/// the mean of an image, but light goes neither by the mean roughness, normal or metalness nor by what an image has
+/// beside the chart that a surface shows, and a cone depends on which end a path is begun from: what photons met of a
+/// lamp far away would be another surface than what eyes meet of a wall near by. Cones of a fiftieth cost a fox's
+/// ground 0.2 % of its light, and made caustics of AlphaBlendModeTest's bed 3 % brighter by photons than by paths.
 struct RayCone {
-  float width = 0, spread = 0;   ///< m; m/m
+  float width = 0, spread = 0;  ///< m; m/m
   void advance(float distance) { width += spread * distance; }
 };
 
@@ -27,7 +27,8 @@ class SurfaceMaterial {
   /// Bends point.normal by the normal map if there is one. width [m]: RayCone; 0: none. `point` is of `frame`.
   SurfaceMaterial(const SceneFrame& frame, SurfacePoint& point, float width = 0)
       : values_(&frame.materials[point.material]) {
-    if (frame.materials[point.material].textures) [[unlikely]] read_textures(frame, point, width);
+    if (frame.materials[point.material].textures) [[unlikely]]
+      read_textures(frame, point, width);
   }
   SurfaceMaterial(const SurfaceMaterial&) = delete;
   SurfaceMaterial& operator=(const SurfaceMaterial&) = delete;

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kChunksPerThread = 2;   ///< in flight
+constexpr int kChunksPerThread = 2;  ///< in flight
 
 struct Piece {
   PhotonBatch batch;
@@ -39,11 +39,12 @@ formats::Photon negative(formats::Photon photon) {
 
 }  // namespace
 
-PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whole, std::span<const std::uint64_t> paths) {
+PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whole,
+                          std::span<const std::uint64_t> paths) {
   // A path that meets nothing that moves in the whole scene is the same without it.
   const PhotonBatch after = whole.trace_paths(paths);
   std::vector<std::uint64_t> others;
-  std::vector<std::uint32_t> number_of;   // in `paths`
+  std::vector<std::uint32_t> number_of;  // in `paths`
   for (std::uint32_t path = 0; path < paths.size(); ++path)
     if (after.moved[path]) others.push_back(paths[path]), number_of.push_back(path);
   const PhotonBatch before = standing.trace_paths(others);
@@ -53,7 +54,8 @@ PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whol
   for (std::size_t path = 0; path < others.size(); ++path) {
     const auto a = old.of(path), b = now.of(number_of[path]);
     std::size_t common = 0;
-    while (common < std::min(a.size(), b.size()) && before.block.photons[a[common]] == after.block.photons[b[common]]) ++common;
+    while (common < std::min(a.size(), b.size()) && before.block.photons[a[common]] == after.block.photons[b[common]])
+      ++common;
     const auto take = [&](const PhotonBatch& from, std::uint32_t p, const formats::Photon& photon) {
       result.block.photons.push_back(photon);
       if (!from.block.directions.empty()) result.block.directions.push_back(from.block.directions[p]);
@@ -71,14 +73,16 @@ PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whol
   return result;
 }
 
-PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTracer& whole, std::span<const std::uint64_t> paths,
-                                  const PhotonOptions& options, formats::PhotonHeader header,
+PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTracer& whole,
+                                  std::span<const std::uint64_t> paths, const PhotonOptions& options,
+                                  formats::PhotonHeader header,
                                   const std::function<void(const void*, std::size_t)>& sink,
                                   const std::function<void(double)>& progress) {
   // Pieces of one group, of at most a batch.
   std::vector<std::size_t> borders{0};
   for (std::size_t i = 1; i < paths.size(); ++i)
-    if (paths[i] % whole.group_count() != paths[i - 1] % whole.group_count() || i - borders.back() == PhotonTracer::kBatch)
+    if (paths[i] % whole.group_count() != paths[i - 1] % whole.group_count() ||
+        i - borders.back() == PhotonTracer::kBatch)
       borders.push_back(i);
   if (!paths.empty()) borders.push_back(paths.size());
 
@@ -94,7 +98,8 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTrac
       [&](std::size_t i) -> std::shared_ptr<void> {
         auto piece = std::make_shared<Piece>();
         piece->batch = difference_of(standing, whole, paths.subspan(borders[i], borders[i + 1] - borders[i]));
-        if (!piece->batch.block.photons.empty()) piece->bytes = formats::encode_block(piece->batch.block, header.columns);
+        if (!piece->batch.block.photons.empty())
+          piece->bytes = formats::encode_block(piece->batch.block, header.columns);
         return piece;
       },
       [&](std::size_t i, void* pointer) {

@@ -1,4 +1,5 @@
-// lib/photon/photon_ledger.h -- what writers of photon maps have in common: the ledger, what a header says, records of media.
+// lib/photon/photon_ledger.h -- what writers of photon maps have in common: the ledger, what a header says, records of
+// media.
 #pragma once
 
 #include <algorithm>

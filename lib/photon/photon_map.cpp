@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBatchesPerThread = 2;   ///< in flight, 100 kB each: one is traced, one waits for its turn
+constexpr int kBatchesPerThread = 2;  ///< in flight, 100 kB each: one is traced, one waits for its turn
 
 struct EncodedBatch {
   PhotonBatch batch;
@@ -19,8 +19,7 @@ struct EncodedBatch {
 
 }  // namespace
 
-PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options,
-                                 formats::PhotonHeader header,
+PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
                                  const std::function<void(const void*, std::size_t)>& sink,
                                  const std::function<void(double)>& progress) {
   PhotonMapResult result;
@@ -28,7 +27,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
   formats::PhotonWriter writer(sink, header);
 
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
-  std::vector<formats::GroupFlux> ledger;   // only with tentative photons
+  std::vector<formats::GroupFlux> ledger;  // only with tentative photons
   if (options.store_volume) ledger.resize(header.group_count);
   parallel_ordered(
       tracer.batch_count(), std::size_t(kBatchesPerThread * parallel_thread_count()),

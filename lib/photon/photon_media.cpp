@@ -15,8 +15,8 @@ const MajorantGrid& PhotonTracer::majorants() const {
   return media_ ? media_->majorants() : none;
 }
 
-/// Follows photons to where they meet a surface, as the loop without media does; those that a medium scatters before are listed in
-/// `scattered`. Returns how many arrive.
+/// Follows photons to where they meet a surface, as the loop without media does; those that a medium scatters before
+/// are listed in `scattered`. Returns how many arrive.
 std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits,
                               std::uint32_t* scattered, std::size_t& scattered_count, PhotonBatch& batch) const {
   std::size_t arrived = 0;
@@ -32,7 +32,8 @@ std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* pat
   return arrived;
 }
 
-PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const {
+PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::uint32_t bounce,
+                                                    PhotonBatch& batch) const {
   const PathRandom& random = path.random;
   Flight flight(media_->majorants(), path.ray.origin, path.ray.direction, end);
   Tentative t;
@@ -47,12 +48,16 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     Rgb flux = path.flux;
     if (path.inside.any()) flux *= path.inside.transmittance_over(tracer_.frame().materials, t.distance);
     const float extinction = media_->extinction(position);
-    if (path.pilot) [[unlikely]] pilot_signature::look(*path.pilot, bits & 1, flux, extinction, t.majorant);   // the last bit of the word: FlightNumbers leaves it
+    if (path.pilot) [[unlikely]]
+      pilot_signature::look(*path.pilot, bits & 1, flux, extinction,
+                            t.majorant);  // the last bit of the word: FlightNumbers leaves it
     if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share)
-      record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, extinction, t.majorant, bounce, batch);
+      record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, extinction, t.majorant,
+                       bounce, batch);
     if (!(numbers.accept * t.majorant < extinction)) continue;
 
-    if (path.pilot) [[unlikely]] pilot_signature::collide(*path.pilot, bounce, step);
+    if (path.pilot) [[unlikely]]
+      pilot_signature::collide(*path.pilot, bounce, step);
     const MediumOptions& medium = media_->collided(position, random.get1(bounce, Purpose::medium)).options();
     const Rgb scattered = flux * medium.albedo;
     const float survival =
@@ -68,8 +73,8 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
   }
 }
 
-void PhotonTracer::record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant, std::uint32_t bounce,
-                                    PhotonBatch& batch) const {
+void PhotonTracer::record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant,
+                                    std::uint32_t bounce, PhotonBatch& batch) const {
   formats::Photon& photon = batch.block.photons.emplace_back();
   photon.position = {position.x, position.y, position.z};
   photon.flux = {flux.r, flux.g, flux.b};

@@ -7,14 +7,15 @@
 
 namespace tempolux {
 
-inline constexpr float kLargestPhotonSurvival = 0.9995f;   ///< in a lossless box paths end after 2000 bounces in the mean
+inline constexpr float kLargestPhotonSurvival =
+    0.9995f;  ///< in a lossless box paths end after 2000 bounces in the mean
 
 struct PhotonTracer::Path {
   PathRandom random{0, 0};
   Ray ray;
   Rgb flux;
-  FluxBalance* balance = nullptr;   ///< of all paths, or its own
-  formats::PhotonPilot* pilot = nullptr;   ///< takes down what it meets
+  FluxBalance* balance = nullptr;         ///< of all paths, or its own
+  formats::PhotonPilot* pilot = nullptr;  ///< takes down what it meets
   bool diffuse_seen = false, specular_seen = false;
   Inside inside;
 };

@@ -22,12 +22,13 @@ void scale(PhotonBatch& batch, double factor) {
 }
 
 struct Refined {
-  std::vector<PhotonBatch> fresh;            ///< new paths of a group
+  std::vector<PhotonBatch> fresh;  ///< new paths of a group
 };
 
 }  // namespace
 
-std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::span<const std::uint64_t> paths, std::uint64_t extra) {
+std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::span<const std::uint64_t> paths,
+                                        std::uint64_t extra) {
   const std::size_t n = moments.size();
   std::vector<std::uint64_t> result(paths.begin(), paths.end());
   if (n == 0 || extra == 0) return result;
@@ -38,7 +39,8 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t(0));
   const auto begins = [&](std::size_t g) { return wanted[g] > 0 ? double(paths[g]) / wanted[g] : INFINITY; };
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return std::pair(begins(a), a) < std::pair(begins(b), b); });
+  std::ranges::sort(order,
+                    [&](std::size_t a, std::size_t b) { return std::pair(begins(a), a) < std::pair(begins(b), b); });
   double weight = 0, had = 0, level = 0;
   std::size_t count = 0;
   for (; count < n && begins(order[count]) < INFINITY; ++count) {
@@ -64,7 +66,7 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
 }
 
 std::vector<double> beside_groups(std::span<const double> values, std::uint64_t seed) {
-  constexpr std::array<std::size_t, 4> bases{3, 5, 7, 2};   // of PhotonHalton's components
+  constexpr std::array<std::size_t, 4> bases{3, 5, 7, 2};  // of PhotonHalton's components
   const std::size_t count = values.size();
   std::array<std::size_t, 4> sides{1, 1, 1, 1};
   std::size_t left = count;
@@ -106,9 +108,11 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   formats::PhotonReader reader(path, {.digest = false});
   GroupMoments groups;
   groups.header = reader.header();
-  if (groups.header.majorants.empty()) throw InputError(path + ": has no photons in media; trace it with --kinds volume among others");
+  if (groups.header.majorants.empty())
+    throw InputError(path + ": has no photons in media; trace it with --kinds volume among others");
   if (groups.header.majorants != tracer.majorants().hash())
-    throw InputError(path + ": its majorants are others than those of this frame; give the --majorants that it was traced with");
+    throw InputError(
+        path + ": its majorants are others than those of this frame; give the --majorants that it was traced with");
   std::vector<double> squares(groups.header.group_count);
   formats::PhotonBlock block;
   while (reader.read_block(block))
@@ -130,8 +134,9 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   return groups;
 }
 
-PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header, const std::string& path,
-                                  const GroupMoments& groups, std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink) {
+PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options,
+                                  formats::PhotonHeader header, const std::string& path, const GroupMoments& groups,
+                                  std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink) {
   describe_map(tracer, options, header);
   const std::vector<std::uint64_t> paths = spread_paths(groups.moments, groups.paths, extra);
   header.emitted_count = std::accumulate(paths.begin(), paths.end(), std::uint64_t(0));
@@ -148,7 +153,8 @@ PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOption
         // The tracer's flux is by 1 / members.
         const double factor = double(tracer.members()) / double(std::max<std::uint64_t>(1, paths[g]));
         for (std::uint64_t q = groups.paths[g]; q < paths[g]; q += PhotonTracer::kBatch) {
-          refined->fresh.push_back(tracer.trace_members(std::uint32_t(g), q, std::min(paths[g], q + PhotonTracer::kBatch)));
+          refined->fresh.push_back(
+              tracer.trace_members(std::uint32_t(g), q, std::min(paths[g], q + PhotonTracer::kBatch)));
           scale(refined->fresh.back(), factor);
         }
         return refined;

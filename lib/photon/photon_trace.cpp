@@ -19,10 +19,11 @@ namespace {
 
 using formats::PathKind;
 
-/// A light this near to a surface's plane is in it, of the offset of rays that leave the surface: a few steps of a float.
+/// A light this near to a surface's plane is in it, of the offset of rays that leave the surface: a few steps of a
+/// float.
 constexpr float kInPlane = 0.25f;
-constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
-constexpr float kStepsPerCrossing = 10;      ///< tentative collisions in a mean crossing of the media's box, at least
+constexpr int kMostPlanes = 8;           ///< that a light may be in, one upon the other
+constexpr float kStepsPerCrossing = 10;  ///< tentative collisions in a mean crossing of the media's box, at least
 
 /// Kind of a photon by the events so far (formats/conventions.md).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
@@ -34,8 +35,8 @@ struct Arrival {
   Vec3 wi, normal_geometric, normal;
   Frame frame;
   Vec3 wi_local;
-  float shading_correction;                  ///< |wi.n_s| / |wi.n_g|
-  bool flat;                                 ///< the two normals are one
+  float shading_correction;  ///< |wi.n_s| / |wi.n_g|
+  bool flat;                 ///< the two normals are one
 
   Arrival(const SurfacePoint& point, Vec3 travel)
       : wi(-travel),
@@ -48,8 +49,8 @@ struct Arrival {
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
   }
 
-  /// Event D towards `travel`: f_D cos / pdf, pdf that of the cosine to the geometric normal and of choosing the event, as the eye
-  /// has it that looks against `travel` (ShadingPoint in lib/render/shading.h): by the shading normal, or by
+  /// Event D towards `travel`: f_D cos / pdf, pdf that of the cosine to the geometric normal and of choosing the event,
+  /// as the eye has it that looks against `travel` (ShadingPoint in lib/render/shading.h): by the shading normal, or by
   /// the geometric one where the shading normal looks away from it. Black behind the surface.
   Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec3 travel) const {
     const Frame geometric(normal_geometric);
@@ -66,15 +67,17 @@ struct Arrival {
 
   /// |wi.n| / |wi.n_g| of another normal; 0 from behind it.
   float correction_by(Vec3 n) const {
-    const float geometric = dot(wi, normal_geometric), cosine = dot(wi, n) * std::copysign(1.0f, dot(n, normal_geometric));
+    const float geometric = dot(wi, normal_geometric),
+                cosine = dot(wi, n) * std::copysign(1.0f, dot(n, normal_geometric));
     return geometric > 0 ? std::max(0.0f, cosine) / geometric : 0;
   }
 
   /// Do the normals differ by half a degree or more?
   bool bent() const { return !flat && dot(normal, normal_geometric) < 0.99996f; }
 
-  /// Event S into directions from which the eye sees the geometric normal, since the shading normal looks away from them
-  /// (SeenSide); black into others, and where D was drawn. Beside the events by the shading normal, not instead of them.
+  /// Event S into directions from which the eye sees the geometric normal, since the shading normal looks away from
+  /// them (SeenSide); black into others, and where D was drawn. Beside the events by the shading normal, not instead of
+  /// them.
   Bsdf::Sample scatter_beyond(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
     Bsdf::Sample next = bsdf.sample(geometric.to_local(wi), u_lobe, u);
@@ -88,10 +91,10 @@ struct Arrival {
 
 /// What only materials with textures or alpha need; bends the point's normal.
 struct Textured {
-  Vec3 smooth;                               ///< the point's normal without a normal map
+  Vec3 smooth;  ///< the point's normal without a normal map
   SurfaceMaterial material;
   Bsdf bsdf;
-  float coverage;                            ///< share of photons that meet the surface there
+  float coverage;  ///< share of photons that meet the surface there
 
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
       : smooth(point.normal),
@@ -112,8 +115,8 @@ void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std
   photon.bounce = std::uint8_t(std::min(bounce, 255u));
 }
 
-/// May light by events S arrive where a normal map bends the normal of a Lambert lobe? Of all materials, whichever are in the frame: maps of what
-/// stands and of all have the same columns.
+/// May light by events S arrive where a normal map bends the normal of a Lambert lobe? Of all materials, whichever are
+/// in the frame: maps of what stands and of all have the same columns.
 bool normal_maps_see_caustics(const std::vector<Material>& materials) {
   return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return lobes_of(m).specular; }) &&
          std::any_of(materials.begin(), materials.end(),
@@ -142,8 +145,7 @@ void PhotonOptions::set_kinds(const std::string& list) {
 std::string PhotonOptions::kinds() const {
   std::string list;
   for (const auto& [stored, name] : {std::pair{store_direct, "direct"}, std::pair{store_caustic, "caustic"},
-                                     std::pair{store_indirect, "indirect"},
-                                     std::pair{store_volume, "tentative"}})
+                                     std::pair{store_indirect, "indirect"}, std::pair{store_volume, "tentative"}})
     if (stored) list += (list.empty() ? "" : ",") + std::string(name);
   return list;
 }
@@ -159,7 +161,8 @@ std::uint32_t automatic_group_count(std::uint64_t photon_count, bool media) {
 
 PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const PhotonOptions& options)
     : tracer_(tracer), lights_(lights), options_(options), halton_(options.seed) {
-  group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count, tracer.frame().media != nullptr);
+  group_count_ = options.group_count ? options.group_count
+                                     : automatic_group_count(options.photon_count, tracer.frame().media != nullptr);
   members_ = (options.photon_count + group_count_ - 1) / group_count_;
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
   stores_ = {options.store_direct, options.store_caustic, options.store_indirect};
@@ -204,7 +207,8 @@ PhotonBatch PhotonTracer::trace_members(std::uint32_t group, std::uint64_t first
     }
   if (!lights_.aim().empty())
     for (const formats::Photon& photon : batch.block.photons)
-      batch.seen_count += photon.kind != PathKind::tentative && lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
+      batch.seen_count += photon.kind != PathKind::tentative &&
+                          lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
   return batch;
 }
 
@@ -226,22 +230,23 @@ void PhotonTracer::watch(const MoverWatch* watch) { watch_ = watch; }
 struct PhotonTracer::Draw {
   std::uint32_t bounce;
   Vec2 u;
-  Vec3 direction;   ///< sample_hemisphere_cos(u)
+  Vec3 direction;  ///< sample_hemisphere_cos(u)
 };
 
 /// Step by step for all photons of a wave: what one computes does not wait for another's result, so that the processor
 /// works on several at a time.
-void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path, PhotonBatch& batch) const {
+void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path,
+                          PhotonBatch& batch) const {
   const std::size_t started = path_numbers.size();
   Path paths[kWave];
   std::array<double, 4> emission_numbers[kWave];
   PhotonEmission emissions[kWave];
   for (std::size_t i = 0; i < started; ++i) emission_numbers[i] = halton_.point(path_numbers[i]);
   lights_.emit({emission_numbers, started}, {emissions, started});
-  std::uint32_t alive[kWave], scattered[kWave];   // indices of paths
+  std::uint32_t alive[kWave], scattered[kWave];  // indices of paths
   const float share = float(1.0 / double(photon_count()));
   std::size_t count = 0;
-  std::uint64_t touched[kWave];   // bits by interval, while movers are watched
+  std::uint64_t touched[kWave];  // bits by interval, while movers are watched
   for (std::size_t i = 0; i < started; ++i) {
     const PhotonEmission& e = emissions[i];
     if (watch_) touched[i] = slot_moves_[e.slot] ? watch_->all() : 0;
@@ -249,14 +254,15 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
     paths[i].flux = e.flux * share;
     paths[i].ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
     paths[i].balance = batch.by_path ? &batch.balance_of[first_path + i] : &batch;
-    if (batch.by_path) [[unlikely]] batch.moved[first_path + i] = std::uint8_t(slot_moves_[e.slot]);
+    if (batch.by_path) [[unlikely]]
+      batch.moved[first_path + i] = std::uint8_t(slot_moves_[e.slot]);
     paths[i].balance->emitted += Rgbd(paths[i].flux);
     if (!batch.pilots.empty()) [[unlikely]]
       if (const std::uint64_t member = path_numbers[i] / group_count_; member < batch.pilots.size()) {
         paths[i].pilot = &batch.pilots[member];
         pilot_signature::start(*paths[i].pilot, paths[i].ray, paths[i].flux);
       }
-    if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);   // lamps that are off send none
+    if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);  // lamps that are off send none
   }
   batch.path_count += started;
 
@@ -267,15 +273,19 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
   for (std::uint32_t bounce = 0; count > 0; ++bounce) {
     batch.ray_count += count;
     std::size_t arrived = 0, in_media = 0;
-    if (media_) [[unlikely]] arrived = fly(bounce, count, paths, alive, hits, scattered, in_media, batch);
-    else for (std::size_t i = 0; i < count; ++i) {
-      const Path& path = paths[alive[i]];
-      const bool meets = tracer_.intersect(path.ray, hits[arrived]);
-      if (watch_) [[unlikely]] touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[arrived].t : INFINITY);
-      if (meets && batch.by_path) [[unlikely]] batch.moved[first_path + alive[i]] |= std::uint8_t(moves(hits[arrived]));
-      if (meets) alive[arrived++] = alive[i];
-      else path.balance->escaped += Rgbd(path.flux);
-    }
+    if (media_) [[unlikely]]
+      arrived = fly(bounce, count, paths, alive, hits, scattered, in_media, batch);
+    else
+      for (std::size_t i = 0; i < count; ++i) {
+        const Path& path = paths[alive[i]];
+        const bool meets = tracer_.intersect(path.ray, hits[arrived]);
+        if (watch_) [[unlikely]]
+          touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[arrived].t : INFINITY);
+        if (meets && batch.by_path) [[unlikely]]
+          batch.moved[first_path + alive[i]] |= std::uint8_t(moves(hits[arrived]));
+        if (meets) alive[arrived++] = alive[i];
+        else path.balance->escaped += Rgbd(path.flux);
+      }
     tracer_.surface_points({hits, arrived}, points);
     if (bounce == 0 && has_point_lights_)
       arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, touched,
@@ -286,10 +296,12 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
     for (std::size_t i = 0; i < arrived; ++i) {
       const Draw draw{bounce, numbers[i], directions[i]};
       const std::uint32_t number = alive[i];
-      if (paths[number].pilot) [[unlikely]] pilot_signature::meet(*paths[number].pilot, bounce, hits[i]);
+      if (paths[number].pilot) [[unlikely]]
+        pilot_signature::meet(*paths[number].pilot, bounce, hits[i]);
       alive[count] = number;
       count += scatter(paths[number], points[i], hits[i].t, draw, batch);
-      if (batch.by_path) [[unlikely]] batch.path_of.resize(batch.block.photons.size(), first_path + number);
+      if (batch.by_path) [[unlikely]]
+        batch.path_of.resize(batch.block.photons.size(), first_path + number);
     }
     for (std::size_t i = 0; i < in_media; ++i) alive[count++] = scattered[i];
   }
@@ -298,18 +310,20 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
       if (touched[i]) batch.touched.push_back({path_numbers[i], touched[i]});
 }
 
-/// A surface gets nothing from a point light in its plane, the cosine is 0: light sampling has it so, and rounding, which starts
-/// half of the photons behind it, must not give it half of the flux in one place. They go on as if it were not there. Returns
-/// how many still arrive.
-std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
-                                                 Hit* hits, SurfacePoint* points, std::uint64_t* touched,
-                                                 std::uint8_t* moved, PhotonBatch& batch) const {
+/// A surface gets nothing from a point light in its plane, the cosine is 0: light sampling has it so, and rounding,
+/// which starts half of the photons behind it, must not give it half of the flux in one place. They go on as if it were
+/// not there. Returns how many still arrive.
+std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths,
+                                                 std::uint32_t* alive, Hit* hits, SurfacePoint* points,
+                                                 std::uint64_t* touched, std::uint8_t* moved,
+                                                 PhotonBatch& batch) const {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < arrived; ++i) {
     const PhotonEmission& e = emissions[alive[i]];
     Path& path = paths[alive[i]];
     const auto in_plane = [&](const SurfacePoint& point) {
-      return e.normal == Vec3{} && std::abs(dot(point.position - e.origin, point.normal_geometric)) <= kInPlane * point.offset;
+      return e.normal == Vec3{} &&
+             std::abs(dot(point.position - e.origin, point.normal_geometric)) <= kInPlane * point.offset;
     };
     bool meets = true;
     for (int plane = 0; meets && plane < kMostPlanes && in_plane(points[i]); ++plane) {
@@ -330,7 +344,8 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
 }
 
 /// The photon arrives at a surface; false if it ends there.
-bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const {
+bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw,
+                           PhotonBatch& batch) const {
   if (varies_[point.material]) [[unlikely]] {
     const Textured textured(tracer_.frame(), point, path.ray.direction);
     return scatter_at(path, point, distance, textured.bsdf, textured.coverage, textured.smooth, draw, batch);
@@ -339,10 +354,12 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, point.normal, draw, batch);
 }
 
-/// Half of the first bounces (events D) from places outside of the spheres that cameras see lead to the spheres, and carry less: where light of far
-/// ground enters a room one photon in thousands would find the way, and carry thousands of times what others do. `travel` is replaced, or kept; returns the cosine's density over that of both
-/// ways together, at most 1 / (1 - kTowards).
-float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const {
+/// Half of the first bounces (events D) from places outside of the spheres that cameras see lead to the spheres, and
+/// carry less: where light of far ground enters a room one photon in thousands would find the way, and carry thousands
+/// of times what others do. `travel` is replaced, or kept; returns the cosine's density over that of both ways
+/// together, at most 1 / (1 - kTowards).
+float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce,
+                        Vec3& travel) const {
   const Aim& aim = lights_.aim();
   double towards;
   if (random.get1(bounce, Purpose::scatter, 1) < Aim::kTowards) {
@@ -356,8 +373,8 @@ float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, st
   return float(cosine / (double(1 - Aim::kTowards) * cosine + double(Aim::kTowards) * towards));
 }
 
-bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
-                              const Draw& draw, PhotonBatch& batch) const {
+bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
+                              Vec3 smooth, const Draw& draw, PhotonBatch& batch) const {
   const Arrival at(point, path.ray.direction);
   const bool front = dot(point.normal_geometric, at.wi) > 0;
   const bool solid = solid_[point.material];
@@ -370,24 +387,27 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   // Record.
   const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
   float weight = bsdf.arrival_weight(at.wi_local.z) * at.shading_correction;
-  if (directions_ && kind == PathKind::caustic) [[unlikely]] weight = at.correction_by(smooth);
+  if (directions_ && kind == PathKind::caustic) [[unlikely]]
+    weight = at.correction_by(smooth);
   if (stores_[std::size_t(kind)] && bsdf.has_lambert() && weight > 0) {
     Rgb stored = flux * weight;
     if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
     if (coverage != 1) stored *= 1 / coverage;
     record(stored, point, at.normal_geometric, kind, draw.bounce, batch.block.photons);
-    if (directions_) [[unlikely]] record_direction(at.wi, batch);
+    if (directions_) [[unlikely]]
+      record_direction(at.wi, batch);
   }
 
   // Scatter, or be absorbed.
   const PathRandom& random = path.random;
-  const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;   // else it chooses nothing
+  const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;  // else it chooses nothing
   Bsdf::Sample next;
   Vec3 travel;
   // Once in a path: factors of many bounces multiplied would leave the mean to paths that are hardly ever met.
-  const bool aims = !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
+  const bool aims =
+      !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
   float aimed = 1;
-  bool beyond = false;   // there are two events to choose from: of either as much as of both, so that each counts twice
+  bool beyond = false;  // there are two events to choose from: of either as much as of both, so that each counts twice
   if (bsdf.has_specular() && at.bent()) {
     next = at.scatter_beyond(bsdf, u_lobe, draw.u, travel);
     beyond = !is_black(next.weight);
@@ -412,7 +432,9 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
-  path.flux = reflected * (survives ? aimed / survival : 0);   // roulette looks at the surface alone: where photons are aimed they carry less
+  path.flux =
+      reflected * (survives ? aimed / survival
+                            : 0);  // roulette looks at the surface alone: where photons are aimed they carry less
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;

@@ -17,7 +17,9 @@ namespace {
 
 std::string file_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
-std::uint64_t draw(int frame, std::uint32_t group) { return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group); }
+std::uint64_t draw(int frame, std::uint32_t group) {
+  return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group);
+}
 
 /// A stream of a file's blocks, one group after the other.
 class Groups {
@@ -45,7 +47,7 @@ class Groups {
 
 struct Traced {
   std::vector<PhotonBatch> batches;
-  std::vector<PhotonBatch> taken_back;       ///< of the corrective pass
+  std::vector<PhotonBatch> taken_back;  ///< of the corrective pass
 };
 
 std::vector<PhotonBatch> trace_group(const PhotonTracer& tracer, std::uint32_t group) {
@@ -69,16 +71,21 @@ std::string why_not_updatable(const formats::PhotonHeader& a, const formats::Pho
   if (a.map != b.map || !a.part.empty()) return "it is a part of a map";
   if (a.kinds != b.kinds) return "it has other kinds of photons (" + a.kinds + ")";
   if (a.majorants.empty()) return "it has no photons in media: only these maps say how old their groups are";
-  if (a.majorants != b.majorants) return "its majorants are others: make all maps of a segment with the same --majorants";
-  if (a.group_count != b.group_count || a.emitted_count != b.emitted_count) return "it has another number of groups or paths";
-  if (a.pilots != b.pilots) return "it has " + std::to_string(a.pilots) + " pilots in each group, not " + std::to_string(b.pilots);
+  if (a.majorants != b.majorants)
+    return "its majorants are others: make all maps of a segment with the same --majorants";
+  if (a.group_count != b.group_count || a.emitted_count != b.emitted_count)
+    return "it has another number of groups or paths";
+  if (a.pilots != b.pilots)
+    return "it has " + std::to_string(a.pilots) + " pilots in each group, not " + std::to_string(b.pilots);
   if (a.columns != b.columns) return "it has other columns";
   if (a.origin != b.origin) return "it has another origin";
-  if (a.identity.emission != b.identity.emission) return "its paths were started by another table of lamps: it is of another segment";
+  if (a.identity.emission != b.identity.emission)
+    return "its paths were started by another table of lamps: it is of another segment";
   return "";
 }
 
-std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame, bool same, const UpdateOptions& options) {
+std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame, bool same,
+                                         const UpdateOptions& options) {
   const std::uint32_t count = previous.header.group_count;
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
@@ -89,8 +96,9 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
     const double age = std::max(0, frame - previous.ledger[g].frame);
     const bool due = options.age_floor > 0 && age >= options.age_floor;
     const double wanted = options.strategy == UpdateStrategy::random ? 1
-                          : options.strategy == UpdateStrategy::oldest ? age
-                                                                       : std::pow(age, options.age_power) * previous.change[g];
+                          : options.strategy == UpdateStrategy::oldest
+                              ? age
+                              : std::pow(age, options.age_power) * previous.change[g];
     priority[g] = due ? INFINITY : wanted;
   }
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
@@ -103,14 +111,17 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
   return order;
 }
 
-PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
-                                  const MapUpdate& update, const std::function<void(const void*, std::size_t)>& sink) {
+PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options,
+                                  formats::PhotonHeader header, const MapUpdate& update,
+                                  const std::function<void(const void*, std::size_t)>& sink) {
   const std::string& path = update.path;
   PreviousMap& previous = update.previous;
   const std::span<const std::uint32_t> groups = update.groups;
   describe_map(tracer, options, header);
   const bool upon_overlay = !previous.header.base_name.empty();
-  std::set<std::uint32_t> differing = !upon_overlay ? std::set<std::uint32_t>{} : previous.is_kept() ? previous.own : own_groups(path);
+  std::set<std::uint32_t> differing = !upon_overlay        ? std::set<std::uint32_t>{}
+                                      : previous.is_kept() ? previous.own
+                                                           : own_groups(path);
   differing.insert(groups.begin(), groups.end());
   const bool overlay = update.may_overlay && !update.corrective && differing.size() * 2 <= header.group_count;
   if (overlay) {
@@ -122,10 +133,12 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
   // What is kept: of an overlay its own groups, else all.
   std::unique_ptr<formats::photons::FileReader> file;
   std::unique_ptr<formats::PhotonReader> whole;
-  if (previous.is_kept()) {}
-  else if (overlay && upon_overlay) file = std::make_unique<formats::photons::FileReader>(path);
+  if (previous.is_kept()) {
+  } else if (overlay && upon_overlay) file = std::make_unique<formats::photons::FileReader>(path);
   else if (!overlay) whole = std::make_unique<formats::PhotonReader>(path, formats::PhotonReadOptions{.digest = false});
-  Groups from_file([&](formats::PhotonBlock& block) { return file ? file->read_block(block) : whole ? whole->read_block(block) : false; });
+  Groups from_file([&](formats::PhotonBlock& block) {
+    return file ? file->read_block(block) : whole ? whole->read_block(block) : false;
+  });
   const auto photons_of = [&](std::uint32_t group, const auto& take) {
     if (!previous.is_kept()) return from_file.of(group, take);
     if (!overlay || upon_overlay)
@@ -150,7 +163,8 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
       groups.size(), std::size_t(2 * parallel_thread_count()),
       [&](std::size_t i) -> std::shared_ptr<void> {
         auto traced = std::make_shared<Traced>();
-        if (update.corrective) traced->taken_back = trace_group(update.corrective(previous.ledger[groups[i]].frame), groups[i]);
+        if (update.corrective)
+          traced->taken_back = trace_group(update.corrective(previous.ledger[groups[i]].frame), groups[i]);
         traced->batches = trace_group(tracer, groups[i]);
         return traced;
       },
@@ -158,12 +172,15 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
         keep_until(groups[i]);
         if (update.corrective) {
           std::vector<formats::Photon> stored;
-          photons_of(groups[i], [&](const formats::PhotonBlock& block) { stored.insert(stored.end(), block.photons.begin(), block.photons.end()); });
+          photons_of(groups[i], [&](const formats::PhotonBlock& block) {
+            stored.insert(stored.end(), block.photons.begin(), block.photons.end());
+          });
           const auto& taken_back = static_cast<const Traced*>(pointer)->taken_back;
           for (const PhotonBatch& batch : taken_back) count(batch, result);
           if (!same(stored, taken_back))
-            throw InputError(path + ": negative photons do not take back group " + std::to_string(groups[i]) + " of frame " +
-                             std::to_string(previous.ledger[groups[i]].frame) + ": it was traced by other options; trace the map anew");
+            throw InputError(path + ": negative photons do not take back group " + std::to_string(groups[i]) +
+                             " of frame " + std::to_string(previous.ledger[groups[i]].frame) +
+                             ": it was traced by other options; trace the map anew");
         }
         formats::GroupFlux entry;
         bool any = false;
@@ -184,7 +201,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
   keep_until(header.group_count);
   from_file.finish();
   result.totals = writer.finish({}, ledger);
-  if (!overlay) previous.photons.clear();    // its digest, which an overlay upon it names, is known to who reads it
+  if (!overlay) previous.photons.clear();  // its digest, which an overlay upon it names, is known to who reads it
   if (previous.is_kept()) {
     for (const formats::GroupFlux& entry : ledger) previous.ledger[entry.group] = entry;
     previous.header = header;

@@ -1,4 +1,5 @@
-// lib/photon/pilot_signature.h -- what a pilot path met, as hashes: equal if and (but for 2^-64) only if it met the same.
+// lib/photon/pilot_signature.h -- what a pilot path met, as hashes: equal if and (but for 2^-64) only if it met the
+// same.
 #pragma once
 
 #include <bit>
@@ -13,16 +14,20 @@ namespace tempolux {
 namespace pilot_signature {
 
 inline void add(std::uint64_t& hash, std::uint64_t word) { hash = mix64(hash ^ word) + 0x9e3779b97f4a7c15ull; }
-inline std::uint64_t bits(float a, float b) { return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 | std::bit_cast<std::uint32_t>(b); }
+inline std::uint64_t bits(float a, float b) {
+  return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 | std::bit_cast<std::uint32_t>(b);
+}
 
 /// Where the path begins, and with which flux [W].
 inline void start(formats::PhotonPilot& pilot, const Ray& ray, Rgb flux) {
-  for (const auto& [a, b] : {std::pair{ray.origin.x, ray.origin.y}, std::pair{ray.origin.z, ray.direction.x},
-                             std::pair{ray.direction.y, ray.direction.z}, std::pair{flux.r, flux.g}, std::pair{flux.b, 0.0f}})
+  for (const auto& [a, b] :
+       {std::pair{ray.origin.x, ray.origin.y}, std::pair{ray.origin.z, ray.direction.x},
+        std::pair{ray.direction.y, ray.direction.z}, std::pair{flux.r, flux.g}, std::pair{flux.b, 0.0f}})
     add(pilot.vertices, bits(a, b));
 }
 
-/// It looks at a place of a medium, a tentative collision: flux [W], extinction and majorant [1/m]; `positive`: a bit drawn for the place.
+/// It looks at a place of a medium, a tentative collision: flux [W], extinction and majorant [1/m]; `positive`: a bit
+/// drawn for the place.
 inline void look(formats::PhotonPilot& pilot, bool positive, Rgb flux, float extinction, float majorant) {
   add(pilot.extinctions, std::bit_cast<std::uint32_t>(extinction));
   const double share = double((flux.r + flux.g + flux.b) / 3) * double(extinction) / double(majorant);

@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t kGroupsTogether = 16;  ///< whose pilots are one piece of work
 
 /// How much the pilots of a group have changed, as the strategy counts it.
-double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot> then, std::span<const formats::PhotonPilot> now) {
+double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot> then,
+                  std::span<const formats::PhotonPilot> now) {
   double sum = 0;
   for (std::size_t i = 0; i < std::min(then.size(), now.size()); ++i) {
     const bool collides_elsewhere = then[i].collisions != now[i].collisions;
@@ -35,7 +36,8 @@ void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMa
   previous.change.assign(previous.ledger.size(), 0.0);
   parallel_chunks(previous.ledger.size(), kGroupsTogether, [&](std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g)
-      previous.change[g] = difference(strategy, previous.ledger[g].pilots, tracer.trace_members(std::uint32_t(g), 0, pilots).pilots);
+      previous.change[g] =
+          difference(strategy, previous.ledger[g].pilots, tracer.trace_members(std::uint32_t(g), 0, pilots).pilots);
   });
   previous.pilot_paths = std::uint64_t(pilots) * previous.ledger.size();
 }
@@ -58,7 +60,8 @@ class Census {
       if (cell == now_.values().size()) continue;
       const float now = now_.values()[cell] > 0 ? tracer_.media()->extinction(position) : 0;
       const float then = extinction_when_recorded(photon, tracer_.majorants().values()[cell]);
-      if (now != then) sum += double((photon.flux[0] + photon.flux[1] + photon.flux[2]) / 3) * double(std::abs(now - then));
+      if (now != then)
+        sum += double((photon.flux[0] + photon.flux[1] + photon.flux[2]) / 3) * double(std::abs(now - then));
     }
     return sum;
   }
@@ -66,7 +69,7 @@ class Census {
  private:
   const PhotonTracer& tracer_;
   Vec3 offset_;
-  MajorantGrid now_;                         ///< greatest extinction of this frame, by cell
+  MajorantGrid now_;  ///< greatest extinction of this frame, by cell
 };
 
 Vec3 offset_of(const formats::PhotonHeader& header, Vec3d origin) {
@@ -75,7 +78,9 @@ Vec3 offset_of(const formats::PhotonHeader& header, Vec3d origin) {
 
 void need_pilots(const std::string& path, const PreviousMap& previous, UpdateStrategy strategy) {
   if (sends_pilots(strategy) && previous.header.pilots == 0)
-    throw InputError(path + ": has no pilots, which fde, dip, hybrid and path compare; trace the segment's first map with --pilots 3%, or choose another --strategy");
+    throw InputError(path +
+                     ": has no pilots, which fde, dip, hybrid and path compare; trace the segment's first map with "
+                     "--pilots 3%, or choose another --strategy");
 }
 
 }  // namespace
@@ -89,7 +94,8 @@ std::set<std::uint32_t> own_groups(const std::string& path) {
   return groups;
 }
 
-PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin, bool keep) {
+PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin,
+                          bool keep) {
   formats::PhotonReader reader(path);
   PreviousMap previous;
   previous.header = reader.header();
@@ -112,7 +118,8 @@ PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, U
   return previous;
 }
 
-void find_change(const std::string& path, PreviousMap& previous, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin) {
+void find_change(const std::string& path, PreviousMap& previous, const PhotonTracer& tracer, UpdateStrategy strategy,
+                 Vec3d origin) {
   need_pilots(path, previous, strategy);
   previous.pilot_paths = 0;
   if (sends_pilots(strategy)) return send_pilots(strategy, tracer, previous);

@@ -21,9 +21,11 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kMostEvents = 4, kMostViews = 16;
-/// A state of light that follows from what stands needs what stands to be computed once: less than three states do not pay for it.
+/// A state of light that follows from what stands needs what stands to be computed once: less than three states do not
+/// pay for it.
 constexpr std::size_t kFewestStates = 3;
-/// Frames from one key to the next that warping needs between them at least; with fewer each picture is a key or beside two.
+/// Frames from one key to the next that warping needs between them at least; with fewer each picture is a key or beside
+/// two.
 constexpr std::size_t kFewestForKeys = 4;
 
 bool shines_from_afar(const SceneFrame& frame) {
@@ -47,23 +49,31 @@ std::vector<int> spread(const std::vector<int>& frames) {
 /// What one looked frame asks for.
 struct Look {
   std::vector<Way> ways;
-  std::uint64_t paths = 0;       ///< of light
+  std::uint64_t paths = 0;  ///< of light
   bool learn = false;
 };
 
 class FramePilot {
  public:
   FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds)
-      : kinds_(kinds), wish_(wish), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
-        view_(view_at(frame_, source, wish)), tracer_(frame_), lights_(frame_, table_) {}
+      : kinds_(kinds),
+        wish_(wish),
+        frame_(source.at(number, true)),
+        table_(source.emission(frame_.frame)),
+        view_(view_at(frame_, source, wish)),
+        tracer_(frame_),
+        lights_(frame_, table_) {}
 
   Look look() {
     const Lights& aimed_lights = aimed();
-    const RoughFrame rough = rough_frame({tracer_, lights_}, aimed_lights, view_, {kinds_, wish_.pixel_error, wish_.photons, spheres_, 0});
+    const RoughFrame rough =
+        rough_frame({tracer_, lights_}, aimed_lights, view_, {kinds_, wish_.pixel_error, wish_.photons, spheres_, 0});
     Look look;
     look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
-    look.paths = lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons) : wish_.photons;
-    look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays}, kinds_.find("caustic") != std::string::npos);
+    look.paths =
+        lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons) : wish_.photons;
+    look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays},
+                              kinds_.find("caustic") != std::string::npos);
     return look;
   }
 
@@ -102,7 +112,9 @@ class FramePilot {
   std::vector<AimSphere> spheres_;
 };
 
-std::string words(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what + (count == 1 ? "" : "s"); }
+std::string words(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
 
 std::string kinds_of(const MaterialFacts& materials, bool media) {
   std::string kinds = !materials.lambert ? "" : materials.other ? "caustic,indirect" : "indirect";
@@ -110,7 +122,9 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
   return kinds;
 }
 
-IndirectMethod method_named(const std::string& name) { return IndirectMethod(std::ranges::find(kIndirectMethods, name) - std::begin(kIndirectMethods)); }
+IndirectMethod method_named(const std::string& name) {
+  return IndirectMethod(std::ranges::find(kIndirectMethods, name) - std::begin(kIndirectMethods));
+}
 
 /// Joins what the looked frames ask for; media are lit by photons, which points read, too.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
@@ -123,11 +137,14 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
   std::vector<Way> ways = joined(of_frames);
   std::string words = because(ways);
   std::erase_if(ways, [&](const Way& way) {
-    return (media && way.method == IndirectMethod::paths) || (wish.indirect != "auto" && kIndirectMethods[std::size_t(way.method)] != wish.indirect);
+    return (media && way.method == IndirectMethod::paths) ||
+           (wish.indirect != "auto" && kIndirectMethods[std::size_t(way.method)] != wish.indirect);
   });
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
   // Where no surface with a Lambert lobe is seen paths are the one way there is.
-  const Way way = !ways.empty() ? ways.front() : Way{wish.indirect != "auto" ? method_named(wish.indirect) : IndirectMethod::gather, false, wish.rays, 0, 0};
+  const Way way = !ways.empty() ? ways.front()
+                                : Way{wish.indirect != "auto" ? method_named(wish.indirect) : IndirectMethod::gather,
+                                      false, wish.rays, 0, 0};
   d.indirect = way.method;
   d.caustic_map = way.map;
   d.record_rays = way.rays;
@@ -137,19 +154,23 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
 
 void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
   if (!d.points()) return;
-  const SplitChoice choice = wish.split == "auto" ? pilot.split() : SplitChoice{wish.split == "on", "--split " + wish.split};
+  const SplitChoice choice =
+      wish.split == "auto" ? pilot.split() : SplitChoice{wish.split == "on", "--split " + wish.split};
   if (wish.split == "on" && wish.moving == "records")
-    throw InputError("--split on with --moving records: records that follow from those of what stands know no bright points; use --moving time or anew");
+    throw InputError(
+        "--split on with --moving records: records that follow from those of what stands know no bright points; use "
+        "--moving time or anew");
   d.split = choice.split && d.moving != MovingMethod::records;
-  d.reasons.push_back({"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
+  d.reasons.push_back(
+      {"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
 }
 
 MovingMethod moving_named(const std::string& name) {
   return MovingMethod(std::ranges::find(kMovingMethods, name) - std::begin(kMovingMethods));
 }
 
-/// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are asked for, or none of them, a frame costs
-/// at most twice what it could. A power of two.
+/// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are
+/// asked for, or none of them, a frame costs at most twice what it could. A power of two.
 int pictures_together(std::size_t pictures, const Decisions& d) {
   int together = 1;
   while (std::size_t(together) < pictures && d.records_of(2 * together) <= 2) together *= 2;
@@ -157,18 +178,25 @@ int pictures_together(std::size_t pictures, const Decisions& d) {
 }
 
 /// What of a frame's light follows from that of what stands.
-void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, Decisions& d) {
+void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
+                   Decisions& d) {
   const std::string name = "photon-trace --map dynamic";
   const auto anew = [&](const std::string& because) { d.reasons.push_back({name, because}); };
   const std::vector<int> states = segment.states();
-  if (!d.points() || states.size() < kFewestStates) return anew(words(states.size(), "state") + " of light in the segment");
+  if (!d.points() || states.size() < kFewestStates)
+    return anew(words(states.size(), "state") + " of light in the segment");
   if (media && wish.moving != "auto" && wish.moving != "anew")
-    throw InputError("--moving " + wish.moving + ": the scene has media, which all light meets: what movers change of it cannot be told apart; use --moving anew");
+    throw InputError("--moving " + wish.moving +
+                     ": the scene has media, which all light meets: what movers change of it cannot be told apart; use "
+                     "--moving anew");
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
-  const double together = std::min(double(d.together), double(segment.pictures().size())), standing = d.records_of(together) / together;
-  const MovingChoice choice = wish.moving == "auto" ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(), standing)
-                                                    : MovingChoice{moving_named(wish.moving), "--moving " + wish.moving};
+  const double together = std::min(double(d.together), double(segment.pictures().size())),
+               standing = d.records_of(together) / together;
+  const MovingChoice choice = wish.moving == "auto"
+                                  ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(),
+                                                  states.size(), standing)
+                                  : MovingChoice{moving_named(wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
   d.reasons.push_back({name, choice.because});
@@ -179,14 +207,16 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   const std::size_t pictures = segment.pictures().size(), states = segment.states().size();
   std::string because;
   if (pictures < kFewestForKeys) because = words(pictures, "different picture") + ": too few to lie between keys";
-  else if (pictures == states) because = "light transport differs in all " + words(pictures, "picture") + ": keys lend little light to others";
-  else because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light";
+  else if (pictures == states)
+    because = "light transport differs in all " + words(pictures, "picture") + ": keys lend little light to others";
+  else
+    because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light";
   d.walk = pictures >= kFewestForKeys && pictures > states;
   d.reasons.push_back({"ibr-warp", because});
 }
 
-/// Light textures need to know how many paths bring the photons that are asked for, how wide the filter is then, and whether light
-/// from far away is learned.
+/// Light textures need to know how many paths bring the photons that are asked for, how wide the filter is then, and
+/// whether light from far away is learned.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
@@ -199,7 +229,8 @@ void decide_preview(const PlannedSegment& segment, const Wish& wish, const Scene
   d.photon_paths = choice.paths;
   d.texture_width = choice.width;
   d.view = view_of(segment, wish.width, wish.height, source);
-  d.reasons.push_back({"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
+  d.reasons.push_back(
+      {"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
 }
 
 }  // namespace
@@ -210,8 +241,9 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
   for (std::size_t i = 1; i < segment.frames.size() && events < kMostEvents; ++i) {
     const auto light = [&](std::size_t k) { return segment.frames[k].light; };
     if (light(i) == light(i - 1)) continue;
-    const bool stood = i >= 2 && light(i - 1) == light(i - 2), stays = i + 1 < segment.frames.size() && light(i) == light(i + 1);
-    if (!stood && !stays) continue;   // something moves on
+    const bool stood = i >= 2 && light(i - 1) == light(i - 2),
+               stays = i + 1 < segment.frames.size() && light(i) == light(i + 1);
+    if (!stood && !stays) continue;  // something moves on
     events += looked.insert(segment.frames[i].frame).second;
   }
   std::set<int> pictures;
@@ -243,7 +275,8 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   Decisions d;
   d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
-  d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe" : "nothing reflects by a Lambert lobe"});
+  d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe"
+                                                                 : "nothing reflects by a Lambert lobe"});
   if (d.photons() && wish.method == FrameMethod::preview) {
     decide_preview(segment, wish, source, d);
   } else if (d.photons()) {
@@ -275,9 +308,11 @@ std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool m
     hasher.add(std::string_view(frame.camera));
   }
   hasher.add(std::string_view(segment.standing));
-  for (const std::string& word : {wish.indirect, wish.moving, wish.split, wish.common}) hasher.add(std::string_view(word));
+  for (const std::string& word : {wish.indirect, wish.moving, wish.split, wish.common})
+    hasher.add(std::string_view(word));
   hasher.add(double(wish.method == FrameMethod::preview));
-  for (const double number : {double(wish.width), double(wish.height), double(wish.photons), double(wish.rays), wish.pixel_error, double(media)})
+  for (const double number : {double(wish.width), double(wish.height), double(wish.photons), double(wish.rays),
+                              wish.pixel_error, double(media)})
     hasher.add(number);
   return hasher.hex();
 }

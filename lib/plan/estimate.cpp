@@ -42,11 +42,12 @@ std::string estimate_text(const std::vector<StageEstimate>& stages, int processo
   for (const StageEstimate& stage : stages) {
     cpu_s += stage.runs * stage.cpu_s;
     bytes += stage.runs * stage.bytes;
-    text += line("%-36s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs, stage.cpu_s, stage.runs * stage.cpu_s,
-                 size_text(stage.bytes).c_str(), size_text(stage.runs * stage.bytes).c_str());
+    text += line("%-36s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs, stage.cpu_s,
+                 stage.runs * stage.cpu_s, size_text(stage.bytes).c_str(), size_text(stage.runs * stage.bytes).c_str());
   }
-  return text + line("%-36s %29.1f %23s\n", "all", cpu_s, size_text(bytes).c_str()) + "about " + time_text(cpu_s / processors) + " on " +
-         std::to_string(processors) + (processors == 1 ? " processor\n" : " processors\n");
+  return text + line("%-36s %29.1f %23s\n", "all", cpu_s, size_text(bytes).c_str()) + "about " +
+         time_text(cpu_s / processors) + " on " + std::to_string(processors) +
+         (processors == 1 ? " processor\n" : " processors\n");
 }
 
 }  // namespace tempolux

@@ -15,7 +15,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr const char* kAudit = "--audit 0.02";   ///< of the frame's rays: with what the audit looks up less than 3 % of a run
+constexpr const char* kAudit =
+    "--audit 0.02";  ///< of the frame's rays: with what the audit looks up less than 3 % of a run
 
 std::string joined(const std::vector<int>& frames) {
   std::string text;
@@ -32,9 +33,13 @@ std::string without(const std::string& words, const std::string& word) {
   return text;
 }
 
-bool has_word(const std::string& words, const std::string& word) { return without(words, word).size() != without(words, "").size(); }
+bool has_word(const std::string& words, const std::string& word) {
+  return without(words, word).size() != without(words, "").size();
+}
 
-bool has_channel(const std::string& channels, const std::string& name) { return ("," + channels + ",").find("," + name + ",") != std::string::npos; }
+bool has_channel(const std::string& channels, const std::string& name) {
+  return ("," + channels + ",").find("," + name + ",") != std::string::npos;
+}
 
 /// Adds those of `more` that are not among the channels.
 std::string with_channels(std::string channels, const std::string& more) {
@@ -46,14 +51,15 @@ std::string with_channels(std::string channels, const std::string& more) {
 
 /// Channels of a raw frame that is filtered to these. A window of several frames is laid along their motion.
 std::string raw_channels(const Wish& wish, const std::string& filtered) {
-  return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
+  return with_channels(
+      std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
 }
 
 /// Options of a command, and the files among them.
 struct Command {
   std::string words;
   Names inputs;
-  std::string content;   ///< hashes of the states of the scene that it depends on
+  std::string content;  ///< hashes of the states of the scene that it depends on
 
   void option(const std::string& text) {
     if (!text.empty()) words += (words.empty() ? "" : " ") + text;
@@ -93,12 +99,15 @@ class Builder {
   int clamped(int frame) const { return std::clamp(frame, 0, plan_.last_frame); }
 
   /// Adds a file once; returns its name.
-  std::string add(const StageInfo& stage, const std::string& frames, const Command& command, const Names& beside_extensions = {}) {
+  std::string add(const StageInfo& stage, const std::string& frames, const Command& command,
+                  const Names& beside_extensions = {}) {
     Hasher hasher;
-    for (const std::string& part : {std::string(stage.name), tool_hash_(std::string(stage.tool)), command.words, command.content, wish_.common})
+    for (const std::string& part :
+         {std::string(stage.name), tool_hash_(std::string(stage.tool)), command.words, command.content, wish_.common})
       hasher.add(std::string_view(part));
     const std::string stem = std::string(stage.folder) + "/" + frames + "-" + key_of(hasher.hex());
-    GraphFile file{stem + std::string(stage.extension), {}, std::string(stage.name), command.words, false, command.inputs};
+    GraphFile file{
+        stem + std::string(stage.extension), {}, std::string(stage.name), command.words, false, command.inputs};
     for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
     if (!graph_.find(file.name)) graph_.add(file);
     return file.name;
@@ -108,7 +117,8 @@ class Builder {
   }
   std::string add_state(const char* concern, int first, const std::string& content) {
     const std::string name = "state/" + frame_digits(first) + "-" + key_of(hash_hex(content)) + "." + concern;
-    if (std::ranges::find(graph_.states, name, &PlanFile::name) == graph_.states.end()) graph_.states.push_back({name, content});
+    if (std::ranges::find(graph_.states, name, &PlanFile::name) == graph_.states.end())
+      graph_.states.push_back({name, content});
     return name;
   }
 
@@ -119,7 +129,8 @@ class Builder {
   }
   std::string majorants_file(int frame) {
     const PlannedSegment& s = segment(frame);
-    if (!majorants_known_.contains(s.first)) majorants_known_[s.first] = add_state("majorants", s.first, majorants_(s.first, s.last));
+    if (!majorants_known_.contains(s.first))
+      majorants_known_[s.first] = add_state("majorants", s.first, majorants_(s.first, s.last));
     return majorants_known_.at(s.first);
   }
 
@@ -134,7 +145,8 @@ class Builder {
     Hasher hasher;
     const PlannedSegment& s = segment(frame);
     for (const std::string& hash : {s.static_geometry, s.standing, s.frozen}) hasher.add(std::string_view(hash));
-    for (const PlannedFrame& f : s.frames) hasher.add(std::string_view(f.light));   // which paths movers can touch, in any frame
+    for (const PlannedFrame& f : s.frames)
+      hasher.add(std::string_view(f.light));  // which paths movers can touch, in any frame
     return hasher.hex();
   }
 
@@ -171,13 +183,15 @@ class Builder {
     c.option("--share " + wish_.update + " --strategy " + wish_.strategy);
   }
 
-  /// The map that smoke is made from: with --refine further paths where light in the smoke is noisy. Updates go on from the map itself.
+  /// The map that smoke is made from: with --refine further paths where light in the smoke is noisy. Updates go on from
+  /// the map itself.
   std::string refined_photons(int lit) {
     if (wish_.refine.empty()) return photons(lit);
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
     c.file("--majorants", majorants_file(lit));
     c.file("--update", photons(lit));
-    c.option("--refine " + std::to_string(std::uint64_t(std::stod(wish_.refine) / 100 * double(decided(lit).photon_paths))));
+    c.option("--refine " +
+             std::to_string(std::uint64_t(std::stod(wish_.refine) / 100 * double(decided(lit).photon_paths))));
     add_view(lit, c);
     c.option("--kinds " + decided(lit).kinds);
     return add(stage::refined, lit, c);
@@ -219,7 +233,8 @@ class Builder {
 
   // ---- records --------------------------------------------------------------------------------------------------
   std::string record_words(int lit) const {
-    const std::string rays = has_word(wish_.records, "--rays") ? "" : " --rays " + std::to_string(decided(lit).record_rays);
+    const std::string rays =
+        has_word(wish_.records, "--rays") ? "" : " --rays " + std::to_string(decided(lit).record_rays);
     return size_ + rays + (wish_.records.empty() ? "" : " " + wish_.records);
   }
   /// Hash of the cameras of these frames.
@@ -234,7 +249,8 @@ class Builder {
     const std::vector<int> pictures = segment(frame).pictures();
     const auto size = std::ptrdiff_t(decided(frame).together);
     const auto block = (std::ranges::lower_bound(pictures, state(frame).picture) - pictures.begin()) / size;
-    return {pictures.begin() + block * size, pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
+    return {pictures.begin() + block * size,
+            pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
   }
   std::string stands_records(int frame) {
     const std::vector<int> pictures = together(frame);
@@ -244,12 +260,12 @@ class Builder {
     return add(stage::stands_records, pictures.front(), c);
   }
   /// The state of light of the frame before, if its records lead to those of this state.
-  int state_before(int lit) const {
-    return lit > segment(lit).first ? state(lit - 1).lit_frame : lit;
+  int state_before(int lit) const { return lit > segment(lit).first ? state(lit - 1).lit_frame : lit; }
+  /// With records that are kept over time: states that one picture shows. Where a camera moves while light stands, one
+  /// cache serves all its pictures.
+  bool over_time(int lit) const {
+    return decided(lit).moving == MovingMethod::time && segment(lit).pictures(lit).size() == 1;
   }
-  /// With records that are kept over time: states that one picture shows. Where a camera moves while light stands, one cache
-  /// serves all its pictures.
-  bool over_time(int lit) const { return decided(lit).moving == MovingMethod::time && segment(lit).pictures(lit).size() == 1; }
 
   std::string records(int frame) {
     const int picture = state(frame).picture;
@@ -285,8 +301,9 @@ class Builder {
     return add(stage::records, pictures.front(), c);
   }
   std::string kept_records(int lit) {
-    const PlannedSegment& s = segment(lit);   // whose borders samples remember
-    Command c{"--frame " + std::to_string(lit), {}, state(lit).light + cameras(s.pictures(lit)) + joined({s.first, s.last})};
+    const PlannedSegment& s = segment(lit);  // whose borders samples remember
+    Command c{
+        "--frame " + std::to_string(lit), {}, state(lit).light + cameras(s.pictures(lit)) + joined({s.first, s.last})};
     add_points(lit, c);
     const int before = state_before(lit);
     if (before < lit && over_time(before)) c.file("--previous", beside(records(before), ".radsamples"));
@@ -303,8 +320,8 @@ class Builder {
 
   // ---- previews -------------------------------------------------------------------------------------------------
   static constexpr int kReach = kPreviewWindow / 2;
-  /// Photons of a frame: its own, whatever frames have the same light, so that windows collect different ones. In a segment of one state of light one
-  /// map has as many as a window.
+  /// Photons of a frame: its own, whatever frames have the same light, so that windows collect different ones. In a
+  /// segment of one state of light one map has as many as a window.
   std::string preview_photons(int frame, bool still) {
     const Decisions& d = decided(frame);
     Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, state(frame).light};
@@ -319,7 +336,10 @@ class Builder {
   }
   std::string counts(int frame) {
     const PlannedSegment& s = segment(frame);
-    Command c{"--frame " + std::to_string(frame) + " --counts --kinds " + decided(frame).kinds + " " + width_words(frame), {}, ""};
+    Command c{
+        "--frame " + std::to_string(frame) + " --counts --kinds " + decided(frame).kinds + " " + width_words(frame),
+        {},
+        ""};
     // What moves is cut by its size in these frames, and jumps are seen beside the frames around.
     for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
       c.content += state(std::clamp(f, s.first, s.last)).light;
@@ -344,7 +364,7 @@ class Builder {
   std::string lights(int frame) {
     if (!decided(frame).learn_lights || !has_word(wish_.pixels, "--learn-lights")) return "";
     const std::vector<int> all = segment(frame).pictures();
-    std::vector<int> pictures;   // first, last and two between: what cameras see changes slowly
+    std::vector<int> pictures;  // first, last and two between: what cameras see changes slowly
     for (std::size_t i = 0; i < 4; ++i)
       if (const int f = all[i * (all.size() - 1) / 3]; pictures.empty() || pictures.back() != f) pictures.push_back(f);
     Command c{"--frames " + joined(pictures) + " --learn-lights " + size_, {}, cameras(pictures)};
@@ -391,8 +411,8 @@ class Builder {
       for (const std::string& hash : {state(f).light, state(f).camera}) hasher.add(std::string_view(hash));
     return hasher.hex();
   }
-  /// The first frame of the segment that looks as this one; with the channel motion as those beside it do, too. Of the segment's ends only they
-  /// themselves have neighbours in the plan, whatever is asked for.
+  /// The first frame of the segment that looks as this one; with the channel motion as those beside it do, too. Of the
+  /// segment's ends only they themselves have neighbours in the plan, whatever is asked for.
   int shown(int frame, const std::string& channels) const {
     if (!has_channel(channels, "motion")) return state(frame).picture;
     for (int f = segment(frame).first + 1; f < frame; ++f)
@@ -414,13 +434,16 @@ class Builder {
     return add(stage::smoke, frame, c);
   }
   std::string clear_picture(int frame) {
-    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
+    const bool walk =
+        !plan_.media && (wish_.method == FrameMethod::walkthrough ||
+                         (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
     if (walk) return walked_picture(frame);
     if (wish_.filter > 0) return filtered_picture(frame, wish_.channels);
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
-  /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's ends.
+  /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's
+  /// ends.
   std::string filtered_picture(int frame, const std::string& channels) {
     // Frames around it must have noise of their own.
     const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
@@ -440,7 +463,8 @@ class Builder {
   }
 
   // ---- walkthrough ----------------------------------------------------------------------------------------------
-  /// Keys and what lies between them show the same light, so that no light is carried into a frame that does not have it.
+  /// Keys and what lies between them show the same light, so that no light is carried into a frame that does not have
+  /// it.
   bool same_light(const Interval& interval) const {
     for (int f = interval.first; f <= interval.last; ++f)
       if (state(f).light != state(interval.first).light) return false;
@@ -453,8 +477,8 @@ class Builder {
     if (wish_.filter > 0) return filtered_picture(frame, channels);
     return add(stage::keys, frame, frame_command(frame, pixels_, channels));
   }
-  /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a key.
-  /// Intervals lie at fixed multiples; one whose light changes is halved until it does not.
+  /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a
+  /// key. Intervals lie at fixed multiples; one whose light changes is halved until it does not.
   bool interval_around(int frame, Interval& interval) const {
     const int first = frame - frame % wish_.key_distance;
     interval = {first, clamped(first + wish_.key_distance)};
@@ -469,14 +493,16 @@ class Builder {
   /// What decides an interval: its keys, and those of its halves.
   std::string interval_file(const Interval& i) {
     if (i.last - i.first < 2) return "";
-    if (const auto found = intervals_.find(i.first * 1'000'000LL + i.last); found != intervals_.end()) return found->second;
+    if (const auto found = intervals_.find(i.first * 1'000'000LL + i.last); found != intervals_.end())
+      return found->second;
     const std::string left = interval_file({i.first, i.middle()}), right = interval_file({i.middle(), i.last});
     Command c;
     c.file("", key_picture(i.first));
     c.file("", key_picture(i.last));
     std::ostringstream threshold;
     threshold << wish_.threshold;
-    for (const std::string& word : {frame_digits(i.middle()), key_picture(i.middle()), threshold.str(), left.empty() ? "-" : left, right.empty() ? "-" : right})
+    for (const std::string& word : {frame_digits(i.middle()), key_picture(i.middle()), threshold.str(),
+                                    left.empty() ? "-" : left, right.empty() ? "-" : right})
       c.option(word);
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
     const std::string name = add(stage::walk, interval_name(i), c);
@@ -487,14 +513,20 @@ class Builder {
     Interval interval;
     if (!interval_around(frame, interval)) return key_picture(frame);
     const std::string decided_by = interval_file(interval);
-    if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end()) graph_.intervals.push_back(decided_by);
+    if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end())
+      graph_.intervals.push_back(decided_by);
     Command light{"", {}, ""};
     add_light(frame, light);
-    Command c{"", {}, tool_hash_("ibr-warp") + (wish_.filter > 0 ? tool_hash_("st-filter") : "") + light.content + cameras({frame}) + in_motion(frame, wish_.channels)};
+    Command c{"",
+              {},
+              tool_hash_("ibr-warp") + (wish_.filter > 0 ? tool_hash_("st-filter") : "") + light.content +
+                  cameras({frame}) + in_motion(frame, wish_.channels)};
     c.file("", decided_by);
     c.option(frame_digits(frame));
     c.option(wish_.filter > 0 ? wish_.channels : "-");
-    for (const std::string& words : {light.words, size_, pixels_, "--channels " + (wish_.filter > 0 ? raw_channels(wish_, wish_.channels) : wish_.channels)})
+    for (const std::string& words :
+         {light.words, size_, pixels_,
+          "--channels " + (wish_.filter > 0 ? raw_channels(wish_, wish_.channels) : wish_.channels)})
       c.option(words);
     c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
     return add(stage::walked, frame, c);
@@ -505,7 +537,9 @@ class Builder {
     const int shown = state(plan_.shows.at(frame)).picture;
     const std::string picture_name = picture(plan_.shows.at(frame));
     Command path{"--frame " + std::to_string(shown) + " --integrator path --halves " + size_ + " --spp " +
-                     std::to_string(wish_.reference_samples) + " --channels RGBA", {}, state(shown).light + cameras({shown})};
+                     std::to_string(wish_.reference_samples) + " --channels RGBA",
+                 {},
+                 state(shown).light + cameras({shown})};
     const std::string reference = add(stage::reference, shown, path, {"_a.exr", "_b.exr"});
     Command compare;
     compare.file("", picture_name);
@@ -565,20 +599,24 @@ std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish)
   for (const int frame : frames) {
     add(frame - wish.filter / 2, frame + wish.filter / 2);
     const int first = frame - frame % wish.key_distance;
-    if (wish.method != FrameMethod::frames && wish.method != FrameMethod::preview) add(first, first + wish.key_distance);
+    if (wish.method != FrameMethod::frames && wish.method != FrameMethod::preview)
+      add(first, first + wish.key_distance);
   }
   return {helpers.begin(), helpers.end()};
 }
 
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants) {
   if (plan.media && wish.method == FrameMethod::walkthrough)
-    throw InputError("METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
+    throw InputError(
+        "METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
   if (plan.media && wish.method == FrameMethod::preview)
-    throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
+    throw InputError(
+        "METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
   if (wish.filter > 1 && wish.method == FrameMethod::walkthrough)
-    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: what is warped has its keys' noise in all frames, so that "
+    throw InputError("FILTER=" + std::to_string(wish.filter) +
+                     " with METHOD=walkthrough: what is warped has its keys' noise in all frames, so that "
                      "frames around it know nothing more; use FILTER=1");
   return Builder(plan, wish, tool_hash, majorants).build();
 }

@@ -19,7 +19,8 @@ constexpr const char* kFirstLine = "tempolux inputs 1";
 std::optional<InputStamp> stat_of(const std::string& path) {
   struct stat s {};
   if (::stat(path.c_str(), &s) != 0) return {};
-  return InputStamp{std::uint64_t(s.st_size), std::uint64_t(s.st_ino), s.st_mtim.tv_sec * 1'000'000'000LL + s.st_mtim.tv_nsec,
+  return InputStamp{std::uint64_t(s.st_size), std::uint64_t(s.st_ino),
+                    s.st_mtim.tv_sec * 1'000'000'000LL + s.st_mtim.tv_nsec,
                     s.st_ctim.tv_sec * 1'000'000'000LL + s.st_ctim.tv_nsec, ""};
 }
 
@@ -28,7 +29,8 @@ std::string content_hash(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
     std::set<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path, error)) names.insert(entry.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(path, error))
+      names.insert(entry.path().filename().string());
     for (const std::string& name : names) hasher.add(std::string_view(name));
     return hasher.hex();
   }
@@ -42,7 +44,8 @@ std::string content_hash(const std::string& path) {
 }  // namespace
 
 bool InputStamp::same_stat(const InputStamp& other) const {
-  return size == other.size && inode == other.inode && modified_ns == other.modified_ns && changed_ns == other.changed_ns;
+  return size == other.size && inode == other.inode && modified_ns == other.modified_ns &&
+         changed_ns == other.changed_ns;
 }
 
 Inputs::Inputs(const std::string& file) {
@@ -52,7 +55,8 @@ Inputs::Inputs(const std::string& file) {
   InputStamp stamp;
   std::size_t length = 0;
   // Names may hold any byte but NUL, so each comes with its length.
-  while (stream >> stamp.size >> stamp.inode >> stamp.modified_ns >> stamp.changed_ns >> stamp.hash >> length && length < 1 << 16) {
+  while (stream >> stamp.size >> stamp.inode >> stamp.modified_ns >> stamp.changed_ns >> stamp.hash >> length &&
+         length < 1 << 16) {
     std::string path(length, '\0');
     stream.get();
     if (!stream.read(path.data(), std::streamsize(length))) return;
@@ -80,7 +84,8 @@ std::string Inputs::text(const std::string& wish) const {
   std::ostringstream text;
   text << kFirstLine << '\n' << wish << '\n';
   for (const auto& [path, s] : used_)
-    text << s.size << ' ' << s.inode << ' ' << s.modified_ns << ' ' << s.changed_ns << ' ' << s.hash << ' ' << path.size() << ' ' << path << '\n';
+    text << s.size << ' ' << s.inode << ' ' << s.modified_ns << ' ' << s.changed_ns << ' ' << s.hash << ' '
+         << path.size() << ' ' << path << '\n';
   return text.str();
 }
 

@@ -12,11 +12,11 @@ namespace tempolux {
 /// A foreign file or folder as it was seen. A folder's hash is that of the names in it.
 struct InputStamp {
   std::uint64_t size = 0, inode = 0;
-  std::int64_t modified_ns = 0, changed_ns = 0;   ///< times of the content and of the inode
-  std::string hash;                               ///< of the content
+  std::int64_t modified_ns = 0, changed_ns = 0;  ///< times of the content and of the inode
+  std::string hash;                              ///< of the content
 
-  /// Whether the file system says that nothing was written since. Times are compared for equality: a copy with an older time
-  /// is a change, and clocks of other machines do not matter.
+  /// Whether the file system says that nothing was written since. Times are compared for equality: a copy with an older
+  /// time is a change, and clocks of other machines do not matter.
   bool same_stat(const InputStamp& other) const;
 };
 

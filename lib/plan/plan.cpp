@@ -29,8 +29,7 @@ std::vector<MovingNode> moving_nodes(const Scene& scene, const Segment& segment)
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     if (!segment.node_moves[i]) continue;
     const Node& node = scene.nodes[i];
-    moves.push_back({node.name.empty() ? "node " + std::to_string(node.source_index) : node.name,
-                     segment.why_moves[i],
+    moves.push_back({node.name.empty() ? "node " + std::to_string(node.source_index) : node.name, segment.why_moves[i],
                      node.mesh >= 0     ? "geometry"
                      : node.light >= 0  ? "light"
                      : node.camera >= 0 ? "camera"
@@ -49,14 +48,15 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   try {
     frame.view = state.camera(camera_node);
     frame.camera = camera_hash(*frame.view);
-  } catch (const InputError&) {   // a camera without direction: the tools say so if this frame is asked for
+  } catch (const InputError&) {  // a camera without direction: the tools say so if this frame is asked for
   }
   if (media) frame.media = media(number);
   return frame;
 }
 
 /// All frames of the segment. If nothing moves, the first frame is evaluated for all.
-std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, int camera_node, bool anything_moves, const MediaHash& media) {
+std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, int camera_node, bool anything_moves,
+                                         const MediaHash& media) {
   std::vector<PlannedFrame> frames;
   for (int f = stage.segment().first; f <= stage.segment().last; ++f) {
     if (anything_moves || frames.empty()) {
@@ -76,7 +76,8 @@ void share_in_segment(PlannedSegment& segment) {
   std::map<std::pair<int, std::string>, int> first_picture;
   for (PlannedFrame& frame : segment.frames) {
     Hasher hasher;
-    for (const std::string& hash : {segment.static_geometry, frame.materials, segment.frozen, frame.moving_geometry, frame.lights, frame.media})
+    for (const std::string& hash :
+         {segment.static_geometry, frame.materials, segment.frozen, frame.moving_geometry, frame.lights, frame.media})
       hasher.add(std::string_view(hash));
     frame.light = hasher.hex();
     frame.lit_frame = first_lit.try_emplace(frame.light, frame.frame).first->second;
@@ -87,7 +88,8 @@ void share_in_segment(PlannedSegment& segment) {
 std::string standing_hash(const SceneFrame& frame) {
   const SceneHashes hashes = standing_scene(frame).hashes;
   Hasher hasher;
-  for (const std::string& hash : {hashes.static_geometry, hashes.materials, hashes.lights}) hasher.add(std::string_view(hash));
+  for (const std::string& hash : {hashes.static_geometry, hashes.materials, hashes.lights})
+    hasher.add(std::string_view(hash));
   return hasher.hex();
 }
 
@@ -121,7 +123,8 @@ std::string extent_in_words(const Scene& scene, const TimeOptions& options) {
 }
 
 /// The materials at all frames of the segment; once if no animation changes them.
-std::vector<std::vector<Material>> material_states(const Scene& scene, const PlannedSegment& segment, const TimeOptions& options) {
+std::vector<std::vector<Material>> material_states(const Scene& scene, const PlannedSegment& segment,
+                                                   const TimeOptions& options) {
   const Animator animator(scene);
   if (animator.property_tracks().empty()) return {scene.materials};
   std::vector<std::vector<Material>> states;
@@ -141,7 +144,8 @@ MaterialFacts material_facts(const Scene& scene, const PlannedSegment& segment, 
   return facts;
 }
 
-PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int camera_node, const TimeOptions& options, const MediaHash& media) {
+PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int camera_node, const TimeOptions& options,
+                            const MediaHash& media) {
   const SegmentScene stage(scene, segment, options);
   const SceneFrame begin = stage.at(segment.first);
   PlannedSegment planned;
@@ -157,21 +161,23 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int came
   return planned;
 }
 
-/// The frame from which on no track changes anything: the last one at which a value differs from the one that the track ends with,
-/// or the next frame if that lies between two. 0 if nothing changes.
+/// The frame from which on no track changes anything: the last one at which a value differs from the one that the track
+/// ends with, or the next frame if that lies between two. 0 if nothing changes.
 int last_change(const Scene& scene, const TimeOptions& options) {
   double last_s = 0;
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
       const std::size_t n = track.times_s.size(), per_key = n == 0 ? 0 : track.values.size() / n;
-      for (std::size_t key = n; key-- > 1;)   // splines: tangents count as well
-        if (!std::equal(track.values.begin() + std::ptrdiff_t(key * per_key), track.values.begin() + std::ptrdiff_t((key + 1) * per_key),
+      for (std::size_t key = n; key-- > 1;)  // splines: tangents count as well
+        if (!std::equal(track.values.begin() + std::ptrdiff_t(key * per_key),
+                        track.values.begin() + std::ptrdiff_t((key + 1) * per_key),
                         track.values.begin() + std::ptrdiff_t((key - 1) * per_key))) {
           last_s = std::max(last_s, track.times_s[key]);
           break;
         }
     }
-  return std::min(frame_in_animation(scene, int(std::ceil(std::min(last_s * options.fps, 1e9) - 1e-3)), options), 1'000'000'000);
+  return std::min(frame_in_animation(scene, int(std::ceil(std::min(last_s * options.fps, 1e9) - 1e-3)), options),
+                  1'000'000'000);
 }
 
 }  // namespace
@@ -203,12 +209,13 @@ bool Plan::has(int frame) const {
 
 const PlannedSegment& Plan::segment_of(int frame) const {
   const auto after = std::ranges::upper_bound(segments, frame, {}, &PlannedSegment::first);
-  if (after == segments.begin() || std::prev(after)->last < frame) throw std::out_of_range("Plan::segment_of: frame " + std::to_string(frame));
+  if (after == segments.begin() || std::prev(after)->last < frame)
+    throw std::out_of_range("Plan::segment_of: frame " + std::to_string(frame));
   return *std::prev(after);
 }
 
-Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options, const MediaHash& media,
-               std::span<const int> others) {
+Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
+               const MediaHash& media, std::span<const int> others) {
   if (frames.empty()) throw std::invalid_argument("make_plan: no frames");
   require_lights(scene);
   Plan plan;
@@ -217,7 +224,8 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   if (scene.environment) plan.environment = scene.environment->path;
   plan.time = options;
   plan.media = bool(media);
-  plan.last_frame = media ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : last_change(scene, options);
+  plan.last_frame =
+      media ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : last_change(scene, options);
 
   std::vector<int> outside;
   std::set<int> needed;
@@ -233,8 +241,9 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
   if (!outside.empty())
-    plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") + " outside the animation (" +
-                            extent_in_words(scene, options) + "): its nearest end is shown");
+    plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") +
+                            " outside the animation (" + extent_in_words(scene, options) +
+                            "): its nearest end is shown");
   return plan;
 }
 

@@ -15,11 +15,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json decisions_json(const Decisions& d) {
-  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"caustic_map", d.caustic_map}, {"paths", d.photon_paths},
-               {"rays", d.record_rays}, {"learn_lights", d.learn_lights}, {"split", d.split},
+  Json json = {{"photon_kinds", d.kinds},
+               {"indirect", kIndirectMethods[std::size_t(d.indirect)]},
+               {"caustic_map", d.caustic_map},
+               {"paths", d.photon_paths},
+               {"rays", d.record_rays},
+               {"learn_lights", d.learn_lights},
+               {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
-               {"new_share", d.new_share}, {"pictures_together", d.together},
-               {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
+               {"new_share", d.new_share},
+               {"pictures_together", d.together},
+               {"walkthrough", d.walk},
+               {"view", d.view},
+               {"looked_at", d.looked}};
   if (d.texture_width > 0) json["texture_width"] = d.texture_width;
   json["because"] = Json::object();
   for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
@@ -28,7 +36,8 @@ Json decisions_json(const Decisions& d) {
 
 Json frame_json(const PlannedFrame& frame) {
   Json json = {{"frame", frame.frame}, {"lit_as", frame.lit_frame}, {"picture", frame.picture}};
-  json["hashes"] = {{"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}, {"materials", frame.materials}};
+  json["hashes"] = {
+      {"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}, {"materials", frame.materials}};
   if (!frame.media.empty()) json["hashes"]["media"] = frame.media;
   json["hashes"]["camera"] = frame.camera;
   return json;
@@ -39,7 +48,8 @@ Json segment_json(const PlannedSegment& segment) {
   json["moves"] = Json::array();
   for (const MovingNode& node : segment.moves)
     json["moves"].push_back({{"node", node.name}, {"carries", node.carries}, {"why", node.why}});
-  json["hashes"] = {{"static_geometry", segment.static_geometry}, {"standing", segment.standing}, {"frozen", segment.frozen}};
+  json["hashes"] = {
+      {"static_geometry", segment.static_geometry}, {"standing", segment.standing}, {"frozen", segment.frozen}};
   json["frames"] = Json::array();
   for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame));
   return json;
@@ -67,12 +77,13 @@ std::string words_of(const std::vector<std::string>& names) {
 
 std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
 
-/// Rules for a file with a plain name. `marker` in shown/ says what it shows now; if the marker is missing the file is made anew, if
-/// the file is missing it comes back. `recipe`: a variable of stages.mk.
-std::string shown_rule(const std::string& name, const std::string& marker, const std::string& inputs, const std::string& recipe) {
+/// Rules for a file with a plain name. `marker` in shown/ says what it shows now; if the marker is missing the file is
+/// made anew, if the file is missing it comes back. `recipe`: a variable of stages.mk.
+std::string shown_rule(const std::string& name, const std::string& marker, const std::string& inputs,
+                       const std::string& recipe) {
   const std::string call = "$(" + recipe + ",shown/" + marker + ")";
-  return "shown/" + marker + ": | " + inputs + "; $(quiet)" + call + "\n" + name + ": | shown/" + marker + " " + inputs +
-         "; $(quiet)test -f $@ || { " + call + "; }\n";
+  return "shown/" + marker + ": | " + inputs + "; $(quiet)" + call + "\n" + name + ": | shown/" + marker + " " +
+         inputs + "; $(quiet)test -f $@ || { " + call + "; }\n";
 }
 
 /// Frames, their previews, the sheet, the log of a walkthrough.
@@ -86,12 +97,15 @@ std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& to
     previews += " frames/" + digits + ".png";
     all += picture;
     markers += " shown/" + digits + "-" + key_of_text(picture);
-    text += shown_rule("frames/" + digits + ".exr", digits + "-" + key_of_text(picture), picture, "call show," + digits);
-    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of_text(picture + exposure) + ".png", picture + " " + exposure, "call preview," + digits);
+    text +=
+        shown_rule("frames/" + digits + ".exr", digits + "-" + key_of_text(picture), picture, "call show," + digits);
+    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of_text(picture + exposure) + ".png",
+                       picture + " " + exposure, "call preview," + digits);
   }
   if (!graph.intervals.empty()) {
     text += "log := walk.log\nintervals :=" + words_of(graph.intervals) + "\n";
-    text += shown_rule("walk.log", "walk-" + key_of_text(words_of(graph.intervals)), words_of(graph.intervals), "call walk_log");
+    text += shown_rule("walk.log", "walk-" + key_of_text(words_of(graph.intervals)), words_of(graph.intervals),
+                       "call walk_log");
   }
   return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
          shown_rule("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)" + markers, "call sheet");
@@ -107,7 +121,8 @@ std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
     errors += " " + error;
   }
   return "report_runs :=" + runs + "\n" +
-         shown_rule("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors, "call write_report");
+         shown_rule("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors,
+                    "call write_report");
 }
 
 template <class Enum, std::size_t n>
@@ -141,14 +156,18 @@ Decisions read_decisions(const std::string& text) {
     d.looked = json.at("looked_at").get<std::vector<int>>();
     for (const auto& [stage, because] : json.at("because").items()) d.reasons.push_back({stage, because});
     return d;
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(std::string("decisions: ") + error.what());
-  }
+  } catch (const nlohmann::json::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
 }
 
 std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history) {
-  Json json = {{"format", "tempolux plan"}, {"version", "2.0"}, {"history", history}, {"scene", scene_name}, {"camera", plan.camera},
-               {"fps", plan.time.fps}, {"segment_length", plan.time.segment_length}, {"light_units", plan.time.light_units},
+  Json json = {{"format", "tempolux plan"},
+               {"version", "2.0"},
+               {"history", history},
+               {"scene", scene_name},
+               {"camera", plan.camera},
+               {"fps", plan.time.fps},
+               {"segment_length", plan.time.segment_length},
+               {"light_units", plan.time.light_units},
                {"frames", plan.frames}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = stages_json(plan, graph);
@@ -163,12 +182,13 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   std::string text = "# Written by scene-plan; formats/plan/plan.md says what stands here.\n";
   std::string passing;
-  std::string kept;   // stats of records over time, for the report
+  std::string kept;  // stats of records over time, for the report
   for (const GraphFile& file : graph.files) {
     if (file.stage == stage::kept.name) kept += " " + beside(file.name, ".json");
     const std::string made = file.name + words_of(file.beside);
     if (file.passing) passing += " " + file.name;
-    if (file.passing) text += ".INTERMEDIATE: " + file.name + "\n";   // not made again where what is made from it is there
+    if (file.passing)
+      text += ".INTERMEDIATE: " + file.name + "\n";  // not made again where what is made from it is there
     text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
   }
   if (!passing.empty()) text += "passing :=" + passing + "\n";

@@ -9,13 +9,13 @@ namespace {
 struct Preset {
   std::uint64_t photons;
   const char* points;
-  int rays;                 ///< of a record at most
-  const char* records;      ///< further words
+  int rays;             ///< of a record at most
+  const char* records;  ///< further words
   double pixel_error;
-  int first_samples;        ///< of a pixel
+  int first_samples;  ///< of a pixel
 };
 constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2};
-constexpr std::uint64_t kPreviewPhotons = 25'000;   ///< of a frame, as in the paper
+constexpr std::uint64_t kPreviewPhotons = 25'000;  ///< of a frame, as in the paper
 constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4};
 
 }  // namespace

@@ -19,20 +19,27 @@ struct StageInfo {
 
 namespace stage {
 inline constexpr StageInfo photons{"photon-trace", "photons", ".photons", "photon-trace", "trace,commit"};
-inline constexpr StageInfo stands_photons{"photon-trace --map static", "stands", ".photons", "photon-trace", "trace,commit"};
-inline constexpr StageInfo moved_photons{"photon-trace --map dynamic", "moved", ".photons", "photon-trace", "trace,commit"};
+inline constexpr StageInfo stands_photons{"photon-trace --map static", "stands", ".photons", "photon-trace",
+                                          "trace,commit"};
+inline constexpr StageInfo moved_photons{"photon-trace --map dynamic", "moved", ".photons", "photon-trace",
+                                         "trace,commit"};
 inline constexpr StageInfo refined{"photon-trace --refine", "refined", ".photons", "photon-trace", "trace,commit"};
-inline constexpr StageInfo points{"irradcache-build points", "points", ".irradpoints", "irradcache-build", "read photons,points,write"};
-inline constexpr StageInfo stands_points{"irradcache-build points --map static", "stands_points", ".irradpoints", "irradcache-build", "read photons,points,write"};
+inline constexpr StageInfo points{"irradcache-build points", "points", ".irradpoints", "irradcache-build",
+                                  "read photons,points,write"};
+inline constexpr StageInfo stands_points{"irradcache-build points --map static", "stands_points", ".irradpoints",
+                                         "irradcache-build", "read photons,points,write"};
 inline constexpr StageInfo split{"photonmap-split", "split", ".low.irradpoints", "photonmap-split", "split"};
 inline constexpr StageInfo records{"irradcache-build records", "cache", ".irradcache", "irradcache-build", "records"};
-inline constexpr StageInfo stands_records{"irradcache-build records --map static", "stands_cache", ".irradcache", "irradcache-build", "records"};
+inline constexpr StageInfo stands_records{"irradcache-build records --map static", "stands_cache", ".irradcache",
+                                          "irradcache-build", "records"};
 inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", "gather-temporal", "records"};
 inline constexpr StageInfo textures{"st-filter mesh", "textures", ".meshirrad", "st-filter", "count"};
 inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
-inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal", "read counts,windows,filter,write"};
+inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal",
+                                   "read counts,windows,filter,write"};
 inline constexpr StageInfo lights{"frame-render --learn-lights", "lights", ".lightgrid", "frame-render", "learn"};
-inline constexpr StageInfo raw{"frame-render --for-filter", "raw", ".exr", "frame-render", "render,data channels,write"};
+inline constexpr StageInfo raw{"frame-render --for-filter", "raw", ".exr", "frame-render",
+                               "render,data channels,write"};
 inline constexpr StageInfo keys{"frame-render (keys)", "keys", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo pictures{"frame-render", "pictures", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo filtered{"st-filter", "filtered", ".exr", "st-filter", "filter"};
@@ -44,10 +51,12 @@ inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare",
 }  // namespace stage
 
 /// In the order in which they run.
-inline constexpr std::array kStages{
-    stage::stands_photons, stage::photons, stage::moved_photons, stage::refined, stage::stands_points, stage::points, stage::split, stage::textures, stage::counts, stage::windows,
-    stage::stands_records, stage::records, stage::kept, stage::lights, stage::keys, stage::walk, stage::walked, stage::raw,
-    stage::filtered, stage::pictures, stage::smoke, stage::reference, stage::error};
+inline constexpr std::array kStages{stage::stands_photons, stage::photons,   stage::moved_photons,  stage::refined,
+                                    stage::stands_points,  stage::points,    stage::split,          stage::textures,
+                                    stage::counts,         stage::windows,   stage::stands_records, stage::records,
+                                    stage::kept,           stage::lights,    stage::keys,           stage::walk,
+                                    stage::walked,         stage::raw,       stage::filtered,       stage::pictures,
+                                    stage::smoke,          stage::reference, stage::error};
 
 /// The wish with what it leaves open filled in: the presets stand here and nowhere else.
 /// draft is rougher, in less than half of the time of final.

@@ -26,14 +26,22 @@ PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
   return more;
 }
 
-constexpr std::size_t kJudgedTogether = 64;   ///< pixels
+constexpr std::size_t kJudgedTogether = 64;  ///< pixels
 
 /// A frame whose pixels get samples in several passes.
 class AdaptiveFrame {
  public:
   AdaptiveFrame(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame)
-      : scene_(scene), view_(view), options_(options), frame_(frame), noise_(view, options), check_(view, options.seed, options.mask), of_check_(options), around_(options),
-        counts_(frame.mean.pixels.size(), noise_.first()), parts_(frame.mean.pixels.size()),
+      : scene_(scene),
+        view_(view),
+        options_(options),
+        frame_(frame),
+        noise_(view, options),
+        check_(view, options.seed, options.mask),
+        of_check_(options),
+        around_(options),
+        counts_(frame.mean.pixels.size(), noise_.first()),
+        parts_(frame.mean.pixels.size()),
         brightest_(options.spread_outliers ? frame.mean.pixels.size() : 0) {
     around_.mask = noise_.looked_at();
     of_check_.seed = check_.seed();
@@ -64,18 +72,19 @@ class AdaptiveFrame {
   PixelNoise noise_;
   NoiseCheck check_;
   FrameOptions of_check_;
-  std::vector<RayCounts> again_rays_;   ///< by slot
-  FrameOptions around_;                 ///< of all pixels whose first samples are needed
-  std::vector<PartCounts> counts_;      ///< samples that pixels have
-  ParallelArray<PathParts> parts_;      ///< their means
+  std::vector<RayCounts> again_rays_;  ///< by slot
+  FrameOptions around_;                ///< of all pixels whose first samples are needed
+  std::vector<PartCounts> counts_;     ///< samples that pixels have
+  ParallelArray<PathParts> parts_;     ///< their means
   ParallelArray<BrightestSamples> brightest_;
 };
 
 void AdaptiveFrame::take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count) {
   const std::uint32_t slot = check_.slot(x, y);
   if (slot == kNone || !shown(pixel)) return;
-  join_parts(sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, &check_.again_halves(slot), again_rays_[slot]), first, count,
-             check_.again(slot));
+  join_parts(
+      sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, &check_.again_halves(slot), again_rays_[slot]),
+      first, count, check_.again(slot));
 }
 
 void AdaptiveFrame::take_first() {
@@ -131,7 +140,10 @@ void AdaptiveFrame::put_together() {
 /// Light that one sample alone claims, once enough of them have looked.
 void AdaptiveFrame::spread() {
   std::vector<Layers>& pixels = frame_.mean.pixels;
-  SampledPixels samples{frame_.mean.width, frame_.mean.height, parts_, counts_, brightest_, options_.mask, [&](double level) { return noise_.error_at(level); }};
+  SampledPixels samples{
+      frame_.mean.width, frame_.mean.height, parts_, counts_, brightest_, options_.mask, [&](double level) {
+        return noise_.error_at(level);
+      }};
   const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels);
   std::vector<std::uint32_t> further_of(judged.empty() ? 0 : pixels.size(), kNone);
   std::vector<FurtherSamples> further(judged.size());
@@ -142,7 +154,9 @@ void AdaptiveFrame::spread() {
       const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
       further_of[pixel] = std::uint32_t(i);
       further[i].count = more;
-      join_parts(sample_pixel(scene_, view_, options_, pixel, int(pixel % width), int(pixel / width), have, more, nullptr, rays[first / kJudgedTogether]), {}, more, further[i].mean);
+      join_parts(sample_pixel(scene_, view_, options_, pixel, int(pixel % width), int(pixel / width), have, more,
+                              nullptr, rays[first / kJudgedTogether]),
+                 {}, more, further[i].mean);
     }
   });
   for (const RayCounts& counts : rays) frame_.rays += counts;
@@ -154,14 +168,16 @@ void AdaptiveFrame::spread() {
   for (std::size_t i = 0; i < judged.size(); ++i) keep_confirmed(judged[i], before[i]);
 }
 
-/// Gives both halves of a pixel their mean in the layer whose claim kJudges samples have confirmed. One half alone may have met the thing;
-/// a filter that takes the difference of the halves for noise would then remove the thing.
+/// Gives both halves of a pixel their mean in the layer whose claim kJudges samples have confirmed. One half alone may
+/// have met the thing; a filter that takes the difference of the halves for noise would then remove the thing.
 void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
   SampleHalves* const halves = frame_.mean.halves_of(pixel);
   if (!halves) return;
   const BrightestSamples& claims = brightest_[pixel];
-  const BrightestSample& claim = std::max({claims.own, claims.lit, claims.onward}, [](const auto& a, const auto& b) { return a.brightest < b.brightest; });
-  if (channel_sum(frame_.mean.pixels[pixel][claim.layer]) >= channel_sum(before[claim.layer])) halves->join(claim.layer);
+  const BrightestSample& claim = std::max({claims.own, claims.lit, claims.onward},
+                                          [](const auto& a, const auto& b) { return a.brightest < b.brightest; });
+  if (channel_sum(frame_.mean.pixels[pixel][claim.layer]) >= channel_sum(before[claim.layer]))
+    halves->join(claim.layer);
 }
 
 /// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as
@@ -170,25 +186,29 @@ void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
 /// samples of those before.
 void AdaptiveFrame::reach_seen_error() {
   constexpr double kSteepness = 0.6, kMostTimes = 4, kLeastTimes = 1.1;
-  constexpr int kMostIdle = 8;   // passes without a sample: all pixels are at their limit, or show no noise
+  constexpr int kMostIdle = 8;  // passes without a sample: all pixels are at their limit, or show no noise
   put_together();
   double times = 0.25;
   const double at_first = frame_.noise.image.codes;
   for (int idle = 0; frame_.noise.known() && frame_.noise.image.codes > options_.seen_error && idle < kMostIdle;) {
-    if (options_.progress) options_.progress(std::clamp(std::log(at_first / frame_.noise.image.codes) / std::log(at_first / options_.seen_error), 0.0, 1.0));
+    if (options_.progress)
+      options_.progress(std::clamp(
+          std::log(at_first / frame_.noise.image.codes) / std::log(at_first / options_.seen_error), 0.0, 1.0));
     if (take_further(times, {}) > 0) {
       put_together();
       idle = 0;
     } else {
       ++idle;
     }
-    times *= std::clamp(std::pow(frame_.noise.image.codes / options_.seen_error, 1 / kSteepness), kLeastTimes, kMostTimes);
+    times *=
+        std::clamp(std::pow(frame_.noise.image.codes / options_.seen_error, 1 / kSteepness), kLeastTimes, kMostTimes);
   }
 }
 
 void AdaptiveFrame::finish() {
   if (!frame_.mean.sample_halves.empty())
-    frame_.mean.difference_share = check_.shares(frame_.mean.sample_halves, [&](std::size_t pixel) { return parts_[pixel].sum(); });
+    frame_.mean.difference_share =
+        check_.shares(frame_.mean.sample_halves, [&](std::size_t pixel) { return parts_[pixel].sum(); });
   for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
   frame_.mean.samples = noise_.first().own;
   double samples = 0;
@@ -204,7 +224,8 @@ void AdaptiveFrame::finish() {
 
 }  // namespace
 
-void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
+void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
+                     RenderedFrame& frame) {
   AdaptiveFrame(scene, view, options, frame).render();
 }
 

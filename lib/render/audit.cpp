@@ -14,10 +14,12 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr std::size_t kFewestPaths = 64;     ///< that found light: of fewer no standard error is said
-constexpr double kFewestSplats = 32;         ///< likewise; equal photons that those in view are worth
-constexpr double kMostOfOne = 0.5;           ///< of the sum of squares: beyond that one map or path decides, and the error is not known
-constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;   ///< rays of a frame that take as long as a path of light with what it leaves in view; as two paths from the eye
+constexpr std::size_t kFewestPaths = 64;  ///< that found light: of fewer no standard error is said
+constexpr double kFewestSplats = 32;      ///< likewise; equal photons that those in view are worth
+constexpr double kMostOfOne =
+    0.5;  ///< of the sum of squares: beyond that one map or path decides, and the error is not known
+constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;  ///< rays of a frame that take as long as a path of light with
+                                                      ///< what it leaves in view; as two paths from the eye
 constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull;
 
 double light_of(const Layers& pixel) {
@@ -26,8 +28,9 @@ double light_of(const Layers& pixel) {
   return sum;
 }
 
-/// Both estimates joined by inverse variance; the one that is known if there is one only. Two that differ by more than kAuditErrors of their difference's
-/// standard errors are not both right (rare light that one way has not met), and nothing shows which is: no estimate.
+/// Both estimates joined by inverse variance; the one that is known if there is one only. Two that differ by more than
+/// kAuditErrors of their difference's standard errors are not both right (rare light that one way has not met), and
+/// nothing shows which is: no estimate.
 Estimate joined(const Estimate& a, const Estimate& b) {
   if (!a.known()) return b;
   if (!b.known()) return a;
@@ -45,11 +48,13 @@ AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed
   return {std::uint64_t(std::ceil(half / kRaysOfPhoton)), std::size_t(std::ceil(half / kRaysOfPath)), seed};
 }
 
-FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects, std::span<const std::uint8_t> mask)
+FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
+                       std::span<const std::uint8_t> mask)
     : view_(view), frame_(frame), mask_(mask), object_part_(objects.size()) {
   parts_.push_back({"picture"});
   for (int j = 0; j < kTilesAcross; ++j)
-    for (int i = 0; i < kTilesAcross; ++i) parts_.push_back({"tile " + std::to_string(i + 1) + " " + std::to_string(j + 1)});
+    for (int i = 0; i < kTilesAcross; ++i)
+      parts_.push_back({"tile " + std::to_string(i + 1) + " " + std::to_string(j + 1)});
   std::map<std::uint32_t, std::uint32_t> part_of;
   for (const std::uint32_t object : objects) part_of.emplace(object, 0);
   for (auto& [object, part] : part_of) {
@@ -79,13 +84,16 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
-/// Map k is traced with a seed of its own, all of its paths in one group. Maps are traced side by side and added in order.
+/// Map k is traced with a seed of its own, all of its paths in one group. Maps are traced side by side and added in
+/// order.
 void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
   const PhotonSplats camera(tracer, view_);
   std::array<std::vector<Splat>, kMaps> seen;
   parallel_chunks(kMaps, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
-      PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)), .photon_count = (effort.photon_paths + kMaps - 1) / kMaps, .group_count = 1};
+      PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
+                            .photon_count = (effort.photon_paths + kMaps - 1) / kMaps,
+                            .group_count = 1};
       const PhotonTracer photons(tracer, lights, options);
       for (std::size_t b = 0; b < photons.batch_count(); ++b) {
         const formats::PhotonBlock block = photons.trace(b).block;
@@ -129,17 +137,20 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
       const PixelRandom random(seed, i, 0);
       // One pixel of each of `count` runs of them, row by row.
       const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, i).get2(0, Purpose::pixel);
-      difference.pixel = std::min(pixels - 1, std::size_t((double(i) + double(within.x)) * double(pixels) / double(count)));
+      difference.pixel =
+          std::min(pixels - 1, std::size_t((double(i) + double(within.x)) * double(pixels) / double(count)));
       if (!mask_.empty() && !mask_[difference.pixel]) continue;
       const auto width = std::size_t(view_.width());
       const Ray ray = view_.ray(float(difference.pixel % width) + jitter.x, float(difference.pixel / width) + jitter.y);
       Hit hit;
       scene.tracer.intersect(ray, hit);
-      const Layers shown = trace_eye_path(scene, ray, hit, random, options.known, rays, view_.cone(), effort_of(0)).sum();
+      const Layers shown =
+          trace_eye_path(scene, ray, hit, random, options.known, rays, view_.cone(), effort_of(0)).sum();
       const Layers found = trace_eye_path(scene, ray, hit, random, nullptr, rays, view_.cone(), effort_of(0)).sum();
       difference.counts = true;
       for (std::size_t l = 0; l < kLayerCount; ++l) difference.met[l] = !is_black(found.value[l]);
-      for (std::size_t l = 0; l < kLayerCount; ++l) difference.layer[l] = channel_mean(Rgbd(shown.value[l])) - channel_mean(Rgbd(found.value[l]));
+      for (std::size_t l = 0; l < kLayerCount; ++l)
+        difference.layer[l] = channel_mean(Rgbd(shown.value[l])) - channel_mean(Rgbd(found.value[l]));
     }
   });
   for (const Difference& difference : differences) {
@@ -161,8 +172,15 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
 AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   const Sums& sums = sums_[part];
   const double n = double(parts_[part].pixels);
-  AuditEntry entry{.layer = Layer(layer), .part = parts_[part].name, .object = parts_[part].object, .pixels = parts_[part].pixels, .shown = sums.shown[layer] / n,
-                   .splats = {}, .paths = {}, .bias = {}, .picture = picture_ / n};
+  AuditEntry entry{.layer = Layer(layer),
+                   .part = parts_[part].name,
+                   .object = parts_[part].object,
+                   .pixels = parts_[part].pixels,
+                   .shown = sums.shown[layer] / n,
+                   .splats = {},
+                   .paths = {},
+                   .bias = {},
+                   .picture = picture_ / n};
   Estimate by_splats;
   double sum = 0;
   for (const float map : sums.splats[layer]) sum += double(map);
@@ -176,13 +194,17 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
     if (largest <= kMostOfOne * square) {
       entry.splats = {sum / n / kMaps, std::sqrt(square / kMaps / (kMaps - 1)) / n};
       const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
-      by_splats = {entry.shown - entry.splats.value, std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
+      by_splats = {entry.shown - entry.splats.value,
+                   std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
     }
   }
   const double m = double(sums.path_count);
   // Direct light is sampled by the same random numbers both ways: no difference says nothing.
-  if (sums.paths_square[layer] > 0 && sums.met[layer] >= kFewestPaths && sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
-    entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m - sums.paths[layer] * sums.paths[layer] / (m * m)) / (m - 1))};
+  if (sums.paths_square[layer] > 0 && sums.met[layer] >= kFewestPaths &&
+      sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
+    entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m -
+                                                                      sums.paths[layer] * sums.paths[layer] / (m * m)) /
+                                                    (m - 1))};
   entry.bias = joined(by_splats, entry.paths);
   return entry;
 }

@@ -20,14 +20,15 @@ struct Placement {
   const FinalGather& gather;
   const Tracer& tracer;
   PlacementOptions options;
-  std::function<bool(const SeenPoint&)> takes;   ///< empty: all
-  const RecordSource* source = nullptr;          ///< in place of `gather`
+  std::function<bool(const SeenPoint&)> takes;  ///< empty: all
+  const RecordSource* source = nullptr;         ///< in place of `gather`
 };
 
 /// What the camera sees, but for pixels that are not wanted and points that are not taken.
 PixelView looks_through(const Placement& place, const CameraView& view, const std::vector<std::uint8_t>& wanted) {
   return [&](const Look& look) -> std::optional<SeenPoint> {
-    if (!wanted.empty() && !wanted[std::size_t(look.y) * std::size_t(view.width()) + std::size_t(look.x)]) return std::nullopt;
+    if (!wanted.empty() && !wanted[std::size_t(look.y) * std::size_t(view.width()) + std::size_t(look.x)])
+      return std::nullopt;
     std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
     if (seen && place.takes && !place.takes(*seen)) seen.reset();
     return seen;
@@ -42,8 +43,8 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
     PlacementOptions options = place.options;
     if (number != cameras.frames.front()) options.min_weight *= kLaterWeight;
     const std::vector<std::uint8_t> wanted = cameras.wanted ? cameras.wanted(number) : std::vector<std::uint8_t>{};
-    const std::size_t added = place_records(place.gather, looks_through(place, view, wanted), cameras.width, cameras.height, options, store, counts,
-                                            cameras.progress, place.source);
+    const std::size_t added = place_records(place.gather, looks_through(place, view, wanted), cameras.width,
+                                            cameras.height, options, store, counts, cameras.progress, place.source);
     cameras.added(number, added);
   }
   return counts;
@@ -51,27 +52,33 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
 
 }  // namespace
 
-GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, const RecordCameras& cameras, const PlacementOptions& options,
-                               RecordStore& store) {
+GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, const RecordCameras& cameras,
+                               const PlacementOptions& options, RecordStore& store) {
   return place_for_all({gather, tracer, options, {}}, cameras, store);
 }
 
-GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options, LocalisedRecords& cache) {
+GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
+                                LocalisedRecords& cache) {
   cache.changes = record_changes(cache.standing, input.changes, input.points, input.seed);
   std::vector<float> influences;
   for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
   const InfluenceField field(cache.standing, influences, input.influence);
   const MovingObjects moving(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
-  // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
+  // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all
+  // leave where f is 1.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
-    const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
-    IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);
-    limit_radius(record, seen.footprint, options);
-    input.gather.look_around(seen.surface, record);
-    return record;
-  }, [](std::size_t) {}};
-  const auto matters = [&](const SeenPoint& seen) { return rides(seen) || field.at(seen.surface.position, seen.normal) > input.influence.low; };
+                              const float share =
+                                  rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
+                              IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);
+                              limit_radius(record, seen.footprint, options);
+                              input.gather.look_around(seen.surface, record);
+                              return record;
+                            },
+                            [](std::size_t) {}};
+  const auto matters = [&](const SeenPoint& seen) {
+    return rides(seen) || field.at(seen.surface.position, seen.normal) > input.influence.low;
+  };
   RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
   const GatherCounts counts = place_for_all({input.gather, input.tracer, options, matters, &source}, cameras, store);
   cache.gathered.assign(store.records().begin(), store.records().end());

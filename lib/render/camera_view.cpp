@@ -3,9 +3,13 @@
 namespace tempolux {
 
 CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height)
-    : camera_(camera), camera_from_scene_(inverse(camera.scene_from_camera)), origin_(origin), width_(width), height_(height) {
-  half_height_ = camera.camera.kind == Camera::Kind::perspective ? std::tan(camera.camera.yfov_rad / 2)
-                                                                 : camera.camera.ymag_m;
+    : camera_(camera),
+      camera_from_scene_(inverse(camera.scene_from_camera)),
+      origin_(origin),
+      width_(width),
+      height_(height) {
+  half_height_ =
+      camera.camera.kind == Camera::Kind::perspective ? std::tan(camera.camera.yfov_rad / 2) : camera.camera.ymag_m;
   half_width_ = half_height_ * width / height;
 }
 

@@ -10,7 +10,7 @@ namespace tempolux {
 namespace {
 
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
-constexpr double kFewestRays = 64;   ///< of a record: with fewer its distances say too little of how far it holds
+constexpr double kFewestRays = 64;  ///< of a record: with fewer its distances say too little of how far it holds
 constexpr double kLeastError = 1e-12;
 
 /// What n samples leave of light that photons show and paths do not meet: at most all.
@@ -19,11 +19,14 @@ double left_of(const MissedLight& missed, double samples) { return std::min(miss
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
   const bool records = method == IndirectMethod::records;
   const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
-  const double variance = records ? (map ? effort.other_without_caustic : effort.other) : map ? effort.without_caustic : effort.all;
+  const double variance = records ? (map ? effort.other_without_caustic : effort.other)
+                          : map   ? effort.without_caustic
+                                  : effort.all;
   const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, variance / wanted);
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
-  if (map || method != IndirectMethod::paths) fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
+  if (map || method != IndirectMethod::paths)
+    fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted};
   if (map) way.error += rough.map_error;
@@ -45,7 +48,8 @@ std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool
   std::vector<Way> ways;
   for (const IndirectMethod method : {IndirectMethod::paths, IndirectMethod::gather, IndirectMethod::records})
     for (const bool map : {false, true})
-      if ((!map || caustics) && (method == IndirectMethod::paths || rough.places > 0)) ways.push_back(way_of(rough, order, method, map));
+      if ((!map || caustics) && (method == IndirectMethod::paths || rough.places > 0))
+        ways.push_back(way_of(rough, order, method, map));
   std::ranges::stable_sort(ways, {}, &Way::score);
   return ways;
 }
@@ -54,7 +58,8 @@ std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
   std::vector<Way> all;
   for (const std::vector<Way>& ways : ways_of_frames)
     for (const Way& way : ways) {
-      const auto same = std::ranges::find_if(all, [&](const Way& other) { return other.method == way.method && other.map == way.map; });
+      const auto same = std::ranges::find_if(
+          all, [&](const Way& other) { return other.method == way.method && other.map == way.map; });
       if (same == all.end()) {
         all.push_back(way);
         continue;
@@ -72,8 +77,8 @@ std::string because(const std::vector<Way>& ways) {
   std::string words;
   const double least = ways.front().score();
   for (const Way& way : ways) {
-    std::snprintf(text, sizeof text, "%s%s %.3g", kIndirectMethods[std::size_t(way.method)], way.map ? " beside caustics of photons" : "",
-                  least > 0 ? way.score() / least : 1.0);
+    std::snprintf(text, sizeof text, "%s%s %.3g", kIndirectMethods[std::size_t(way.method)],
+                  way.map ? " beside caustics of photons" : "", least > 0 ? way.score() / least : 1.0);
     words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
   }
   return words;

@@ -1,4 +1,5 @@
-// lib/render/choose_light.h -- by which way a frame's light is found, and how much work goes where: what costs least for the error.
+// lib/render/choose_light.h -- by which way a frame's light is found, and how much work goes where: what costs least
+// for the error.
 #pragma once
 
 #include <cstdint>
@@ -9,36 +10,36 @@
 
 namespace tempolux {
 
-/// How the light that surfaces send each other is found: by records between pixels, by one ray of the hemisphere for each sample of a
-/// pixel, which ends at irradiance points, or by paths that end nowhere but in the dark.
+/// How the light that surfaces send each other is found: by records between pixels, by one ray of the hemisphere for
+/// each sample of a pixel, which ends at irradiance points, or by paths that end nowhere but in the dark.
 enum class IndirectMethod : std::uint8_t { records, gather, paths };
 inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"};
 
 /// What is to be rendered: one picture, as if no other shared its light.
 struct Order {
-  double pixels = 0;               ///< of a picture
-  std::uint64_t photons = 700'000; ///< paths of light
-  int rays = 500;                  ///< of a record at most
+  double pixels = 0;                ///< of a picture
+  std::uint64_t photons = 700'000;  ///< paths of light
+  int rays = 500;                   ///< of a record at most
 };
 
 /// One way to a frame's light.
 struct Way {
   IndirectMethod method = IndirectMethod::paths;
-  bool map = false;                ///< caustic light where the eye looks is read from photons; else paths find it
-  int rays = 0;                    ///< of a record
-  double work = 0;                 ///< shadow rays, for a picture
-  double error = 0;                ///< squared, mean over the pixels, as SampleEffort has it
+  bool map = false;  ///< caustic light where the eye looks is read from photons; else paths find it
+  int rays = 0;      ///< of a record
+  double work = 0;   ///< shadow rays, for a picture
+  double error = 0;  ///< squared, mean over the pixels, as SampleEffort has it
   double score() const { return work * error; }
 };
 
-/// All ways, the best one first: the least work x squared error. With n samples a pixel, c work for each, V their variance, and M
-/// records of k rays, e / k their squared error, g the work for a ray:
+/// All ways, the best one first: the least work x squared error. With n samples a pixel, c work for each, V their
+/// variance, and M records of k rays, e / k their squared error, g the work for a ray:
 ///
 ///     work = fixed + P c n + M g k,   error = E + e / k + what stays wrong,   n = V / E
 ///
-/// E is what the wish leaves of light that all ways find alike. Least for k = sqrt(e (fixed + P c n) / (M g (E + what stays wrong))):
-/// so work goes to records in proportion to the root of error x cost, as to samples. Wrong stay caustics by a density of photons, and
-/// light that photons show and paths do not meet.
+/// E is what the wish leaves of light that all ways find alike. Least for k = sqrt(e (fixed + P c n) / (M g (E + what
+/// stays wrong))): so work goes to records in proportion to the root of error x cost, as to samples. Wrong stay
+/// caustics by a density of photons, and light that photons show and paths do not meet.
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
 /// The same for several frames together: of each way the work and the error of all, and the most rays.

@@ -20,8 +20,8 @@ constexpr std::uint64_t kPaths = 1 << 16;
 /// Static photons of a disc in which influence is looked for: at the threshold it holds .06 x 200 = 12 dynamic ones.
 constexpr int kNeighbours = 200;
 
-constexpr double kLeastLight = 0.2, kLightByTouched = 3;   ///< of a state's photons and points
-constexpr double kLeastRecords = 0.1;                      ///< of a state's records
+constexpr double kLeastLight = 0.2, kLightByTouched = 3;  ///< of a state's photons and points
+constexpr double kLeastRecords = 0.1;                     ///< of a state's records
 
 std::string per_cent(double share) {
   char text[16];
@@ -43,7 +43,8 @@ struct PilotMaps {
   std::size_t touched = 0;
 };
 
-PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const EmissionTable& emission, std::uint64_t seed) {
+PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const EmissionTable& emission,
+                     std::uint64_t seed) {
   PhotonOptions options;
   options.seed = seed;
   options.photon_count = kPaths;
@@ -79,10 +80,12 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const 
 
 }  // namespace
 
-MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed) {
+MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
+                         std::uint64_t seed) {
   const SceneFrame standing = standing_scene(frame);
   const PilotMaps maps = trace_maps(frame, standing, emission, seed);
-  const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}), dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
+  const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}),
+      dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
   const SeenPlaces seen = places_seen({tracer, lights}, view, kPlaces, seed);
@@ -92,7 +95,7 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
     for (std::size_t i = first; i < last; ++i) {
       const SeenPlace& place = seen.places[i];
       if (!place.exists()) continue;
-      gathered[i] = place.surface.surface >= frame.static_count;   // what moves comes last
+      gathered[i] = place.surface.surface >= frame.static_count;  // what moves comes last
       PhotonQuery query{place.surface.position, place.normal, INFINITY, 0.1f, 10, kAllKinds};
       fixed.find_nearest(query, kNeighbours, found);
       if (gathered[i] || found.count() == 0) continue;
@@ -111,10 +114,12 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
 }
 
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double standing_records) {
-  const double light = 1 / double(std::max<std::size_t>(states, 1)) + kLeastLight + kLightByTouched * pilot.touched_share;
+  const double light =
+      1 / double(std::max<std::size_t>(states, 1)) + kLeastLight + kLightByTouched * pilot.touched_share;
   const double records = standing_records + kLeastRecords + pilot.gathered_share;
-  const std::string because = "what moves touches " + per_cent(pilot.touched_share) + " of the paths of light and matters at " +
-                              per_cent(pilot.gathered_share) + " of what is seen; " + std::to_string(states) + " states of light";
+  const std::string because = "what moves touches " + per_cent(pilot.touched_share) +
+                              " of the paths of light and matters at " + per_cent(pilot.gathered_share) +
+                              " of what is seen; " + std::to_string(states) + " states of light";
   return {!(light < 1) ? MovingMethod::anew : records < 1 ? MovingMethod::records : MovingMethod::light, because};
 }
 

@@ -9,13 +9,14 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kPaths = 1 << 15;    ///< of the pilot
-constexpr double kMostPaths = 16;            ///< of the photons asked for
+constexpr std::uint64_t kPaths = 1 << 15;  ///< of the pilot
+constexpr double kMostPaths = 16;          ///< of the photons asked for
 
 }  // namespace
 
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {
-  const std::size_t photons = pilot_photons(scene.tracer, scene.lights, kinds, kPaths, seed ^ 0x61727269766564ull).photons.size();
+  const std::size_t photons =
+      pilot_photons(scene.tracer, scene.lights, kinds, kPaths, seed ^ 0x61727269766564ull).photons.size();
   return {double(photons) / double(kPaths), surface_area(scene.tracer.frame())};
 }
 

@@ -17,23 +17,27 @@ namespace {
 
 constexpr int kPlaces = 2048;
 constexpr std::uint64_t kPaths = 1 << 16;
-constexpr double kPays = 2;      ///< variance_ratio
+constexpr double kPays = 2;  ///< variance_ratio
 
 /// Mean and variance of numbers, one after the other.
 struct Moments {
   double sum = 0, squares = 0;
   std::size_t count = 0;
   void add(double x) { sum += x, squares += x * x, ++count; }
-  double variance() const { return count ? squares / double(count) - (sum / double(count)) * (sum / double(count)) : 0; }
+  double variance() const {
+    return count ? squares / double(count) - (sum / double(count)) * (sum / double(count)) : 0;
+  }
 };
 
 }  // namespace
 
-SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed) {
+SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
+                       std::uint64_t seed) {
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
   const RenderScene scene{tracer, lights};
-  const std::vector<formats::Photon> photons = pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed).photons;
+  const std::vector<formats::Photon> photons =
+      pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed).photons;
   CellEdge edge;
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
   EnergyCells cells(edge.edge(), 0);
@@ -67,9 +71,12 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
 
 SplitChoice choose_split(const SplitPilot& pilot) {
   char text[160];
-  if (pilot.high_share <= 0) return {false, "no spot lit by lamps or by reflection lights what is seen by more than 4 times the mean"};
-  std::snprintf(text, sizeof text, "bright spots bring %.0f %% of the light that rays meet; without them its variance is %.2g times smaller",
-                100 * pilot.high_share, pilot.variance_ratio);
+  if (pilot.high_share <= 0)
+    return {false, "no spot lit by lamps or by reflection lights what is seen by more than 4 times the mean"};
+  std::snprintf(
+      text, sizeof text,
+      "bright spots bring %.0f %% of the light that rays meet; without them its variance is %.2g times smaller",
+      100 * pilot.high_share, pilot.variance_ratio);
   return {pilot.variance_ratio > kPays, text};
 }
 

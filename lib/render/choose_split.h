@@ -11,15 +11,16 @@ namespace tempolux {
 
 /// What a pilot saw of light on surfaces, as rays by the cosine from places that a camera sees meet it.
 struct SplitPilot {
-  /// Variance of the radiance that such rays meet, over what it is without the light that photonmap-split takes out of bright cells;
-  /// 1 where it takes nothing.
+  /// Variance of the radiance that such rays meet, over what it is without the light that photonmap-split takes out of
+  /// bright cells; 1 where it takes nothing.
   double variance_ratio = 1;
-  double high_share = 0;   ///< of the radiance that the rays meet: what is taken out
+  double high_share = 0;  ///< of the radiance that the rays meet: what is taken out
 };
 
-/// 2^16 photon paths of all kinds in cells (EnergyCells, the default limit), 2048 places seen and a ray from each: a tenth of a
-/// second. Same result for any number of threads.
-SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed);
+/// 2^16 photon paths of all kinds in cells (EnergyCells, the default limit), 2048 places seen and a ray from each: a
+/// tenth of a second. Same result for any number of threads.
+SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
+                       std::uint64_t seed);
 
 struct SplitChoice {
   bool split = false;

@@ -12,18 +12,19 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4, kOther = 9;
-constexpr std::uint64_t kPattern = 0x636f766572616765ull;   // one pattern of rays for all pixels and frames
+constexpr std::uint64_t kPattern = 0x636f766572616765ull;  // one pattern of rays for all pixels and frames
 
 /// What a ray meets.
 struct Seen {
   std::uint32_t object = kNone, material = kNone;
   Vec3 position, normal;
-  float footprint = 0;   ///< m: a pixel's width there
+  float footprint = 0;  ///< m: a pixel's width there
 
   /// Is `other` a place of the same smooth surface, about a pixel away? Its plane passes it within a pixel's width.
   bool same_as(const Seen& other) const {
     if (object == kNone || other.object == kNone) return object == other.object;
-    return object == other.object && material == other.material && dot(normal, other.normal) > PixelSurfaces::kSameNormal &&
+    return object == other.object && material == other.material &&
+           dot(normal, other.normal) > PixelSurfaces::kSameNormal &&
            std::abs(dot(normal, other.position - position)) < footprint;
   }
 };
@@ -37,14 +38,15 @@ class PixelCoverage {
       std::array<Vec2, kTogether> places;
       for (std::size_t p = first; p < last; p += kTogether) {
         const std::size_t count = std::min(kTogether, last - p);
-        for (std::size_t i = 0; i < count; ++i) places[i] = {float((p + i) % width_) + 0.5f, float((p + i) / width_) + 0.5f};
+        for (std::size_t i = 0; i < count; ++i)
+          places[i] = {float((p + i) % width_) + 0.5f, float((p + i) / width_) + 0.5f};
         look(std::span(places).first(count), &centres_[p]);
       }
     });
   }
 
   struct Counts {
-    std::uint32_t around = 0, other = 0;   ///< as in the two channels
+    std::uint32_t around = 0, other = 0;  ///< as in the two channels
   };
   Counts at(int x, int y) const {
     if (!is_edge(x, y)) return {};
@@ -64,7 +66,7 @@ class PixelCoverage {
   }
 
  private:
-  static constexpr std::size_t kTogether = 8;   // a packet
+  static constexpr std::size_t kTogether = 8;  // a packet
   static_assert(kRays % kTogether == 0);
 
   /// places: raster positions, at most kTogether.
@@ -85,7 +87,9 @@ class PixelCoverage {
   const Seen* centre(int x, int y, std::size_t around) const {
     x += int(around % 3) - 1;
     y += int(around / 3) - 1;
-    return x < 0 || y < 0 || x >= view_.width() || y >= view_.height() ? nullptr : &centres_[std::size_t(y) * width_ + std::size_t(x)];
+    return x < 0 || y < 0 || x >= view_.width() || y >= view_.height()
+               ? nullptr
+               : &centres_[std::size_t(y) * width_ + std::size_t(x)];
   }
 
   bool is_edge(int x, int y) const {
@@ -95,7 +99,8 @@ class PixelCoverage {
     return false;
   }
 
-  /// Which pixel's surface a ray meets that passes `place` in the pixel: the pixel's own, else that of the nearest one around, else kOther.
+  /// Which pixel's surface a ray meets that passes `place` in the pixel: the pixel's own, else that of the nearest one
+  /// around, else kOther.
   std::size_t nearest(int x, int y, Vec2 place, const Seen& ray) const {
     if (centre(x, y, kCentre)->same_as(ray)) return kCentre;
     std::size_t best = kOther;
@@ -122,7 +127,8 @@ class PixelCoverage {
 
 }  // namespace
 
-void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels, Image& image) {
+void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
+                          Image& image) {
   if (std::find(channels.begin(), channels.end(), "coverage") == channels.end()) return;
   image.add_ids("coverage");
   std::vector<std::uint32_t>& other = image.add_ids("coverage.other").ids;
@@ -130,7 +136,8 @@ void add_coverage_channel(const RenderScene& scene, const CameraView& view, cons
   const PixelCoverage pixels(scene, view);
   parallel_chunks(around.size(), 1024, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
-      const PixelCoverage::Counts counts = pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
+      const PixelCoverage::Counts counts =
+          pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
       around[p] = counts.around;
       other[p] = counts.other;
     }

@@ -11,16 +11,17 @@
 namespace tempolux {
 namespace {
 
-const std::vector<std::string> kGroups{"RGBA", "layers", "emission", "specular", "direct", "caustic", "indirect", "volume",
-                                       "Z", "N", "P", "id", "albedo", "motion",
-                                       "coverage", "influence", "variance", "diffuse.variance", "samples", "halves", "seen"};
+const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specular",  "direct",   "caustic",
+                                       "indirect", "volume", "Z",        "N",         "P",        "id",
+                                       "albedo",   "motion", "coverage", "influence", "variance", "diffuse.variance",
+                                       "samples",  "halves", "seen"};
 
 bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-/// Where the same point of the same surface is in another frame, deformed as it is there: the surface is the one of the same node with
-/// the same rank among that node's surfaces, the point has the same barycentrics.
+/// Where the same point of the same surface is in another frame, deformed as it is there: the surface is the one of the
+/// same node with the same rank among that node's surfaces, the point has the same barycentrics.
 class OtherFrame {
  public:
   OtherFrame(const NeighbourFrame& other, const SceneFrame& here) : view_(other.view), there_(here.surfaces.size()) {
@@ -49,7 +50,7 @@ class OtherFrame {
 
  private:
   const CameraView* view_;
-  std::vector<const Surface*> there_;   ///< by surface of this frame; nullptr: not there
+  std::vector<const Surface*> there_;  ///< by surface of this frame; nullptr: not there
 };
 
 }  // namespace
@@ -67,7 +68,9 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
                        const NeighbourFrame& next, const NeighbourFrame& previous, Image& image) {
   // Channels are added first, then looked up: adding may move them.
   const auto add3 = [&](const char* a, const char* b, const char* c) {
-    image.add(a); image.add(b); image.add(c);
+    image.add(a);
+    image.add(b);
+    image.add(c);
   };
   const bool z = asked(channels, "Z"), n = asked(channels, "N"), p = asked(channels, "P"), id = asked(channels, "id"),
              albedo = asked(channels, "albedo"), motion = asked(channels, "motion");
@@ -76,16 +79,22 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
   if (n) add3("N.X", "N.Y", "N.Z");
   if (p) add3("P.X", "P.Y", "P.Z");
   if (albedo) add3("albedo.R", "albedo.G", "albedo.B");
-  if (motion) { image.add("forward.u"); image.add("forward.v"); image.add("backward.u"); image.add("backward.v"); }
+  if (motion) {
+    image.add("forward.u");
+    image.add("forward.v");
+    image.add("backward.u");
+    image.add("backward.v");
+  }
   if (id) image.add_ids("id.object");
   const auto values = [&](const char* name) -> float* {
     Channel* channel = image.find(name);
     return channel ? channel->values.data() : nullptr;
   };
   float *const Z = values("Z"), *const NX = values("N.X"), *const NY = values("N.Y"), *const NZ = values("N.Z"),
-        *const PX = values("P.X"), *const PY = values("P.Y"), *const PZ = values("P.Z"), *const AR = values("albedo.R"),
-        *const AG = values("albedo.G"), *const AB = values("albedo.B"), *const FU = values("forward.u"),
-        *const FV = values("forward.v"), *const BU = values("backward.u"), *const BV = values("backward.v");
+               *const PX = values("P.X"), *const PY = values("P.Y"), *const PZ = values("P.Z"),
+               *const AR = values("albedo.R"), *const AG = values("albedo.G"), *const AB = values("albedo.B"),
+               *const FU = values("forward.u"), *const FV = values("forward.v"), *const BU = values("backward.u"),
+               *const BV = values("backward.v");
   std::uint32_t* const ID = id ? image.find("id.object")->ids.data() : nullptr;
   const OtherFrame later(motion ? next : NeighbourFrame{}, scene.frame());
   const OtherFrame earlier(motion ? previous : NeighbourFrame{}, scene.frame());
@@ -93,7 +102,7 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
   const RayCone cone = view.cone();
 
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
-    constexpr std::size_t kTogether = 8;   // a packet
+    constexpr std::size_t kTogether = 8;  // a packet
     std::array<Ray, kTogether> rays;
     std::array<Hit, kTogether> hits;
     const auto centre = [&](std::size_t i) {
@@ -120,21 +129,30 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
       if (ID) ID[i] = point.object;
       if (NX) {
         const Vec3 normal = dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal;
-        NX[i] = normal.x; NY[i] = normal.y; NZ[i] = normal.z;
+        NX[i] = normal.x;
+        NY[i] = normal.y;
+        NZ[i] = normal.z;
       }
       if (PX) {
         const Vec3d world = Vec3d(point.position) + origin;
-        PX[i] = float(world.x); PY[i] = float(world.y); PZ[i] = float(world.z);
+        PX[i] = float(world.x);
+        PY[i] = float(world.y);
+        PZ[i] = float(world.z);
       }
       if (AR) {
         const Bsdf bsdf(material);
         const Rgb rho = bsdf.diffuse_albedo();
-        AR[i] = rho.r; AG[i] = rho.g; AB[i] = rho.b;
+        AR[i] = rho.r;
+        AG[i] = rho.g;
+        AB[i] = rho.b;
       }
       if (FU) {
         const std::array<double, 2> here = view.project(point.position).value_or(std::array{double(x), double(y)});
         const Vec2 f = later.motion(point, here), b = earlier.motion(point, here);
-        FU[i] = f.x; FV[i] = f.y; BU[i] = b.x; BV[i] = b.y;
+        FU[i] = f.x;
+        FV[i] = f.y;
+        BU[i] = b.x;
+        BV[i] = b.y;
       }
     }
   });

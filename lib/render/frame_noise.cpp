@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr double kEnough = 1024;          ///< pixels: their RMS is known within 2.2 % where noise is normal
+constexpr double kEnough = 1024;  ///< pixels: their RMS is known within 2.2 % where noise is normal
 constexpr int kLeastEdge = 5, kMostEdge = 8;
 
 Rgbd total(const Layers& layers) {
@@ -54,9 +54,11 @@ class Mean {
  private:
   void root(double sum, double square, double& value, double& error) const {
     if (count_ < 2) return;
-    const double n = double(count_), mean = std::max(0.0, sum / n), variance = std::max(0.0, square / n - sum * sum / (n * n)) / (n - 1);
+    const double n = double(count_), mean = std::max(0.0, sum / n),
+                 variance = std::max(0.0, square / n - sum * sum / (n * n)) / (n - 1);
     value = std::sqrt(mean);
-    error = value > 0 ? std::sqrt(variance) / (2 * value) : std::sqrt(std::sqrt(variance));   // of a root: d sqrt(m) = dm / (2 sqrt(m))
+    error = value > 0 ? std::sqrt(variance) / (2 * value)
+                      : std::sqrt(std::sqrt(variance));  // of a root: d sqrt(m) = dm / (2 sqrt(m))
   }
   std::size_t count_ = 0;
   Squares sum_, square_;
@@ -69,7 +71,8 @@ struct ImageAndLayers {
   template <class Error>
   void add(const Error& error) {
     image.add(error([](const Layers& layers) { return total(layers); }));
-    for (std::size_t l = 0; l < kLayerCount; ++l) layer[l].add(error([l](const Layers& layers) { return Rgbd(layers.value[l]); }));
+    for (std::size_t l = 0; l < kLayerCount; ++l)
+      layer[l].add(error([l](const Layers& layers) { return Rgbd(layers.value[l]); }));
   }
   FrameNoise noise(double exposure, std::size_t pixels) const {
     FrameNoise noise{image.noise(), {}, exposure, pixels};
@@ -100,8 +103,12 @@ double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t>
 }
 
 NoiseCheck::NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask)
-    : seed_(mix64(seed ^ 0x6e6f697365ull)), mask_(mask), width_(view.width()), height_(view.height()),
-      edge_(std::clamp(int(std::sqrt(double(width_) * height_ / kEnough)), kLeastEdge, kMostEdge)), columns_(width_ / edge_) {
+    : seed_(mix64(seed ^ 0x6e6f697365ull)),
+      mask_(mask),
+      width_(view.width()),
+      height_(view.height()),
+      edge_(std::clamp(int(std::sqrt(double(width_) * height_ / kEnough)), kLeastEdge, kMostEdge)),
+      columns_(width_ / edge_) {
   again_.resize(std::size_t(columns_) * std::size_t(height_ / edge_));
   again_halves_.resize(again_.size());
 }
@@ -147,7 +154,8 @@ std::array<double, kLayerCount> NoiseCheck::shares(std::vector<Twice>& pixels) {
   ShareSums all;
   for (std::size_t l = 0; l < kLayerCount; ++l) {
     double mean = 0, typical = 0;
-    for (const Twice& pixel : pixels) mean += channel_mean(Rgbd(pixel.once.value[l]) + Rgbd(pixel.again.value[l])) / double(pixels.size());
+    for (const Twice& pixel : pixels)
+      mean += channel_mean(Rgbd(pixel.once.value[l]) + Rgbd(pixel.again.value[l])) / double(pixels.size());
     const auto seen = [&](const Twice& pixel) {
       const double level = channel_mean(Rgbd(pixel.once.value[l]) + Rgbd(pixel.again.value[l])) + mean;
       return level > 0 ? std::pow(level, -kSeen) : 0;
@@ -157,7 +165,8 @@ std::array<double, kLayerCount> NoiseCheck::shares(std::vector<Twice>& pixels) {
     for (const Twice& pixel : pixels) {
       const double local = around(pixel) + typical;
       if (!(local > 0)) continue;
-      const Rgbd off = Rgbd(pixel.once.value[l]) - Rgbd(pixel.again.value[l]), d(pixel.first.value[l]), e(pixel.second.value[l]);
+      const Rgbd off = Rgbd(pixel.once.value[l]) - Rgbd(pixel.again.value[l]), d(pixel.first.value[l]),
+                 e(pixel.second.value[l]);
       const double weight = seen(pixel) / std::sqrt(local), square = weight * channel_mean(d * d + e * e);
       sums[l].variance += weight * channel_mean(off * off);
       sums[l].square += square;
@@ -168,7 +177,8 @@ std::array<double, kLayerCount> NoiseCheck::shares(std::vector<Twice>& pixels) {
   std::array<double, kLayerCount> shares;
   const double pooled = all.square > 0 ? std::min(1.0, all.variance / all.square) : 1;
   for (std::size_t l = 0; l < kLayerCount; ++l) {
-    const double count = sums[l].count(), own = sums[l].square > 0 ? std::min(1.0, sums[l].variance / sums[l].square) : pooled;
+    const double count = sums[l].count(),
+                 own = sums[l].square > 0 ? std::min(1.0, sums[l].variance / sums[l].square) : pooled;
     shares[l] = (count * own + kAlike * pooled) / (count + kAlike);
   }
   return shares;

@@ -15,15 +15,15 @@ namespace tempolux {
 
 /// RMSE that noise leaves, over pixels and channels, with its standard error; below 0: not known.
 struct Noise {
-  double linear = -1, linear_error = 0;   ///< W/m^2/sr
-  double codes = -1, codes_error = 0;     ///< 8-bit sRGB codes, 0 to 255, at FrameNoise::exposure
+  double linear = -1, linear_error = 0;  ///< W/m^2/sr
+  double codes = -1, codes_error = 0;    ///< 8-bit sRGB codes, 0 to 255, at FrameNoise::exposure
 };
 
 struct FrameNoise {
   Noise image;
-  std::array<Noise, kLayerCount> layer;   ///< each layer looked at alone, at the exposure of the image
-  double exposure = 0;                    ///< factor that puts the median of pixels' mean channels at .18
-  std::size_t pixels = 0;                 ///< that were rendered twice
+  std::array<Noise, kLayerCount> layer;  ///< each layer looked at alone, at the exposure of the image
+  double exposure = 0;                   ///< factor that puts the median of pixels' mean channels at .18
+  std::size_t pixels = 0;                ///< that were rendered twice
   bool known() const { return pixels > 1; }
 };
 
@@ -57,17 +57,20 @@ class NoiseCheck {
   template <class AsSampled>
   FrameNoise measure(const std::vector<Layers>& picture, const AsSampled& as_sampled) const {
     std::vector<Triple> triples;
-    for_each_pixel_of_grid([&](std::size_t pixel, std::uint32_t slot) { triples.push_back({picture[pixel], as_sampled(pixel), again_[slot].sum()}); });
+    for_each_pixel_of_grid([&](std::size_t pixel, std::uint32_t slot) {
+      triples.push_back({picture[pixel], as_sampled(pixel), again_[slot].sum()});
+    });
     return measure(triples, exposure_of(picture, mask_));
   }
 
   /// Halves of the second rendering's samples. Thread-safe for different slots.
   SampleHalves& again_halves(std::uint32_t slot) { return again_halves_[slot]; }
-  /// By layer the variance of a pixel's mean over the mean square of SampleHalves::difference, at most 1. With x = as_sampled(pixel), y the
-  /// second rendering's mean, d and e their differences, that is the sum of (x - y)^2 over the sum of d^2 + e^2, in squares of sRGB codes
-  /// at x + y plus the layer's mean. A pixel counts by the inverse root of the mean of d^2 around it and over the picture, so that the few
-  /// noisiest do not decide alone. The ratio of n pixels that count errs by about sqrt(3 / n) of itself, and layers differ by a factor of
-  /// about 2, whose logarithm has the variance .5: so the ratio of all layers together counts as 6 pixels in each.
+  /// By layer the variance of a pixel's mean over the mean square of SampleHalves::difference, at most 1. With x =
+  /// as_sampled(pixel), y the second rendering's mean, d and e their differences, that is the sum of (x - y)^2 over the
+  /// sum of d^2 + e^2, in squares of sRGB codes at x + y plus the layer's mean. A pixel counts by the inverse root of
+  /// the mean of d^2 around it and over the picture, so that the few noisiest do not decide alone. The ratio of n
+  /// pixels that count errs by about sqrt(3 / n) of itself, and layers differ by a factor of about 2, whose logarithm
+  /// has the variance .5: so the ratio of all layers together counts as 6 pixels in each.
   template <class AsSampled>
   std::array<double, kLayerCount> shares(const std::vector<SampleHalves>& halves, const AsSampled& as_sampled) const {
     std::vector<Twice> pixels;

@@ -16,7 +16,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 4096;   ///< pixels
+constexpr std::size_t kChunk = 4096;  ///< pixels
 
 /// Samples [first, first + count) of every pixel of one half, joined to what `image` holds already.
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
@@ -25,8 +25,9 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   FrameOptions of_pass = options;
   of_pass.seed = seed;
   for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count}, image.halves_of(pixel), counts), first, count,
-         image.pixels[pixel]);
+    join(sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count},
+                      image.halves_of(pixel), counts),
+         first, count, image.pixels[pixel]);
   });
   image.samples += count;
 }
@@ -42,7 +43,8 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
     const std::uint32_t slot = check.slot(x, y);
     if (slot == kNone) return;
     Layers mean;
-    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, &check.again_halves(slot), counts), 0, options.samples, mean);
+    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, &check.again_halves(slot), counts), 0, options.samples,
+         mean);
     check.again(slot).own = mean;
   });
   const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };
@@ -94,8 +96,8 @@ void join_halves(RenderedFrame& frame) {
   frame.own_rmse = std::sqrt(difference2 / 4 / double(std::max<std::size_t>(1, 3 * a.pixels.size())));
 }
 
-/// All far from any user's seeds but that of a frame itself. A reference has two of its own: were one half made of the numbers of the
-/// frames that it judges, frames of equal seed and samples would seem better than they are.
+/// All far from any user's seeds but that of a frame itself. A reference has two of its own: were one half made of the
+/// numbers of the frames that it judges, frames of equal seed and samples would seem better than they are.
 std::array<std::uint64_t, 2> seeds_of_halves(const FrameOptions& options) {
   constexpr std::uint64_t one = 0x68616c665f6f6e65ull, two = 0x68616c665f74776full, second = 0x7365636f6e645f32ull;
   if (options.halves) return {options.seed ^ one, options.seed ^ two};
@@ -135,17 +137,20 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   return frame;
 }
 
-void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels, Image& image) {
+void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels,
+                      Image& image) {
   if (base.width != image.width || base.height != image.height)
-    throw InputError("--base: " + std::to_string(base.width) + "x" + std::to_string(base.height) + " pixels, but --size is " +
-                     std::to_string(image.width) + "x" + std::to_string(image.height) + "; render both at one size");
+    throw InputError("--base: " + std::to_string(base.width) + "x" + std::to_string(base.height) +
+                     " pixels, but --size is " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                     "; render both at one size");
   for (std::size_t i = 0; i < image.channels.size(); ++i) {
     Channel& channel = image.channels[i];
     const Channel* from = base.find(channel.name);
     if (!from && i < data_channels) continue;
     const bool known = !from && channel.name.find(".noise.") != std::string::npos;
     if (!known && (!from || from->values.size() != channel.values.size()))
-      throw InputError("--base: has no channel " + channel.name + "; ask for fewer with --channels, or render the base with it");
+      throw InputError("--base: has no channel " + channel.name +
+                       "; ask for fewer with --channels, or render the base with it");
     for (std::size_t p = 0; p < mask.size(); ++p) {
       if (mask[p]) continue;
       if (channel.ids.empty()) channel.values[p] = known ? 0 : from->values[p];
@@ -170,12 +175,13 @@ void add_colour_channels(const LayerImage& layers, const std::vector<std::string
       image.add("A");
     }
     for (std::size_t l = 0; l < kLayerCount; ++l)
-      if ((name == "layers" && (layers.media || l != std::size_t(Layer::volume))) || name == kLayerNames[l]) add(std::string(kLayerNames[l]) + ".", l);
+      if ((name == "layers" && (layers.media || l != std::size_t(Layer::volume))) || name == kLayerNames[l])
+        add(std::string(kLayerNames[l]) + ".", l);
   }
   parallel_chunks(layers.pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
     for (const auto& [channel, layer] : colours) {
       float *const r = image.channels[channel].values.data(), *const g = image.channels[channel + 1].values.data(),
-            *const b = image.channels[channel + 2].values.data();
+                   *const b = image.channels[channel + 2].values.data();
       for (std::size_t p = first; p < last; ++p) {
         const Rgb colour = layer == kSum ? total(layers.pixels[p]) : layers.pixels[p].value[layer];
         r[p] = colour.r;

@@ -13,14 +13,17 @@ namespace tempolux {
 void add_influence_channels(const RenderScene& scene, const CameraView& view, const LocalisedLight* light,
                             const std::vector<std::string>& channels, Image& image) {
   if (std::find(channels.begin(), channels.end(), "influence") == channels.end()) return;
-  if (!light) throw InputError("--channels influence: only a cache of localised gathering knows it (irradcache-build records --update)");
+  if (!light)
+    throw InputError(
+        "--channels influence: only a cache of localised gathering knows it (irradcache-build records --update)");
   image.add("influence");
   std::vector<float>& share = image.add("blend").values;
   std::vector<float>& influence = image.find("influence")->values;
   const auto width = std::size_t(view.width());
   parallel_chunks(share.size(), 512, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
-      const std::optional<SeenPoint> seen = seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});
+      const std::optional<SeenPoint> seen =
+          seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});
       if (!seen) continue;
       const float here = light->influence(seen->surface, seen->normal);
       influence[p] = std::isfinite(here) ? here : light->thresholds().high;

@@ -15,10 +15,12 @@ std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geomet
   if (mesh) return mesh->irradiance(surface, geometric);
   if (localised) return localised->at(surface, shading);
   if (records) return records->irradiance(surface.position, shading);
-  return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
+  return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric))
+                                            : std::nullopt;
 }
 
-std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
+std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 geometric, float distance,
+                                                 float u) const {
   if (!points) return std::nullopt;
   const PointLookup::Light* light = points->find(hit.position, geometric);
   if (!light || !points->is_even_indirect(*light) || PointLookup::is_near(*light, distance, u)) return std::nullopt;

@@ -11,27 +11,28 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kMostCells = 4096;   ///< 9 MB
-constexpr std::size_t kMostPlaces = 16;    ///< of a cell
-constexpr float kAcrossSeen = 20;          ///< cells along what is seen: 15 are as good, 60 too many to learn (S8)
-constexpr int kPixelsPerRay = 450;         ///< of the picture, for a ray of each cell: learning is to stay a small part of a small picture
-constexpr double kLearned = 0.8;           ///< of the samples; the rest as if nothing were known
-constexpr double kFromFirst = 0.6;         ///< of the second pass' rays: by what the first one learned
-constexpr int kBlur = 2;                   ///< parts of the sky about one that have a say in it
-constexpr double kPrior = 0.5;             ///< rays' worth of what the whole sky sends there
-constexpr double kBeside = 0.5;            ///< weight of each of the six cells beside one, and of parts of the sky beside one
+constexpr std::size_t kMostCells = 4096;  ///< 9 MB
+constexpr std::size_t kMostPlaces = 16;   ///< of a cell
+constexpr float kAcrossSeen = 20;         ///< cells along what is seen: 15 are as good, 60 too many to learn (S8)
+constexpr int kPixelsPerRay =
+    450;  ///< of the picture, for a ray of each cell: learning is to stay a small part of a small picture
+constexpr double kLearned = 0.8;    ///< of the samples; the rest as if nothing were known
+constexpr double kFromFirst = 0.6;  ///< of the second pass' rays: by what the first one learned
+constexpr int kBlur = 2;            ///< parts of the sky about one that have a say in it
+constexpr double kPrior = 0.5;      ///< rays' worth of what the whole sky sends there
+constexpr double kBeside = 0.5;     ///< weight of each of the six cells beside one, and of parts of the sky beside one
 
 /// Light of one kind or from one part of the sky, sums over rays [W/m^2, mean channel].
 struct Light {
-  double arrived = 0;   ///< what reached the place, times the cosine
-  double sent = 0;      ///< what would, were nothing in the way and every place turned to it
+  double arrived = 0;  ///< what reached the place, times the cosine
+  double sent = 0;     ///< what would, were nothing in the way and every place turned to it
 
   void add(const Light& more, double times) {
     arrived += times * more.arrived;
     sent += times * more.sent;
   }
-  /// Of places in a cell some get the light and others do not. Samples err least over all of them if its share of the samples is in
-  /// proportion to the root of its mean square: sqrt(arrived / sent) of it, where it arrives or not. [1]
+  /// Of places in a cell some get the light and others do not. Samples err least over all of them if its share of the
+  /// samples is in proportion to the root of its mean square: sqrt(arrived / sent) of it, where it arrives or not. [1]
   double reach() const { return sent > 0 ? std::sqrt(arrived / sent) : 0; }
 };
 
@@ -65,7 +66,7 @@ float extent_of(const std::vector<SeenPlace>& places) {
 std::vector<std::vector<Place>> by_cell(std::vector<Place> places) {
   std::erase_if(places, [](const Place& place) { return place.cell == 0; });
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
-  std::vector<std::pair<std::size_t, std::size_t>> runs;   // first place, how many
+  std::vector<std::pair<std::size_t, std::size_t>> runs;  // first place, how many
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (i == 0 || places[i].cell != places[i - 1].cell) runs.push_back({i, 0});
     ++runs.back().second;
@@ -75,7 +76,8 @@ std::vector<std::vector<Place>> by_cell(std::vector<Place> places) {
   std::sort(runs.begin(), runs.end());
   std::vector<std::vector<Place>> cells;
   for (const auto& [first, count] : runs)
-    cells.emplace_back(places.begin() + std::ptrdiff_t(first), places.begin() + std::ptrdiff_t(first + std::min(count, kMostPlaces)));
+    cells.emplace_back(places.begin() + std::ptrdiff_t(first),
+                       places.begin() + std::ptrdiff_t(first + std::min(count, kMostPlaces)));
   return cells;
 }
 
@@ -89,7 +91,8 @@ class Learner {
     const int rays = rays_;
     for (int i = 0; i < rays; ++i) {
       const Place& place = places[std::size_t(i) % places.size()];
-      const PathRandom random(options_.seed + std::uint64_t(pass) * 0x9e3779b97f4a7c15ull, place.cell * 1024 + std::uint64_t(i));
+      const PathRandom random(options_.seed + std::uint64_t(pass) * 0x9e3779b97f4a7c15ull,
+                              place.cell * 1024 + std::uint64_t(i));
       if (grid_.sky()) add_sky(place, before, random, found);
       add_other(place, random, found);
     }
@@ -97,7 +100,8 @@ class Learner {
   }
 
  private:
-  /// One ray to the sky: by what is known, by its light and area, or by the cosine; weighed by the density of all three.
+  /// One ray to the sky: by what is known, by its light and area, or by the cosine; weighed by the density of all
+  /// three.
   void add_sky(const Place& place, const LightGrid::Cell* before, const PathRandom& random, Found& found) const {
     const double known = before ? kFromFirst : 0, even = 0.5 * (1 - known);
     const double choice = double(random.get1(0, Purpose::light_choice));
@@ -106,30 +110,38 @@ class Learner {
     Vec3 wi;
     if (choice < known + even) {
       double density;
-      if (choice < known ? !grid_.sample_sky(*before, u.x, u.y, sample, density) : !grid_.sky()->sample(double(u.x), double(u.y), sample)) return;
+      if (choice < known ? !grid_.sample_sky(*before, u.x, u.y, sample, density)
+                         : !grid_.sky()->sample(double(u.x), double(u.y), sample))
+        return;
       wi = sample.direction;
     } else {
       wi = Frame(place.normal).to_world(sample_hemisphere_cos(u));
     }
     const double cosine = double(dot(wi, place.normal));
-    const double density = (known > 0 ? known * grid_.sky_density(*before, wi) : 0) + even * grid_.sky()->pdf_solid_angle(wi) +
+    const double density = (known > 0 ? known * grid_.sky_density(*before, wi) : 0) +
+                           even * grid_.sky()->pdf_solid_angle(wi) +
                            (1 - known - even) * std::max(0.0, cosine) / double(kPi);
     if (!(density > 0)) return;
-    note(place, wi, double(channel_mean(scene_.lights.environment(wi))) / density,
-         [&] { return scene_.tracer.occluded(spawn_ray(place.surface, wi)); }, found.sky[grid_.part_of(wi)]);
+    note(
+        place, wi, double(channel_mean(scene_.lights.environment(wi))) / density,
+        [&] { return scene_.tracer.occluded(spawn_ray(place.surface, wi)); }, found.sky[grid_.part_of(wi)]);
   }
 
   /// One of the other lights each way: a sample of those that are somewhere, and every sun.
   void add_other(const Place& place, const PathRandom& random, Found& found) const {
     for (const Lights::Sun& sun : suns_)
-      note(place, sun.wi, double(channel_mean(sun.irradiance)),
-           [&] { return scene_.tracer.occluded(spawn_ray(place.surface, sun.wi)); }, found.suns);
+      note(
+          place, sun.wi, double(channel_mean(sun.irradiance)),
+          [&] { return scene_.tracer.occluded(spawn_ray(place.surface, sun.wi)); }, found.suns);
     LightSample light;
-    if (!scene_.lights.sample(place.surface.position, place.normal, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), light) ||
+    if (!scene_.lights.sample(place.surface.position, place.normal, random.get1(1, Purpose::light_choice),
+                              random.get2(1, Purpose::light_point), light) ||
         light.distant)
       return;
-    note(place, light.wi, double(channel_mean(light.radiance)),
-         [&] { return scene_.tracer.occluded(spawn_shadow_ray(place.surface, light.position, light.position_offset)); }, found.lamps);
+    note(
+        place, light.wi, double(channel_mean(light.radiance)),
+        [&] { return scene_.tracer.occluded(spawn_shadow_ray(place.surface, light.position, light.position_offset)); },
+        found.lamps);
   }
 
   template <class Occluded>
@@ -145,8 +157,8 @@ class Learner {
   std::vector<Lights::Sun> suns_;
 };
 
-/// What a part and those at most kBlur away in the numbers of directions got: few rays must not decide on single parts. And a
-/// little of what all got, where no ray went.
+/// What a part and those at most kBlur away in the numbers of directions got: few rays must not decide on single parts.
+/// And a little of what all got, where no ray went.
 Light blurred(const std::array<Light, LightGrid::kParts>& sky, const Light& all, std::uint32_t part) {
   constexpr int w = LightGrid::kAcross, h = LightGrid::kDown;
   Light sum;
@@ -154,13 +166,14 @@ Light blurred(const std::array<Light, LightGrid::kParts>& sky, const Light& all,
   const int row = int(part) / w, column = int(part) % w;
   for (int r = std::max(0, row - kBlur); r <= std::min(h - 1, row + kBlur); ++r)
     for (int c = column - kBlur; c <= column + kBlur; ++c)
-      sum.add(sky[std::size_t(r * w + (c + w) % w)], r == row && c == column ? 1 : kBeside / (1 + std::abs(r - row) + std::abs(c - column)));
+      sum.add(sky[std::size_t(r * w + (c + w) % w)],
+              r == row && c == column ? 1 : kBeside / (1 + std::abs(r - row) + std::abs(c - column)));
   return sum;
 }
 
 /// Light that each part of the sky sends [W/m^2, mean channel].
 std::vector<double> light_of_parts(const LightGrid& grid) {
-  constexpr std::uint32_t kSide = 4;   // squared: directions of a part
+  constexpr std::uint32_t kSide = 4;  // squared: directions of a part
   std::vector<double> light(LightGrid::kParts);
   if (grid.sky())
     for (std::uint32_t k = 0; k < LightGrid::kParts; ++k)
@@ -169,20 +182,24 @@ std::vector<double> light_of_parts(const LightGrid& grid) {
         const double u1 = (k / LightGrid::kAcross + (i / kSide + 0.5) / kSide) / LightGrid::kDown,
                      u2 = (k % LightGrid::kAcross + (i % kSide + 0.5) / kSide) / LightGrid::kAcross;
         if (grid.sky()->sample(u1, u2, sample))
-          light[k] += double(channel_mean(sample.radiance)) / sample.pdf_solid_angle / (kSide * kSide * LightGrid::kParts);
+          light[k] +=
+              double(channel_mean(sample.radiance)) / sample.pdf_solid_angle / (kSide * kSide * LightGrid::kParts);
       }
   return light;
 }
 
 /// Shares of samples: most by what reaches the cell, the rest even over the kinds of light there are and over the sky.
-LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, const Lights& lights, bool suns, bool lamps) {
+LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, const Lights& lights, bool suns,
+                        bool lamps) {
   const bool sky = lights.has_environment();
   std::array<double, LightGrid::kParts> weights;
   double skylight = 0;
   Light all_sky;
   for (const Light& part : found.sky) all_sky.add(part, 1);
-  for (std::uint32_t k = 0; k < LightGrid::kParts; ++k) skylight += weights[k] = parts[k] * blurred(found.sky, all_sky, k).reach();
-  const double sunlight = found.suns.sent / found.rays * found.suns.reach(), lamplight = found.lamps.sent / found.rays * found.lamps.reach();
+  for (std::uint32_t k = 0; k < LightGrid::kParts; ++k)
+    skylight += weights[k] = parts[k] * blurred(found.sky, all_sky, k).reach();
+  const double sunlight = found.suns.sent / found.rays * found.suns.reach(),
+               lamplight = found.lamps.sent / found.rays * found.lamps.reach();
   const double kinds = double(sky) + double(suns) + double(lamps), all = skylight + sunlight + lamplight;
   const auto share = [&](bool exists, double of) {
     return exists ? float((all > 0 ? kLearned * of / all : kLearned / kinds) + (1 - kLearned) / kinds) : 0;
@@ -190,10 +207,11 @@ LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, co
   LightGrid::Cell cell;
   cell.sky = share(sky, skylight);
   cell.suns = share(suns, sunlight);
-  if (!lamps) cell.suns = suns ? 1 - cell.sky : 0;   // rounding leaves nothing over
+  if (!lamps) cell.suns = suns ? 1 - cell.sky : 0;  // rounding leaves nothing over
   double sum = 0;
   for (std::uint32_t k = 0; k < LightGrid::kParts; ++k) {
-    sum += (skylight > 0 ? kLearned * weights[k] / skylight : kLearned / LightGrid::kParts) + (1 - kLearned) / LightGrid::kParts;
+    sum += (skylight > 0 ? kLearned * weights[k] / skylight : kLearned / LightGrid::kParts) +
+           (1 - kLearned) / LightGrid::kParts;
     cell.end[k] = float(sum);
   }
   cell.end.back() = 1;
@@ -215,7 +233,8 @@ std::vector<Found> joined(const std::vector<std::uint64_t>& keys, const std::vec
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
           const auto at = std::lower_bound(keys.begin(), keys.end(), LightGrid::beside(keys[i], axis, step));
-          if (at != keys.end() && *at == LightGrid::beside(keys[i], axis, step)) add(std::size_t(at - keys.begin()), kBeside);
+          if (at != keys.end() && *at == LightGrid::beside(keys[i], axis, step))
+            add(std::size_t(at - keys.begin()), kBeside);
         }
     }
   });
@@ -224,7 +243,8 @@ std::vector<Found> joined(const std::vector<std::uint64_t>& keys, const std::vec
 
 }  // namespace
 
-std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<const CameraView> views, const LearnOptions& options) {
+std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<const CameraView> views,
+                                        const LearnOptions& options) {
   if (!scene.lights.has_distant()) return nullptr;
   SeenPlaces seen;
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -234,8 +254,10 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<cons
   }
   const float extent = extent_of(seen.places);
   const auto exist = std::ranges::count_if(seen.places, &SeenPlace::exists);
-  if (!(extent > 0) || double(std::ranges::count_if(seen.places, &SeenPlace::open)) > kMostOpen * double(exist)) return nullptr;
-  auto grid = std::make_unique<LightGrid>(extent / kAcrossSeen, scene.lights.has_environment() ? scene.frame().environment : nullptr);
+  if (!(extent > 0) || double(std::ranges::count_if(seen.places, &SeenPlace::open)) > kMostOpen * double(exist))
+    return nullptr;
+  auto grid = std::make_unique<LightGrid>(extent / kAcrossSeen,
+                                          scene.lights.has_environment() ? scene.frame().environment : nullptr);
   std::vector<Place> places;
   for (const std::vector<SeenPlace>* from : {&seen.places, &seen.beyond})
     for (const SeenPlace& place : *from)
@@ -244,7 +266,8 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<cons
   std::vector<std::uint64_t> keys;
   for (const std::vector<Place>& cell : cells) keys.push_back(cell.front().cell);
 
-  const int rays = int(std::clamp(std::int64_t(views[0].width()) * views[0].height() / kPixelsPerRay, std::int64_t(1), std::int64_t(options.rays)));   // 65536 x 65536 is no int
+  const int rays = int(std::clamp(std::int64_t(views[0].width()) * views[0].height() / kPixelsPerRay, std::int64_t(1),
+                                  std::int64_t(options.rays)));  // 65536 x 65536 is no int
   const Learner learner(scene, options, rays, *grid);
   const bool suns = !scene.lights.suns().empty(), lamps = scene.lights.has_placed();
   const std::vector<double> parts = light_of_parts(*grid);

@@ -13,9 +13,9 @@ namespace tempolux {
 
 /// Irradiance of kind indirect [W/m^2] of a frame by localised gathering:
 ///     E = f E_y + (1 - f) E_t
-/// E_y interpolated between records gathered for the frame; E_t between static records that carry what movers change, their
-/// gradients those of the static irradiance, cut at 0; f the gathered share of the influence there, 1 on what moves.
-/// Method: docs/methods/dynamic.md. Thread-safe.
+/// E_y interpolated between records gathered for the frame; E_t between static records that carry what movers change,
+/// their gradients those of the static irradiance, cut at 0; f the gathered share of the influence there, 1 on what
+/// moves. Method: docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
   /// changes[i] of standing[i]. least_cosine: in which records of both count.
@@ -33,7 +33,7 @@ class LocalisedLight {
 
  private:
   InfluenceField influence_;
-  RecordStore updated_, gathered_;   ///< E_t, E_y
+  RecordStore updated_, gathered_;  ///< E_t, E_y
   MovingObjects moving_;
 };
 

@@ -11,15 +11,15 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRouletteFrom = 3;     ///< bounces that always survive
-constexpr float kLargestSurvival = 0.998f;     ///< so that paths in a lossless box end, after 500 bounces in the mean
+constexpr std::uint32_t kRouletteFrom = 3;  ///< bounces that always survive
+constexpr float kLargestSurvival = 0.998f;  ///< so that paths in a lossless box end, after 500 bounces in the mean
 
-/// Which of a surface's lobes light is sampled for, and the factors by which their densities are higher than the Bsdf's where
-/// the path forks: both lobes are followed then.
+/// Which of a surface's lobes light is sampled for, and the factors by which their densities are higher than the Bsdf's
+/// where the path forks: both lobes are followed then.
 struct SampledLobes {
   bool diffuse, specular;
   float times_diffuse = 1, times_specular = 1;
-  float left = 1;   ///< share of what the Lambert lobe scatters that counts (KnownHere)
+  float left = 1;  ///< share of what the Lambert lobe scatters that counts (KnownHere)
   bool forks = false;
 
   /// diffuse_probability: with which the Bsdf draws the Lambert lobe, in (0, 1).
@@ -30,8 +30,8 @@ struct SampledLobes {
   }
 };
 
-/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the sample for the side
-/// that the normal is on; `share`: with which probability it was that side.
+/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the
+/// sample for the side that the normal is on; `share`: with which probability it was that side.
 struct LightAdder {
   const RenderScene& scene;
   const ShadingPoint& x;
@@ -48,7 +48,8 @@ struct LightAdder {
   bool draw_side(float& share) const {
     const float share_beyond = x.bsdf.light_share_beyond();
     share = 1;
-    if (!(share_beyond > 0)) [[likely]] return false;
+    if (!(share_beyond > 0)) [[likely]]
+      return false;
     const bool beyond = random.get1(bounce, Purpose::light_choice) < share_beyond;
     share = beyond ? share_beyond : 1 - share_beyond;
     return beyond;
@@ -58,7 +59,8 @@ struct LightAdder {
     float share;
     const bool beyond = draw_side(share);
     LightSample light;
-    if (scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light, from))
+    if (scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal,
+                            random.get2(bounce, Purpose::light_point), light, from))
       add(light, beyond, share, result, shadow_rays);
   }
   /// By a directional light.
@@ -66,13 +68,15 @@ struct LightAdder {
     float share;
     const bool beyond = draw_side(share);
     LightSample light;
-    if (scene.lights.sample_sun(x.surface.position, beyond ? -x.normal : x.normal, random.get1(bounce, Purpose::sun), light))
+    if (scene.lights.sample_sun(x.surface.position, beyond ? -x.normal : x.normal, random.get1(bounce, Purpose::sun),
+                                light))
       add(light, beyond, share, result, shadow_rays);
   }
   void add(const LightSample& light, bool beyond, float share, Layers& result, std::uint64_t& shadow_rays) const;
 };
 
-void LightAdder::add(const LightSample& light, bool beyond, float share, Layers& result, std::uint64_t& shadow_rays) const {
+void LightAdder::add(const LightSample& light, bool beyond, float share, Layers& result,
+                     std::uint64_t& shadow_rays) const {
   const bool has_diffuse = lobes.diffuse && x.bsdf.has_diffuse(), has_specular = specular();
   if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
   const Bsdf::Direction from = x.bsdf.along(x.frame.to_local(light.wi));
@@ -90,22 +94,23 @@ void LightAdder::add(const LightSample& light, bool beyond, float share, Layers&
   const float left = transmittance(scene.tracer, shadow, {random.hashed(), bounce, way_shadow});
   if (!(left > 0)) return;
   Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share) * left;
-  if (inside.any()) arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
+  if (inside.any())
+    arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;
   result[path.after(false).layer()] += arriving * glossy;
 }
 
 /// What a path knows of the light beyond its last event D, a Lambert lobe or a collision; and how wide it looks.
 struct Beyond {
-  bool matte = false;            ///< there was such an event
-  bool caustic_known = false;    ///< what arrives there by events S
-  bool indirect_known = false;   ///< what arrives there by events D
-  bool specular = false;         ///< events S since then
-  bool low = false;              ///< bright points were sampled explicitly there: a matte hit brings the rest
-  /// m: how wide the rays of the scatterings so far have spread, measured as by the way from a Lambert lobe: that way itself since the last
-  /// event D, nothing as long as there was none but smooth mirrors and glass.
+  bool matte = false;           ///< there was such an event
+  bool caustic_known = false;   ///< what arrives there by events S
+  bool indirect_known = false;  ///< what arrives there by events D
+  bool specular = false;        ///< events S since then
+  bool low = false;             ///< bright points were sampled explicitly there: a matte hit brings the rest
+  /// m: how wide the rays of the scatterings so far have spread, measured as by the way from a Lambert lobe: that way
+  /// itself since the last event D, nothing as long as there was none but smooth mirrors and glass.
   float width = 0;
-  float spread = 0;              ///< growth of `width`, m/m
+  float spread = 0;  ///< growth of `width`, m/m
 
   void advance(float way) { width += spread * way; }
   /// By gloss of this density [1/sr]. A Lambert lobe has 1/pi in its middle: its rays spread by a metre a metre.
@@ -118,17 +123,18 @@ struct Beyond {
 /// Light at x that is known; its Lambert lobe then needs no more of it. Radiance to the eye goes to `result`.
 struct KnownHere {
   bool indirect = false, direct = false, caustic = false;
-  bool low = false;   ///< bright points were sampled explicitly
-  float left = 1;     ///< share of the light of its Lambert lobe that the place before has not sampled explicitly
+  bool low = false;  ///< bright points were sampled explicitly
+  float left = 1;    ///< share of the light of its Lambert lobe that the place before has not sampled explicitly
 };
 
-KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 smooth, const Beyond& beyond, const Rgb& throughput,
-                          const EyePath& path, float u, const PathRandom& random, Layers& result, RayCounts& counts) {
+KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 smooth, const Beyond& beyond,
+                          const Rgb& throughput, const EyePath& path, float u, const PathRandom& random, Layers& result,
+                          RayCounts& counts) {
   KnownHere here;
   if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.width, u);
   // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
   const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.left);
-  const Layer layer = path.after(true).after(true).layer();   // indirect; or that of what the path saw before
+  const Layer layer = path.after(true).after(true).layer();  // indirect; or that of what the path saw before
   // Beside bright points those of known.told() hold the rest alone: then gloss, which has not sampled them, goes on.
   if (beyond.matte || (beyond.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::Told> told = known.told(x.surface, x.normal_geometric, beyond.width, u)) {
@@ -141,13 +147,15 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 s
     if (!known.bright) return;
     GatherCounts rays;
     const Bsdf* const coat = x.bsdf.has_specular() ? &x.bsdf : nullptr;
-    result[layer] += reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
+    result[layer] +=
+        reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
     counts.shadow += rays.shadow_rays;
     here.low = true;
   };
   if (known.has_caustic()) {
     here.caustic = true;
-    result[path.after(true).after(false).layer()] += reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+    result[path.after(true).after(false).layer()] +=
+        reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
   }
   if (beyond.matte) {
     sample_bright(1);
@@ -167,7 +175,7 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 s
 /// A path on its way.
 struct Walk {
   PixelRandom random;
-  Layers* result;              ///< the part of its light that it finds from here on
+  Layers* result;  ///< the part of its light that it finds from here on
   Ray ray;
   Hit hit;
   RayCone cone;
@@ -182,7 +190,8 @@ struct Walk {
 
 class EyeTracer {
  public:
-  EyeTracer(const RenderScene& scene, const KnownLight* known, const PathEffort& effort, RayCounts& counts, PathParts& parts)
+  EyeTracer(const RenderScene& scene, const KnownLight* known, const PathEffort& effort, RayCounts& counts,
+            PathParts& parts)
       : scene_(scene), known_(known), effort_(effort), counts_(counts), parts_(parts) {}
   void follow(Walk walk) const;
 
@@ -190,18 +199,22 @@ class EyeTracer {
   enum class Passed { through, scattered, ended };
   Passed pass_media(const Media& media, Walk& walk) const;
   bool scatter_in_medium(const MediumPoint& point, Walk& walk) const;
-  bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, Walk& walk) const;
+  bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
+               Walk& walk) const;
   bool survives(Walk& walk, float most) const;
   void go_on(const Ray& ray, Walk& walk) const;
   void add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const;
   void arrive(const SurfacePoint& point, Walk& walk) const;
-  bool leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, const SampledLobes& lobes, Walk& walk) const;
+  bool leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, const SampledLobes& lobes,
+             Walk& walk) const;
   bool step(Walk& walk) const;
-  void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const;
+  void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
+                 float times, const Walk& walk) const;
   void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
     as += rays;
-    if (walk.result == &parts_.onward) counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;   // nearest hit, surface, material:
-                                                                                                     // twice a shadow ray
+    if (walk.result == &parts_.onward)
+      counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;  // nearest hit, surface, material:
+                                                                   // twice a shadow ray
   }
 
   const RenderScene& scene_;
@@ -225,9 +238,10 @@ void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
   ++walk.bounce;
 }
 
-/// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path ends.
-bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
-                        Walk& walk) const {
+/// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path
+/// ends.
+bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
+                        float times, Walk& walk) const {
   const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
   if (is_black(next.weight) || (here.direct && next.diffuse)) return false;
   const Vec3 wi = x.frame.to_world(next.wi);
@@ -267,8 +281,10 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   if (is_black(walk.throughput)) return false;
   const WayBits bits{walk.random.hashed(), walk.bounce, way_shadow_of_medium};
   std::uint64_t shadow_rays = 0;
-  (*walk.result)[walk.path.layer()] += walk.throughput * scattered_lamp_light(scene_.tracer, scene_.lights, point,
-                                                                       walk.random.get2(walk.bounce, Purpose::light_point), true, bits, shadow_rays);
+  (*walk.result)[walk.path.layer()] +=
+      walk.throughput * scattered_lamp_light(scene_.tracer, scene_.lights, point,
+                                             walk.random.get2(walk.bounce, Purpose::light_point), true, bits,
+                                             shadow_rays);
   count(shadow_rays, counts_.shadow, walk);
   if (!survives(walk, kLargestSurvivalInMedia)) return false;
   const Vec3 travel = sample_hg(point.g, point.travel, walk.random.get2(walk.bounce, Purpose::phase));
@@ -290,12 +306,14 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   if (!collides(media, walk.ray, way, walk.random.hashed(), walk.bounce, collision)) return Passed::through;
   if (walk.bounce == 0) parts_.own.coverage = 1;
   if (walk.beyond.indirect_known) return Passed::ended;
-  if (walk.inside.any()) walk.throughput *= walk.inside.transmittance_over(scene_.frame().materials, length(collision.position - walk.ray.origin));
+  if (walk.inside.any())
+    walk.throughput *=
+        walk.inside.transmittance_over(scene_.frame().materials, length(collision.position - walk.ray.origin));
   return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
 }
 
-/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its samples agree, so
-/// that they need no more than camera rays do, of whose part they are.
+/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its
+/// samples agree, so that they need no more than camera rays do, of whose part they are.
 void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const {
   const auto adder = [&](const PixelRandom& random) {
     return LightAdder{scene_, x, lobes, walk.throughput, walk.path, walk.inside, random, walk.bounce};
@@ -314,7 +332,8 @@ void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_
 }
 
 /// From a first matte surface by event D, as often as asked for: the part `onward`.
-void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const {
+void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
+                          float times, const Walk& walk) const {
   if (here.indirect && here.caustic && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
     Walk next = walk;
@@ -334,18 +353,22 @@ void EyeTracer::arrive(const SurfacePoint& point, Walk& walk) const {
   walk.cone.advance(walk.hit.t);
   walk.beyond.advance(walk.hit.t);
   if (walk.beyond.light_counts())
-    (*walk.result)[walk.path.layer()] += walk.throughput * weighed_emission(scene_.lights, point, wo, walk.last, walk.cone.width);
+    (*walk.result)[walk.path.layer()] +=
+        walk.throughput * weighed_emission(scene_.lights, point, wo, walk.last, walk.cone.width);
 }
 
 /// The rays that go on from a surface: one, or one of each lobe where the path forks. False if walk ends.
-bool EyeTracer::leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, const SampledLobes& lobes, Walk& walk) const {
+bool EyeTracer::leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here,
+                      const SampledLobes& lobes, Walk& walk) const {
   const bool first_matte = walk.path.sharp() && x.bsdf.has_diffuse();
   float u_lobe = walk.random.get1(walk.bounce, Purpose::lobe), times = 1;
   if (lobes.forks) {
     const float diffuse = 1 / lobes.times_diffuse;
     walk.forked = true;
     Walk beside = walk;
-    if (scatter(x, material, here, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular, beside)) follow(beside);
+    if (scatter(x, material, here, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular,
+                beside))
+      follow(beside);
     u_lobe *= diffuse;
     times = lobes.times_diffuse;
   }
@@ -385,8 +408,9 @@ bool EyeTracer::step(Walk& walk) const {
   const ShadingPoint x(point, -walk.ray.direction, material);
   KnownHere here{only_specular, only_specular, only_specular};
   if (known_ && !only_specular && x.bsdf.has_diffuse())
-    here = add_known_light(*known_, x, smooth, walk.beyond, walk.throughput, walk.path, walk.random.get1(walk.bounce, Purpose::gather),
-                           PathRandom(walk.random.hashed().bits(walk.bounce, Purpose::gather), walk.bounce), result, counts_);
+    here = add_known_light(
+        *known_, x, smooth, walk.beyond, walk.throughput, walk.path, walk.random.get1(walk.bounce, Purpose::gather),
+        PathRandom(walk.random.hashed().bits(walk.bounce, Purpose::gather), walk.bounce), result, counts_);
   SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
   lobes.left = here.left;
   if (known_ && known_->forks() && !walk.forked && walk.path.sharp() && x.bsdf.forks())
@@ -405,12 +429,13 @@ PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const 
                          const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort) {
   PathParts parts;
   ++counts.camera;
-  EyeTracer(scene, known, effort, counts, parts).follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, {}, {}, {}});
+  EyeTracer(scene, known, effort, counts, parts)
+      .follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, {}, {}, {}});
   return parts;
 }
 
-Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
-                      RayCounts& counts, RayCone cone) {
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
+                      const KnownLight* known, RayCounts& counts, RayCone cone) {
   Hit first;
   scene.tracer.intersect(camera_ray, first);
   return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, effort_of(random.sample())).sum();

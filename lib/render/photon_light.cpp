@@ -9,17 +9,17 @@
 namespace tempolux {
 namespace {
 
-constexpr int kAsked = 8;   ///< FootprintOptions::asked
-constexpr std::size_t kRemembered = 4;   ///< places: a pixel may see several surfaces
-constexpr float kAlike = 0.999f;         ///< cosine between normals: of smooth surfaces within a pixel
-constexpr float kAlikeCoat = 0.01f;      ///< difference of what coats let in: that of two materials
+constexpr int kAsked = 8;               ///< FootprintOptions::asked
+constexpr std::size_t kRemembered = 4;  ///< places: a pixel may see several surfaces
+constexpr float kAlike = 0.999f;        ///< cosine between normals: of smooth surfaces within a pixel
+constexpr float kAlikeCoat = 0.01f;     ///< difference of what coats let in: that of two materials
 
 /// Caustic light that was looked up at a place.
 struct Remembered {
   const PhotonLight* of = nullptr;
   Vec3 position, geometric, shading;
-  float let_in = 1;      ///< of light along the normal, by the coat
-  float within = 0;      ///< m
+  float let_in = 1;  ///< of light along the normal, by the coat
+  float within = 0;  ///< m
   Rgb irradiance{0.0f};
 
   static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
@@ -60,9 +60,12 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   has_indirect_ = !options.caustic_only;
   if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
   if (!(options_.max_radius > 0) && indirect_.size() > 0)
-    options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
-  const FootprintOptions density{.neighbours = options.caustic_neighbours, .max_radius = options.caustic_radius, .asked = kAsked};
-  caustic_ = std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
+    options_.max_radius =
+        PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
+  const FootprintOptions density{
+      .neighbours = options.caustic_neighbours, .max_radius = options.caustic_radius, .asked = kAsked};
+  caustic_ =
+      std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   if (caustic_->empty()) caustic_.reset();
 }
 
@@ -75,7 +78,8 @@ Rgb PhotonLight::caustic(Vec3 position, const LitSurface& surface) const {
     if (place.holds_at(this, position, surface)) return place.irradiance;
   const Rgb irradiance = caustic_->estimate_around(position, surface, within);
   if (within > 0)
-    places[memory.next[memory.half]++ % kRemembered] = {this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), within, irradiance};
+    places[memory.next[memory.half]++ % kRemembered] = {
+        this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), within, irradiance};
   return irradiance;
 }
 

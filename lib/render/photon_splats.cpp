@@ -48,7 +48,9 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   if (!layer) return std::nullopt;
   const Vec3 place(Vec3d{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])} + shift);
   const std::optional<std::array<double, 2>> raster = view_.project(place);
-  if (!raster || !((*raster)[0] >= 0 && (*raster)[1] >= 0 && (*raster)[0] < view_.width() && (*raster)[1] < view_.height())) return std::nullopt;
+  if (!raster ||
+      !((*raster)[0] >= 0 && (*raster)[1] >= 0 && (*raster)[0] < view_.width() && (*raster)[1] < view_.height()))
+    return std::nullopt;
   const std::array<float, 3> decoded = formats::decode_normal(photon.normal);
   const Vec3 normal{decoded[0], decoded[1], decoded[2]};
   Hit hit;
@@ -58,7 +60,8 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   SurfacePoint point = tracer_.surface_point(hit);
   const Vec3 wo = -ray.direction;
   if (std::abs(dot(point.position - place, normal)) > kOff * distance) return std::nullopt;
-  if (dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0) return std::nullopt;   // the other side of a thin wall
+  if (dot(point.normal_geometric, normal) * dot(point.normal_geometric, wo) <= 0)
+    return std::nullopt;  // the other side of a thin wall
 
   const SceneFrame& frame = tracer_.frame();
   const Vec3 smooth = point.normal;
@@ -68,8 +71,10 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   if (material.values().unlit) return std::nullopt;
   const ShadingPoint x(point, wo, material);
   if (!x.bsdf.has_diffuse()) return std::nullopt;
-  Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi * Rgb{photon.flux[0], photon.flux[1], photon.flux[2]};
-  if (wi && photon.kind == formats::PathKind::caustic) radiance *= received_share(*wi, normal, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+  Rgb radiance =
+      x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi * Rgb{photon.flux[0], photon.flux[1], photon.flux[2]};
+  if (wi && photon.kind == formats::PathKind::caustic)
+    radiance *= received_share(*wi, normal, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
   const double pixel = double(view_.pixel_size(1)), depth = view_.depth(place);
   const double area = pixel * pixel * (view_.orthographic() ? 1 : depth * depth * depth / double(distance));
   radiance *= float(double(std::abs(dot(x.normal_geometric, wo))) / area);

@@ -12,9 +12,9 @@ namespace tempolux {
 
 /// What one photon adds to the picture.
 struct Splat {
-  std::uint32_t pixel = 0;      ///< row * width + column
+  std::uint32_t pixel = 0;  ///< row * width + column
   Layer layer = Layer::indirect;
-  Rgb radiance{0.0f};           ///< W/m^2/sr, mean over the pixel
+  Rgb radiance{0.0f};  ///< W/m^2/sr, mean over the pixel
 };
 
 /// A photon that the camera can see adds to the pixel that its place x projects to

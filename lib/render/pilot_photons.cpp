@@ -5,7 +5,8 @@
 
 namespace tempolux {
 
-formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds, std::uint64_t paths, std::uint64_t seed) {
+formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds,
+                                   std::uint64_t paths, std::uint64_t seed) {
   PhotonOptions options;
   options.seed = seed;
   options.photon_count = paths;

@@ -5,11 +5,11 @@
 namespace tempolux {
 namespace {
 
-constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: of two stratified numbers, so more samples take off more than their
-                                                   // share
+constexpr double kBetween = 0.1, kSharp = 0.125;  // of its variance: of two stratified numbers, so more samples take
+                                                  // off more than their share
 constexpr double kStratified = 0.875, kTypical = 12;
-/// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray
-/// onward.
+/// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that
+/// is said of a ray onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
 
 /// Each half of a pixel's samples needs one.
@@ -20,7 +20,9 @@ int first_onward(const FrameOptions& options) {
 
 }  // namespace
 
-double sample_variance(double n, double sum, double square) { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0; }
+double sample_variance(double n, double sum, double square) {
+  return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0;
+}
 
 double allowed_error(double level, double picture, double pixel_error) {
   return pixel_error * std::sqrt(std::min(level, picture) * picture + 0.01 * picture * picture);
@@ -57,12 +59,15 @@ void PixelNoise::look_around_mask() {
 
 void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays) {
   const double n = options_.samples, a = first_half_, b = n - a;
-  const auto both = [&](LayersT<double> PixelSum::*part) { return first.value(first.*part) + second.value(second.*part); };
+  const auto both = [&](LayersT<double> PixelSum::*part) {
+    return first.value(first.*part) + second.value(second.*part);
+  };
   const double mirrored = PixelSum::mirrored(first.own) + PixelSum::mirrored(second.own);
   const double seen = both(&PixelSum::own) - mirrored, onward = both(&PixelSum::onward);
   double all = 0;
   for (const PixelSum* sum : {&first, &second})
-    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) all += radiance_of(sum->*part);
+    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward})
+      all += radiance_of(sum->*part);
   Pixel& state = pixels_[pixel];
   state.mean = all / n + onward * (1.0 / first_.onward - 1 / n);
   state.lit_difference = first.value(first.lit) / a - (b > 0 ? second.value(second.lit) / b : 0);
@@ -102,8 +107,8 @@ double PixelNoise::own_variance(int x, int y) const {
   return kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between)) + mirrored / n;
 }
 
-/// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of single samples the
-/// variance between pixels. Rays onward by the variance of samples: few of them meet what is bright.
+/// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of
+/// single samples the variance between pixels. Rays onward by the variance of samples: few of them meet what is bright.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   double n = 0, level = 0, lit = 0, lit_square = 0, onward = 0, onward_square = 0, within = 0, rays = 0;

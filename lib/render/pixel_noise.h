@@ -11,15 +11,15 @@ namespace tempolux {
 
 /// Variance of what n, sum and sum of squares are of; 0 of one.
 double sample_variance(double n, double sum, double square);
-/// By what a pixel may err: e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture); level is the radiance around the
-/// pixel, picture the picture's mean (docs/pixels.md).
+/// By what a pixel may err: e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture); level is the
+/// radiance around the pixel, picture the picture's mean (docs/pixels.md).
 double allowed_error(double level, double picture, double pixel_error);
-/// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and `cost` what it costs in
-/// rays (docs/pixels.md); 0 of e = 0.
+/// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and
+/// `cost` what it costs in rays (docs/pixels.md); 0 of e = 0.
 double wanted_samples(double sigma, double cost, double error);
 
-/// Samples of the parts lit and onward to a camera ray, at most. Samples of one place miss what differs between the places of a pixel:
-/// edges of shadows, folds.
+/// Samples of the parts lit and onward to a camera ray, at most. Samples of one place miss what differs between the
+/// places of a pixel: edges of shadows, folds.
 inline constexpr int kMostLit = 2, kMostOnward = 2;
 
 /// Noise of a picture whose pixels have their first samples, and what more they need: docs/pixels.md derives it.
@@ -27,15 +27,16 @@ class PixelNoise {
  public:
   PixelNoise(const CameraView& view, const FrameOptions& options);
 
-  /// Pixels whose first samples are needed: all, or of a masked frame those that say what a masked pixel needs: so it gets as many
-  /// samples as in the whole frame. As FrameOptions::mask; empty: all.
+  /// Pixels whose first samples are needed: all, or of a masked frame those that say what a masked pixel needs: so it
+  /// gets as many samples as in the whole frame. As FrameOptions::mask; empty: all.
   const std::vector<std::uint8_t>& looked_at() const { return looked_at_; }
   /// The first samples. Rays onward are the dearest part and often the least needed: half as many do to tell
   /// their noise, but where a filter is to do with the first samples alone.
   const PartCounts& first() const { return first_; }
   /// Which half first sample s belongs to.
   int half(int s) const { return s >= first_half_; }
-  /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different pixels.
+  /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different
+  /// pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
   /// The first samples of all pixels are noted: what follows may be asked.
   void all_noted();
@@ -46,14 +47,14 @@ class PixelNoise {
 
  private:
   struct Pixel {
-    double mean = 0;                       ///< of the first samples, mean of the channels; its square may be beyond float
-    double lit_difference = 0;             ///< mean over half of them less that over the others
-    double seen = 0, seen_variance = 0;    ///< of one of them, of part `own` but layer specular
-    double mirrored_variance = 0;          ///< of that
+    double mean = 0;                     ///< of the first samples, mean of the channels; its square may be beyond float
+    double lit_difference = 0;           ///< mean over half of them less that over the others
+    double seen = 0, seen_variance = 0;  ///< of one of them, of part `own` but layer specular
+    double mirrored_variance = 0;        ///< of that
     double onward = 0, onward_variance = 0;
-    float onward_rays = 0;                 ///< of one of them
+    float onward_rays = 0;  ///< of one of them
   };
-  static constexpr double kOnLattice = 4096;   ///< pixels, about: their mean errs by 1 % where they differ by 60 %
+  static constexpr double kOnLattice = 4096;  ///< pixels, about: their mean errs by 1 % where they differ by 60 %
   // Pixels: one is judged by the 24 around it; by 8 for what has edges, which are narrow: all that see one pay for it.
   static constexpr int kNear = 2, kNearSharp = 1;
 
@@ -66,9 +67,9 @@ class PixelNoise {
   const CameraView& view_;
   const FrameOptions& options_;
   PartCounts first_;
-  int first_half_;       ///< samples in the first half of the first ones
-  double picture_ = 0;   ///< mean of the first samples of the pixels of a lattice
-  int lattice_;          ///< pixels from one of them to the next
+  int first_half_;      ///< samples in the first half of the first ones
+  double picture_ = 0;  ///< mean of the first samples of the pixels of a lattice
+  int lattice_;         ///< pixels from one of them to the next
   std::vector<std::uint8_t> looked_at_;
   ParallelArray<Pixel> pixels_;
 };

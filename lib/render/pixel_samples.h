@@ -19,9 +19,9 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
-  double seen_square = 0, mirrored_square = 0, onward_square = 0;   ///< of seen(), mirrored() of `own` and value() of `onward`, of single
-                                                                    ///< samples
-  bool for_filter = false;                    ///< FrameOptions::for_filter: noise is of layer specular alone
+  double seen_square = 0, mirrored_square = 0, onward_square = 0;  ///< of seen(), mirrored() of `own` and value() of
+                                                                   ///< `onward`, of single samples
+  bool for_filter = false;  ///< FrameOptions::for_filter: noise is of layer specular alone
   void add(const PathParts& sample) {
     add(sample.own, own);
     add(sample.lit, lit);
@@ -41,10 +41,14 @@ struct PixelSum {
   }
   /// Mean channel of layer specular.
   template <class T>
-  static double mirrored(const LayersT<T>& layers) { return channel_mean(Rgbd(layers[Layer::specular])); }
+  static double mirrored(const LayersT<T>& layers) {
+    return channel_mean(Rgbd(layers[Layer::specular]));
+  }
   /// Of all others whose noise counts.
   template <class T>
-  double seen(const LayersT<T>& layers) const { return value(layers) - mirrored(layers); }
+  double seen(const LayersT<T>& layers) const {
+    return value(layers) - mirrored(layers);
+  }
   /// Mean channel of all layers whose noise counts.
   template <class T>
   double value(const LayersT<T>& layers) const {
@@ -84,7 +88,8 @@ inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   join(all, first, count, mean);
 }
 
-/// Runs body(pixel, x, y) for every pixel, row by row of a tile, tiles in parallel; each has a body = make_body(counts) of its own.
+/// Runs body(pixel, x, y) for every pixel, row by row of a tile, tiles in parallel; each has a body = make_body(counts)
+/// of its own.
 template <class MakeBody>
 void for_each_tile(const CameraView& view, const FrameOptions& options, RayCounts& rays,
                    const std::function<void(double)>& progress, const MakeBody& make_body) {
@@ -109,14 +114,15 @@ void for_each_tile(const CameraView& view, const FrameOptions& options, RayCount
 
 /// Runs body(pixel, x, y, counts) for every pixel, tile by tile in parallel.
 template <class Body>
-void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays, const std::function<void(double)>& progress,
-                    const Body& body) {
+void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
+                    const std::function<void(double)>& progress, const Body& body) {
   for_each_tile(view, options, rays, progress,
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same probability, as all
-/// are moved by one random number. So a part's mean over its samples is right whatever their number.
+/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same
+/// probability, as all are moved by one random number. So a part's mean over its samples is right whatever their
+/// number.
 class Dealt {
  public:
   Dealt(std::uint64_t seed, std::uint64_t pixel, const PartCounts& first, const PartCounts& counts)
@@ -136,18 +142,24 @@ class Dealt {
   Vec2 offset_;
 };
 
-/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0. The pass goes on in the pixel's sequence; its first
-/// half belongs to one half of the samples, its second half to the other: either is stratified nearly as well as a pass of its size can be.
+/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0. The pass goes on in the pixel's
+/// sequence; its first half belongs to one half of the samples, its second half to the other: either is stratified
+/// nearly as well as a pass of its size can be.
 class SampleSequence {
  public:
   SampleSequence(const FrameOptions& options, std::size_t pixel, const PartCounts& first, const PartCounts& count)
-      : random_(options.seed, pixel, 0), first_(first.own), count_(count.own), dealt_(options.seed, pixel, first, count) {}
+      : random_(options.seed, pixel, 0),
+        first_(first.own),
+        count_(count.own),
+        dealt_(options.seed, pixel, first, count) {}
   PixelRandom random(int i) const { return random_.of_sample(std::uint32_t(first_ + i)); }
   PathEffort effort(int i) const { return dealt_(i); }
   /// Which half of the pass sample i belongs to.
   int half(int i) const { return 2 * i >= count_; }
   /// Which half of the pixel's samples it belongs to: a single sample goes to the half that has fewer.
-  int half(int i, const SampleHalves& halves) const { return count_ == 1 ? halves.half[1].own.count < halves.half[0].own.count : half(i); }
+  int half(int i, const SampleHalves& halves) const {
+    return count_ == 1 ? halves.half[1].own.count < halves.half[0].own.count : half(i);
+  }
 
  private:
   PixelRandom random_;
@@ -155,10 +167,12 @@ class SampleSequence {
   Dealt dealt_;
 };
 
-/// A pixel's samples, numbered on from `first`, one after the other: add(i, sample). halves: SampleHalves of the pixel, or nullptr.
+/// A pixel's samples, numbered on from `first`, one after the other: add(i, sample). halves: SampleHalves of the pixel,
+/// or nullptr.
 template <class Add>
-void for_each_sample(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
-                     std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
+void for_each_sample(const RenderScene& scene, const CameraView& view, const FrameOptions& options, std::size_t pixel,
+                     int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves,
+                     RayCounts& counts, const Add& add) {
   const SampleSequence sequence(options, pixel, first, count);
   CausticMemory caustics;
   for (int i = 0; i < count.own; ++i) {
@@ -176,7 +190,8 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, const Fra
 }
 
 inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
-                             std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts) {
+                             std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count,
+                             SampleHalves* halves, RayCounts& counts) {
   PixelSum sum;
   for_each_sample(scene, view, options, pixel, x, y, first, count, halves, counts,
                   [&](int, const PathParts& sample) { sum.add(sample); });

@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 4096;   ///< pixels
+constexpr std::size_t kChunk = 4096;  ///< pixels
 
 bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
@@ -62,7 +62,7 @@ void SampleHalves::join(Layer layer) {
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
   for (int h = 0; h < 2; ++h) {
     const auto other = parts_of(more.half[h]);
-    for (std::size_t i = 0; Sum* sum : parts_of(half[h])) {
+    for (std::size_t i = 0; Sum * sum : parts_of(half[h])) {
       sum->add(other[i]->radiance, other[i]->count);
       ++i;
     }
@@ -76,7 +76,8 @@ Rgb SampleHalves::difference(std::size_t l) const {
   for (std::size_t i = 0; i < first.size(); ++i) {
     const float a = first[i]->count, b = second[i]->count;
     if (a > 0 && b > 0)
-      sum += (first[i]->radiance.value[l] * (1 / a) - second[i]->radiance.value[l] * (1 / b)) * (std::sqrt(a * b) / (a + b));
+      sum += (first[i]->radiance.value[l] * (1 / a) - second[i]->radiance.value[l] * (1 / b)) *
+             (std::sqrt(a * b) / (a + b));
   }
   return sum;
 }
@@ -99,7 +100,8 @@ Rgb SampleHalves::variance(std::span<const Layer> layers) const {
 }
 
 bool wants_sample_halves(const std::vector<std::string>& channels) {
-  return asked(channels, "variance") || asked(channels, "diffuse.variance") || asked(channels, "samples") || asked(channels, "halves");
+  return asked(channels, "variance") || asked(channels, "diffuse.variance") || asked(channels, "samples") ||
+         asked(channels, "halves");
 }
 
 namespace {
@@ -117,14 +119,16 @@ Rgb noise_of(const SampleHalves& halves, std::size_t l, float share, const Rgb& 
 
 void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
   const std::vector<SampleHalves>& halves = layers.sample_halves;
-  if (asked(channels, "variance")) add_colour("variance", image, [&](std::size_t p) { return halves[p].variance(kImageLayers); });
+  if (asked(channels, "variance"))
+    add_colour("variance", image, [&](std::size_t p) { return halves[p].variance(kImageLayers); });
   if (asked(channels, "diffuse.variance"))
     add_colour("diffuse.variance", image, [&](std::size_t p) { return halves[p].variance(kDiffuseLayers); });
   if (asked(channels, "halves"))
     for (std::size_t l = 0; l < kLayerCount; ++l)
       if (layers.media || l != std::size_t(Layer::volume))
-        add_colour(std::string(kLayerNames[l]) + ".noise", image,
-                   [&](std::size_t p) { return noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]); });
+        add_colour(std::string(kLayerNames[l]) + ".noise", image, [&](std::size_t p) {
+          return noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]);
+        });
   if (!asked(channels, "samples")) return;
   std::vector<float>& samples = image.add("samples").values;
   for (std::size_t p = 0; p < halves.size(); ++p) samples[p] = halves[p].samples();

@@ -10,13 +10,14 @@
 
 namespace tempolux {
 
-/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of one pixel are
-/// stratified together, so that their mean errs by less than that of independent ones. Each half of a pass, in their order, is nearly as
-/// well stratified: the difference of the two halves' means knows it, where the spread of single samples does not.
+/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of
+/// one pixel are stratified together, so that their mean errs by less than that of independent ones. Each half of a
+/// pass, in their order, is nearly as well stratified: the difference of the two halves' means knows it, where the
+/// spread of single samples does not.
 struct SampleHalves {
   struct Sum {
-    Layers radiance;     ///< [W/m^2/sr]
-    float count = 0;     ///< samples
+    Layers radiance;  ///< [W/m^2/sr]
+    float count = 0;  ///< samples
     void add(const Layers& sample, float samples);
   };
   struct Half {
@@ -30,9 +31,9 @@ struct SampleHalves {
   /// Gives both halves their common mean in a layer.
   void join(Layer layer);
   float samples() const { return half[0].own.count + half[1].own.count; }
-  /// Half the difference of the halves in layer l [W/m^2/sr]: the sum over the parts of (a - b) (n_a n_b)^(1/2) / (n_a + n_b), with a, b
-  /// the halves' means and n_a, n_b their counts. Of independent samples the mean of its square is the variance of the mean over both
-  /// halves. Of a part of which a half is empty nothing is known: 0.
+  /// Half the difference of the halves in layer l [W/m^2/sr]: the sum over the parts of (a - b) (n_a n_b)^(1/2) / (n_a
+  /// + n_b), with a, b the halves' means and n_a, n_b their counts. Of independent samples the mean of its square is
+  /// the variance of the mean over both halves. Of a part of which a half is empty nothing is known: 0.
   Rgb difference(std::size_t l) const;
   /// Mean over both halves in layer l [W/m^2/sr].
   Rgb mean(std::size_t l) const;
@@ -40,7 +41,8 @@ struct SampleHalves {
   Rgb variance(std::span<const Layer> layers) const;
 };
 
-inline constexpr std::array<Layer, 6> kImageLayers{Layer::emission, Layer::specular, Layer::direct, Layer::caustic, Layer::indirect, Layer::volume};
+inline constexpr std::array<Layer, 6> kImageLayers{Layer::emission, Layer::specular, Layer::direct,
+                                                   Layer::caustic,  Layer::indirect, Layer::volume};
 /// What the filter st-filter filters.
 inline constexpr std::array<Layer, 3> kDiffuseLayers{Layer::direct, Layer::caustic, Layer::indirect};
 
@@ -49,13 +51,15 @@ bool wants_sample_halves(const std::vector<std::string>& channels);
 
 struct LayerImage;
 
-/// Adds what is asked for of "variance" (variance.R .G .B: of R G B), "diffuse.variance" (diffuse.variance.R .G .B: of the sum of
-/// direct, caustic and indirect), "halves" (LAYER.noise.R .G .B of each layer, of volume only with media) and "samples".
+/// Adds what is asked for of "variance" (variance.R .G .B: of R G B), "diffuse.variance" (diffuse.variance.R .G .B: of
+/// the sum of direct, caustic and indirect), "halves" (LAYER.noise.R .G .B of each layer, of volume only with media)
+/// and "samples".
 ///
-/// LAYER.noise = n: LAYER + n and LAYER - n are uncorrelated halves, the mean of n^2 is the variance of LAYER. It is the half difference d
-/// of the samples' halves times the root of LayerImage::difference_share. Stratified together the halves a, b of the mean m err in opposite
-/// ways; as a and b may be exchanged, d is uncorrelated with m, so that m + s d and m - s d have the covariance Var(m) - s^2 Var(d): 0 for
-/// s^2 = Var(m) / Var(d). What spread_outliers took from a layer is taken from |n| as well.
+/// LAYER.noise = n: LAYER + n and LAYER - n are uncorrelated halves, the mean of n^2 is the variance of LAYER. It is
+/// the half difference d of the samples' halves times the root of LayerImage::difference_share. Stratified together the
+/// halves a, b of the mean m err in opposite ways; as a and b may be exchanged, d is uncorrelated with m, so that m + s
+/// d and m - s d have the covariance Var(m) - s^2 Var(d): 0 for s^2 = Var(m) / Var(d). What spread_outliers took from a
+/// layer is taken from |n| as well.
 void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 }  // namespace tempolux

@@ -14,7 +14,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kLooks = 256;
-constexpr float kNearEnough = 1 - 1e-3f;   ///< of the way to a place: what is met nearer hides it
+constexpr float kNearEnough = 1 - 1e-3f;  ///< of the way to a place: what is met nearer hides it
 
 bool sees(const Tracer& tracer, const CameraView& view, Vec3 place) {
   const auto at = view.project(place);
@@ -37,7 +37,8 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
       const std::optional<SeenPoint> point = seen_through(tracer, view, look);
       if (!point || !sees(tracer, view, point->surface.position)) continue;
       all += 1;
-      fresh += std::ranges::none_of(views, [&](const CameraView& before) { return sees(tracer, before, point->surface.position); });
+      fresh += std::ranges::none_of(
+          views, [&](const CameraView& before) { return sees(tracer, before, point->surface.position); });
     }
     views.push_back(view);
   }

@@ -23,46 +23,51 @@ namespace tempolux {
 namespace {
 
 constexpr int kPlaces = 2048, kSamples = 4, kRecords = 64;
-constexpr int kColumns = 16, kRows = 9;            ///< of the picture, in whose parts the level of light is known
-constexpr std::uint64_t kPaths = 1 << 15;          ///< of light
-constexpr std::uint32_t kPoints = 500;   ///< of a side
-constexpr int kRays = 62;                          ///< of a rough record
-/// Records of a picture over those whose discs of validity would cover it without overlap: weights fall to 0 at a disc's border. Of five
-/// scenes: docs/pixels.md.
+constexpr int kColumns = 16, kRows = 9;    ///< of the picture, in whose parts the level of light is known
+constexpr std::uint64_t kPaths = 1 << 15;  ///< of light
+constexpr std::uint32_t kPoints = 500;     ///< of a side
+constexpr int kRays = 62;                  ///< of a rough record
+/// Records of a picture over those whose discs of validity would cover it without overlap: weights fall to 0 at a
+/// disc's border. Of five scenes: docs/pixels.md.
 constexpr double kOverlap = 20;
-constexpr double kTell = 7;                        ///< records that tell the light of a pixel, likewise
-constexpr double kSure = 3;                        ///< standard errors
-constexpr double kMapError2 = 1.0 / PhotonLightOptions{}.caustic_neighbours;   ///< squared error of a density by k photons over its square
+constexpr double kTell = 7;  ///< records that tell the light of a pixel, likewise
+constexpr double kSure = 3;  ///< standard errors
+constexpr double kMapError2 =
+    1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
 
 /// Light of one sample, mean of channels.
 struct Sample {
   double other = 0, caustic = 0, indirect = 0;
   double sum() const { return other + caustic + indirect; }
 };
-using Samples = std::vector<std::array<Sample, kSamples>>;   ///< by place
+using Samples = std::vector<std::array<Sample, kSamples>>;  ///< by place
 
 Sample sample_of(const Layers& layers) {
   Sample sample;
   for (std::size_t l = 0; l < kLayerCount; ++l) {
     const double value = double(channel_mean(layers.value[l]));
-    (Layer(l) == Layer::caustic ? sample.caustic : Layer(l) == Layer::indirect ? sample.indirect : sample.other) += value;
+    (Layer(l) == Layer::caustic    ? sample.caustic
+     : Layer(l) == Layer::indirect ? sample.indirect
+                                   : sample.other) += value;
   }
   return sample;
 }
 
 struct Where {
-  float x = 0, y = 0;   ///< pixel
+  float x = 0, y = 0;  ///< pixel
   std::size_t part = 0;
 };
 
 Where where(int i, const CameraView& view, std::uint64_t seed) {
   const Vec2 at = sobol_owen_2d(std::uint32_t(i), seed ^ 0x7061746873ull);
-  return {std::floor(at.x * float(view.width())), std::floor(at.y * float(view.height())),
-          std::size_t(std::min(kRows - 1, int(at.y * kRows)) * kColumns + std::min(kColumns - 1, int(at.x * kColumns)))};
+  return {
+      std::floor(at.x * float(view.width())), std::floor(at.y * float(view.height())),
+      std::size_t(std::min(kRows - 1, int(at.y * kRows)) * kColumns + std::min(kColumns - 1, int(at.x * kColumns)))};
 }
 
 /// Samples of all places, and the work of one in the mean.
-Samples take_samples(const RenderScene& scene, const CameraView& view, const KnownLight* known, std::uint64_t seed, RayCounts& counts) {
+Samples take_samples(const RenderScene& scene, const CameraView& view, const KnownLight* known, std::uint64_t seed,
+                     RayCounts& counts) {
   Samples samples(kPlaces);
   std::vector<RayCounts> by_place(kPlaces);
   parallel_chunks(kPlaces, 32, [&](std::size_t first, std::size_t last) {
@@ -81,13 +86,14 @@ Samples take_samples(const RenderScene& scene, const CameraView& view, const Kno
 }
 
 double work_of(const RayCounts& counts) {
-  return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) + double(counts.points_read)) / (kPlaces * kSamples);
+  return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) + double(counts.points_read)) /
+         (kPlaces * kSamples);
 }
 
 /// What pixels show in the parts of the picture, and so what errors count there.
 struct Levels {
-  std::vector<std::size_t> part;   ///< by place
-  std::vector<double> allowed;     ///< by part: of pixel error 1
+  std::vector<std::size_t> part;  ///< by place
+  std::vector<double> allowed;    ///< by part: of pixel error 1
   double picture = 0, white = 0;
 
   Levels(const Samples& samples, const CameraView& view, std::uint64_t seed) : allowed(kColumns * kRows) {
@@ -108,8 +114,8 @@ struct Levels {
 
 using PartOfLight = std::function<double(const Sample&)>;
 
-/// By part of the picture the variance of some of the light, over what a pixel may err by, squared. Of samples of which `times` make a
-/// pixel.
+/// By part of the picture the variance of some of the light, over what a pixel may err by, squared. Of samples of which
+/// `times` make a pixel.
 std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
   std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -119,14 +125,16 @@ std::vector<double> variances(const Samples& samples, const Levels& levels, doub
       first += value, square += value * value;
     }
     const std::size_t part = levels.part[i];
-    if (levels.allowed[part] > 0) sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]);
+    if (levels.allowed[part] > 0)
+      sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]);
     ++count[part];
   }
   for (std::size_t part = 0; part < sum.size(); ++part) sum[part] /= std::max(1.0, count[part]);
   return sum;
 }
 
-/// Samples go where noise is: n a pixel in the mean, in proportion to the root of each part's variance, leave (mean root)^2 / n.
+/// Samples go where noise is: n a pixel in the mean, in proportion to the root of each part's variance, leave (mean
+/// root)^2 / n.
 double adaptive(const std::vector<double>& variances) {
   double roots = 0;
   for (const double variance : variances) roots += std::sqrt(variance) / double(variances.size());
@@ -141,8 +149,9 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
 
 /// Samples that the wish asks for, and the error that they leave of all light but layer indirect.
 void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
-  constexpr double kFirst = 4, kWholeSample = 4;   // of a pixel; shadow rays, as wanted_samples has it
-  for (const double variance : variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
+  constexpr double kFirst = 4, kWholeSample = 4;  // of a pixel; shadow rays, as wanted_samples has it
+  for (const double variance :
+       variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
     rough.samples += wanted / (kColumns * kRows);
     rough.wanted += variance / wanted / (kColumns * kRows);
@@ -202,8 +211,8 @@ struct Picture {
 
 /// Two records at one place.
 struct Pair {
-  double for_a_pixel = 0;   ///< records
-  double error2 = 0;        ///< squared error of one
+  double for_a_pixel = 0;  ///< records
+  double error2 = 0;       ///< squared error of one
   GatherCounts counts;
 };
 
@@ -230,12 +239,14 @@ Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathe
 
 void measure_records(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
   const auto gather = [&](std::uint64_t seed) {
-    return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(), light.gathering(picture.options.photons, seed));
+    return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(),
+                       light.gathering(picture.options.photons, seed));
   };
   const std::array<FinalGather, 2> gathers{gather(picture.options.seed), gather(~picture.options.seed)};
   std::vector<Pair> pairs(kRecords);
   constexpr int kApart = kPlaces / kRecords;
-  parallel_chunks(kRecords, 1, [&](std::size_t i, std::size_t) { pairs[i] = gather_pair(picture, gathers, int(i) * kApart); });
+  parallel_chunks(kRecords, 1,
+                  [&](std::size_t i, std::size_t) { pairs[i] = gather_pair(picture, gathers, int(i) * kApart); });
   GatherCounts all;
   double gathered = 0;
   for (const Pair& pair : pairs) {
@@ -244,11 +255,12 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
     gathered += pair.for_a_pixel > 0 ? 2 : 0;
     all += pair.counts;
   }
-  if (gathered > 0) rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays)) / (gathered * kRays);
+  if (gathered > 0)
+    rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays)) / (gathered * kRays);
 }
 
-/// What paths surely miss of the light that photons show. n paths that miss light of radiance c have the variance n c^2 at least
-/// (docs/methods/caustics.md).
+/// What paths surely miss of the light that photons show. n paths that miss light of radiance c have the variance n c^2
+/// at least (docs/methods/caustics.md).
 MissedLight missed_light(const SeenPhotons& photons, double found, double allowed2) {
   const double missed = std::max(0.0, photons.mean - found), error = kSure * photons.mean_error;
   const double sure = std::max(0.0, missed * missed - error * error);
@@ -277,16 +289,20 @@ double mean_of(const Samples& samples, const PartOfLight& light) {
 void compare(const Picture& picture, const RoughLight& light, const Samples& paths, RoughFrame& rough) {
   const double allowed2 = picture.levels.picture * picture.levels.picture;
   if (!(allowed2 > 0)) return;
-  const auto seen = [&](formats::PathKind kind) { return see_photons(picture.scene, picture.view, light.photons(), kind); };
+  const auto seen = [&](formats::PathKind kind) {
+    return see_photons(picture.scene, picture.view, light.photons(), kind);
+  };
   const SeenPhotons caustics = seen(formats::PathKind::caustic);
   rough.missed_caustic = missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), allowed2);
-  rough.missed = missed_light(seen(formats::PathKind::indirect), mean_of(paths, [](const Sample& s) { return s.indirect; }), allowed2);
+  rough.missed = missed_light(seen(formats::PathKind::indirect),
+                              mean_of(paths, [](const Sample& s) { return s.indirect; }), allowed2);
   rough.map_error = kMapError2 * caustics.square / allowed2;
 }
 
 }  // namespace
 
-RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view, const RoughOptions& options) {
+RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view,
+                       const RoughOptions& options) {
   RoughFrame rough;
   look_at_places(scene, view, options.seed, rough);
   RayCounts counts;
@@ -303,7 +319,8 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   counts = {};
   const Samples gathered = take_samples(scene, view, &known, options.seed, counts);
   rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts));
-  // Where a record is a ray still goes on from the Lambert lobe: it joins light sampling. It ends at the first thing that it meets.
+  // Where a record is a ray still goes on from the Lambert lobe: it joins light sampling. It ends at the first thing
+  // that it meets.
   const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
   rough.record_sample = rough.gather.work + at_records / (kPlaces * kSamples);
   measure_records(picture, light, rough);

@@ -15,8 +15,8 @@
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 32, kRows = 18;   ///< of the picture, by which the mean square is told
-constexpr float kSame = 1e-3f;   ///< of the distance: the camera sees the photon's place, not one before it
+constexpr int kColumns = 32, kRows = 18;  ///< of the picture, by which the mean square is told
+constexpr float kSame = 1e-3f;            ///< of the distance: the camera sees the photon's place, not one before it
 
 /// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) takes up; 0 where it cannot be told.
 double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std::array<double, 2>& at) {
@@ -33,7 +33,8 @@ struct SeenFlux {
   double radiance = 0;
   std::size_t cell = 0;
 };
-/// Of a photon at `point`: its flux x rho / pi x picture_share, if the camera sees it. Nothing is blurred, so the sum over photons is unbiased.
+/// Of a photon at `point`: its flux x rho / pi x picture_share, if the camera sees it. Nothing is blurred, so the sum
+/// over photons is unbiased.
 SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const PhotonView& photons, std::size_t i) {
   const formats::Photon& photon = photons.photons[i];
   const Vec3 point{photon.position[0], photon.position[1], photon.position[2]};
@@ -56,7 +57,8 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const Photo
   if (photons.directed()) {
     const auto w = formats::decode_normal(photons.directions[i]);
     const Vec3 wi{w[0], w[1], w[2]};
-    flux *= received_share(wi, normal, {shading.normal_geometric, shading.facing(smooth), shading.normal, &shading.bsdf});
+    flux *=
+        received_share(wi, normal, {shading.normal_geometric, shading.facing(smooth), shading.normal, &shading.bsdf});
   }
   const auto cell = [](double x, int size, int cells) { return std::size_t(std::min(cells - 1.0, x / size * cells)); };
   return {double(channel_mean(albedo * flux)) / kPi * picture_share(view, point, normal, *at),
@@ -65,7 +67,8 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const Photo
 
 }  // namespace
 
-SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons, formats::PathKind kind) {
+SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
+                        formats::PathKind kind) {
   std::vector<SeenFlux> seen(photons.photons.size());
   parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)

@@ -24,7 +24,8 @@ struct Shown {
 /// The way on by a delta lobe; none if there is no such lobe.
 std::optional<Bsdf::Sample> sharp_way(const ShadingPoint& shading) {
   if (!shading.bsdf.has_specular() || !shading.bsdf.specular_is_delta()) return std::nullopt;
-  // 0.5 follows what is more than half of the light; where that is a Lambert lobe one end or the other of [0, 1) is the mirror above it.
+  // 0.5 follows what is more than half of the light; where that is a Lambert lobe one end or the other of [0, 1) is the
+  // mirror above it.
   for (const float lobe : {0.5f, 0.0001f, 0.9999f}) {
     const Bsdf::Sample next = shading.bsdf.sample(shading.eye, lobe, {0.5f, 0.5f});
     if (next.delta && !next.diffuse && !is_black(next.weight)) return next;
@@ -69,9 +70,11 @@ Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
 
 }  // namespace
 
-void add_seen_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels, Image& image) {
+void add_seen_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
+                       Image& image) {
   if (std::find(channels.begin(), channels.end(), "seen") == channels.end()) return;
-  constexpr std::array<const char*, 7> kNames{"seen.Z", "seen.N.X", "seen.N.Y", "seen.N.Z", "seen.albedo.R", "seen.albedo.G", "seen.albedo.B"};
+  constexpr std::array<const char*, 7> kNames{"seen.Z",        "seen.N.X",      "seen.N.Y",     "seen.N.Z",
+                                              "seen.albedo.R", "seen.albedo.G", "seen.albedo.B"};
   for (const char* name : kNames) image.add(name);
   image.add_ids("seen.id");
   std::array<float*, kNames.size()> to{};

@@ -14,16 +14,17 @@
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 24, kRows = 14;         ///< positions of a picture, 2688 of eight eyes: a standard error of 1 % for a cell of half
+constexpr int kColumns = 24,
+              kRows = 14;  ///< positions of a picture, 2688 of eight eyes: a standard error of 1 % for a cell of half
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;
 constexpr double kSplitShare = 1.0 / 32, kLeastShare = 1.0 / 512;
-constexpr double kRadiusOfCell = 0.875;          ///< of its size: half its diagonal is .866
-constexpr double kLeastGain = 1;                 ///< log2: twice as dense
+constexpr double kRadiusOfCell = 0.875;  ///< of its size: half its diagonal is .866
+constexpr double kLeastGain = 1;         ///< log2: twice as dense
 
 struct Cell {
-  int level = 0;                                 // size 2^level m
-  std::array<double, 3> index{};                 // whole numbers: corner = index 2^level
+  int level = 0;                  // size 2^level m
+  std::array<double, 3> index{};  // whole numbers: corner = index 2^level
   std::vector<const WeighedPlace*> places;
   double weight = 0;
 
@@ -35,7 +36,8 @@ std::vector<Cell> cells_of(const std::vector<const WeighedPlace*>& places, int l
   std::map<std::array<double, 3>, Cell> cells;
   for (const WeighedPlace* place : places) {
     const Vec3d& p = place->position;
-    const std::array index{std::floor(std::ldexp(p.x, -level)), std::floor(std::ldexp(p.y, -level)), std::floor(std::ldexp(p.z, -level))};
+    const std::array index{std::floor(std::ldexp(p.x, -level)), std::floor(std::ldexp(p.y, -level)),
+                           std::floor(std::ldexp(p.z, -level))};
     Cell& cell = cells[index];
     cell.level = level;
     cell.index = index;
@@ -82,14 +84,16 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
       parts = cells_of(cell.places, cell.level - 1);
       drop_light(parts);
     }
-    if (parts.empty() || done.size() + cells.size() + parts.size() > formats::kMaxViewSpheres) done.push_back(std::move(cell));
+    if (parts.empty() || done.size() + cells.size() + parts.size() > formats::kMaxViewSpheres)
+      done.push_back(std::move(cell));
     else std::ranges::move(parts, std::back_inserter(cells));
   }
   return done;
 }
 
 /// Adds the places that a camera sees, and the places that are seen from these. `number` keys the random numbers.
-void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number, std::vector<WeighedPlace>& places) {
+void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number,
+                     std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
   const auto add = [&](Vec3 position, double weight, double distance) {
     places.push_back({Vec3d(position) + origin, weight, distance});
@@ -118,7 +122,8 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
 
 // ---- a lattice of cameras -----------------------------------------------------------------------------------
 
-constexpr double kWider = 1.5;                   ///< a quarter of the picture on each side: more than a step of directions, half of which a camera is off
+constexpr double kWider =
+    1.5;  ///< a quarter of the picture on each side: more than a step of directions, half of which a camera is off
 /// Planes of the lattice lie at thirds of its steps: coordinates that people type (0, 0.5, 1.6) are not near them.
 constexpr double kShift = 1.0 / 3;
 
@@ -132,7 +137,8 @@ std::array<double, 3> angles_of(const Affine& a) {
 
 Affine turned(const std::array<double, 3>& angles) {
   const auto [yaw, pitch, roll] = angles;
-  const Vec3d forward{-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)}, level{std::cos(yaw), 0, -std::sin(yaw)};
+  const Vec3d forward{-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)},
+      level{std::cos(yaw), 0, -std::sin(yaw)};
   const Vec3d right = std::cos(roll) * level + std::sin(roll) * cross(level, forward), up = cross(right, forward);
   Affine a;
   a.row = {Vec3d{right.x, up.x, -forward.x}, Vec3d{right.y, up.y, -forward.y}, Vec3d{right.z, up.z, -forward.z}};
@@ -158,7 +164,7 @@ bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
 
 /// A camera's cell, and the cameras that stand for it.
 struct CameraCell {
-  std::array<double, 9> key{};                      ///< level, indices of place and of direction, width of the picture, eyes
+  std::array<double, 9> key{};  ///< level, indices of place and of direction, width of the picture, eyes
   std::vector<PlacedCamera> cameras;
 };
 
@@ -169,7 +175,8 @@ CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double dist
   // Of the picture's half height the quarter powers of two.
   const int narrow = int(std::round(4 * std::log2(perspective ? half_height / distance : half_height)));
   const int level = int(std::floor(std::log2(std::min(distance, half_height))));
-  const double size = std::ldexp(1.0, level), height = kWider * std::exp2(narrow / 4.0), step = 2.0 / 3 * std::atan(half_height / distance);
+  const double size = std::ldexp(1.0, level), height = kWider * std::exp2(narrow / 4.0),
+               step = 2.0 / 3 * std::atan(half_height / distance);
   PlacedCamera around = camera;
   (perspective ? around.camera.yfov_rad : around.camera.ymag_m) = perspective ? 2 * std::atan(height) : height;
   std::array<double, 3> angles = angles_of(camera.scene_from_camera);
@@ -209,7 +216,8 @@ void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, in
   if (!(distance > 0)) return;
   const CameraCell cell = cell_of(tracer, camera, distance);
   if (!seen.looked.insert(cell.key).second) return;
-  for (std::size_t i = 0; i < cell.cameras.size(); ++i) add_seen_places(tracer, CameraView(cell.cameras[i], origin, width, height), i, seen.places);
+  for (std::size_t i = 0; i < cell.cameras.size(); ++i)
+    add_seen_places(tracer, CameraView(cell.cameras[i], origin, width, height), i, seen.places);
 }
 
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius) {
@@ -229,7 +237,8 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
   double weights = 0;
   for (const Cell& cell : cells) {
     formats::ViewSphere sphere;
-    for (int axis = 0; axis < 3; ++axis) sphere.centre[std::size_t(axis)] = (cell.index[std::size_t(axis)] + 0.5) * cell.size();
+    for (int axis = 0; axis < 3; ++axis)
+      sphere.centre[std::size_t(axis)] = (cell.index[std::size_t(axis)] + 0.5) * cell.size();
     sphere.radius = kRadiusOfCell * cell.size();
     sphere.weight = std::exp2(std::round(std::log2(cell.weight / whole)));
     weights += sphere.weight;
@@ -250,10 +259,10 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
   std::vector<AimSphere> spheres;
   for (const formats::ViewSphere& sphere : view)
-    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
+    spheres.push_back(
+        {Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
   return spheres;
 }
-
 
 std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view) {
   SeenAround seen;

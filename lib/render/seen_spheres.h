@@ -13,24 +13,26 @@ namespace tempolux {
 
 /// A place that a camera sees, or that such a place sees.
 struct WeighedPlace {
-  Vec3d position{};      ///< world space, m
-  double weight = 0;     ///< 1 for what the eye sees, half as much at each bounce: surfaces reflect about half
-  double distance = 0;   ///< m, from the eye; 0 of what was not seen directly
+  Vec3d position{};     ///< world space, m
+  double weight = 0;    ///< 1 for what the eye sees, half as much at each bounce: surfaces reflect about half
+  double distance = 0;  ///< m, from the eye; 0 of what was not seen directly
 };
 
 /// What cameras and those around them see.
 struct SeenAround {
   std::vector<WeighedPlace> places;
-  std::set<std::array<double, 9>> looked;   ///< cells of the lattice of cameras that were looked from
+  std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras that were looked from
 };
 
-/// Adds what a camera and those around it see of the scene that `tracer` holds: the same places for all cameras of a cell of a lattice, so
-/// that a camera that moves or turns a little asks for no other photons. Of two cameras in one cell the second adds nothing.
+/// Adds what a camera and those around it see of the scene that `tracer` holds: the same places for all cameras of a
+/// cell of a lattice, so that a camera that moves or turns a little asks for no other photons. Of two cameras in one
+/// cell the second adds nothing.
 ///
-/// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d from which surfaces are seen nor than
-/// half the height h of the picture at that distance; directions lie in steps of a third of the angle of view. Eyes are the middles of the
-/// cube's eight parts that the camera's own eye sees; their pictures are half as wide again. Each looks at 24 x 14 stratified positions,
-/// through mirrors and glass (seen_through), and after one and two cosine bounces. `width`, `height`: of the picture, whose ratio counts.
+/// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d from which surfaces
+/// are seen nor than half the height h of the picture at that distance; directions lie in steps of a third of the angle
+/// of view. Eyes are the middles of the cube's eight parts that the camera's own eye sees; their pictures are half as
+/// wide again. Each looks at 24 x 14 stratified positions, through mirrors and glass (seen_through), and after one and
+/// two cosine bounces. `width`, `height`: of the picture, whose ratio counts.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
 /// Spheres around cells of an octree whose cells have sizes and corners that are powers of two and their multiples: a

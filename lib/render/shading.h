@@ -11,10 +11,13 @@ namespace tempolux {
 struct ShadingPoint : SeenSide {
   SurfacePoint surface;
   Bsdf bsdf;
-  Bsdf::Direction eye;   ///< wo_local
+  Bsdf::Direction eye;  ///< wo_local
 
   ShadingPoint(const SurfacePoint& point, Vec3 wo, const MaterialValues& material)
-      : SeenSide(point, wo), surface(point), bsdf(material, dot(point.normal_geometric, wo) > 0), eye(bsdf.along(wo_local)) {}
+      : SeenSide(point, wo),
+        surface(point),
+        bsdf(material, dot(point.normal_geometric, wo) > 0),
+        eye(bsdf.along(wo_local)) {}
 };
 
 }  // namespace tempolux

@@ -9,16 +9,16 @@
 namespace tempolux {
 namespace {
 
-constexpr int kNear = 2;               ///< pixels: light around is that of 24
-constexpr double kConfirmed = 0.5;     ///< of the sample that claims
+constexpr int kNear = 2;            ///< pixels: light around is that of 24
+constexpr double kConfirmed = 0.5;  ///< of the sample that claims
 
 /// What is taken from a pixel and how far it goes.
 struct Excess {
   std::size_t pixel;
   Layer layer;
-  int level;        ///< boxes reach 2^level pixels
+  int level;  ///< boxes reach 2^level pixels
   Rgbd radiance;
-  int samples;      ///< of the part that it is of
+  int samples;  ///< of the part that it is of
 };
 
 double radiance_of(const Layers& pixel) {
@@ -67,7 +67,8 @@ int last_level(int width, int height) {
   return level;
 }
 
-/// The narrowest at which a pixel keeps at most `error` of its excess. Of a box of b values thrice the middle has (3 b^2 + 1) / (4 b^3).
+/// The narrowest at which a pixel keeps at most `error` of its excess. Of a box of b values thrice the middle has (3
+/// b^2 + 1) / (4 b^3).
 int level_of(double excess, double error, int last) {
   int level = 0;
   for (; level < last; ++level) {
@@ -77,16 +78,17 @@ int level_of(double excess, double error, int last) {
   return level;
 }
 
-/// Mean over 2 r + 1 values on either side, thrice, mirrored at the ends: what it takes from one place it gives to others.
-/// Values are `step` apart.
-void blur_line(double* values, int count, std::size_t step, int r, std::vector<double>& sums, std::vector<double>& line) {
+/// Mean over 2 r + 1 values on either side, thrice, mirrored at the ends: what it takes from one place it gives to
+/// others. Values are `step` apart.
+void blur_line(double* values, int count, std::size_t step, int r, std::vector<double>& sums,
+               std::vector<double>& line) {
   const auto mirrored = [count](int i) {
     while (i < 0 || i >= count) i = i < 0 ? -1 - i : 2 * count - 1 - i;
     return i;
   };
   sums.resize(std::size_t(count + 2 * r + 1));
   line.resize(std::size_t(count));
-  bool empty = true;   // most are, of few outliers
+  bool empty = true;  // most are, of few outliers
   for (int i = 0; i < count; ++i) {
     line[std::size_t(i)] = values[std::size_t(i) * step];
     empty = empty && line[std::size_t(i)] == 0;
@@ -94,8 +96,10 @@ void blur_line(double* values, int count, std::size_t step, int r, std::vector<d
   if (empty) return;
   for (int pass = 0; pass < 3; ++pass) {
     sums[0] = 0;
-    for (int i = 0; i < count + 2 * r; ++i) sums[std::size_t(i) + 1] = sums[std::size_t(i)] + line[std::size_t(mirrored(i - r))];
-    for (int i = 0; i < count; ++i) line[std::size_t(i)] = (sums[std::size_t(i + 2 * r + 1)] - sums[std::size_t(i)]) / (2 * r + 1);
+    for (int i = 0; i < count + 2 * r; ++i)
+      sums[std::size_t(i) + 1] = sums[std::size_t(i)] + line[std::size_t(mirrored(i - r))];
+    for (int i = 0; i < count; ++i)
+      line[std::size_t(i)] = (sums[std::size_t(i + 2 * r + 1)] - sums[std::size_t(i)]) / (2 * r + 1);
   }
   for (int i = 0; i < count; ++i) values[std::size_t(i) * step] = line[std::size_t(i)];
 }
@@ -104,7 +108,8 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   constexpr std::size_t kLines = 16;
   parallel_chunks(std::size_t(height), kLines, [&](std::size_t first, std::size_t last) {
     std::vector<double> sums, line;
-    for (std::size_t y = first; y < last; ++y) blur_line(image.data() + y * std::size_t(width), width, 1, r, sums, line);
+    for (std::size_t y = first; y < last; ++y)
+      blur_line(image.data() + y * std::size_t(width), width, 1, r, sums, line);
   });
   parallel_chunks(std::size_t(width), kLines, [&](std::size_t first, std::size_t last) {
     std::vector<double> sums, line;
@@ -112,10 +117,10 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w, here 0
-/// and 1.
-void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight, const std::vector<double>& blurred,
-            std::vector<Layers>& pixels) {
+/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for
+/// any weights w, here 0 and 1.
+void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight,
+            const std::vector<double>& blurred, std::vector<Layers>& pixels) {
   const int r = 1 << excess.front().level;
   const std::size_t layer = std::size_t(excess.front().layer);
   for (int c = 0; c < 3; ++c) {
@@ -128,16 +133,20 @@ void spread(std::span<const Excess> excess, int width, int height, const std::ve
     if (!any) continue;
     blur(given, width, height, r);
     for (std::size_t p = 0; p < pixels.size(); ++p)
-      if (weight[p] > 0) pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + weight[p] * std::max(0.0, given[p]));
+      if (weight[p] > 0)
+        pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + weight[p] * std::max(0.0, given[p]));
   }
 }
 
-void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y, int last, std::vector<Excess>& found) {
+void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y, int last,
+               std::vector<Excess>& found) {
   const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
   if (!samples.takes_part(pixel)) return;
   const BrightestSamples& brightest = samples.brightest[pixel];
   const PartCounts& counts = samples.counts[pixel];
-  const FurtherSamples* const further = samples.further_of.empty() || samples.further_of[pixel] == kNone ? nullptr : &samples.further[samples.further_of[pixel]];
+  const FurtherSamples* const further = samples.further_of.empty() || samples.further_of[pixel] == kNone
+                                            ? nullptr
+                                            : &samples.further[samples.further_of[pixel]];
   const auto look = [&](const BrightestSample& sample, Layers PathParts::*part, int PartCounts::*number) {
     const int count = counts.*number;
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
@@ -149,24 +158,28 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
       other_count += further->count.*number;
     }
     others = other_count > 0 ? others / other_count : 0;
-    const double beside = around(samples.width, samples.height, x, y, [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); });
+    const double beside = around(samples.width, samples.height, x, y,
+                                 [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); });
     const double allowed = error + std::max(others, beside);
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
     // Did further samples find as much again, about one such sample? Then it was not alone.
     if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
-    found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last), Rgbd(sample.radiance) * ((1 - allowed / claimed) / count), count});
+    found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last),
+                     Rgbd(sample.radiance) * ((1 - allowed / claimed) / count), count});
   };
   look(brightest.own, &PathParts::own, &PartCounts::own);
   look(brightest.lit, &PathParts::lit, &PartCounts::lit);
   look(brightest.onward, &PathParts::onward, &PartCounts::onward);
 }
 
-std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels, const std::vector<double>& radiances) {
+std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels,
+                               const std::vector<double>& radiances) {
   const int width = samples.width, last = last_level(width, samples.height);
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
   const std::vector<double> errors = errors_of(samples, radiances);
   parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
-    for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
+    for (int x = 0; x < width; ++x)
+      excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
   });
   std::vector<Excess> all;
   for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
@@ -209,9 +222,12 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
   }
   std::vector<double> weight(pixels.size()), blurred;
   for (std::size_t p = 0; p < pixels.size(); ++p) weight[p] = pixels[p].coverage > 0 && samples.takes_part(p) ? 1 : 0;
-  std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });
+  std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) {
+    return a.level != b.level ? a.level < b.level : a.layer < b.layer;
+  });
   for (std::size_t first = 0, end; first < all.size(); first = end) {
-    for (end = first; end < all.size() && all[end].level == all[first].level && all[end].layer == all[first].layer;) ++end;
+    for (end = first; end < all.size() && all[end].level == all[first].level && all[end].layer == all[first].layer;)
+      ++end;
     if (first == 0 || all[first].level != all[first - 1].level) {
       blurred = weight;
       blur(blurred, width, height, 1 << all[first].level);

@@ -13,8 +13,8 @@ ComparisonBuilder::ComparisonBuilder(Comparison comparison, std::uint64_t min_ob
 
 void ComparisonBuilder::add(const Compared& pair, int frame, const std::string& name) {
   const bool first = !total_;
-  if (!first && (pair.width != comparison_.width || pair.height != comparison_.height ||
-                 pair.channels != comparison_.channels))
+  if (!first &&
+      (pair.width != comparison_.width || pair.height != comparison_.height || pair.channels != comparison_.channels))
     throw InputError(name + ": size or channels differ from those of the frame before; compare equal frames");
   comparison_.width = pair.width;
   comparison_.height = pair.height;

@@ -13,32 +13,32 @@ namespace tempolux {
 
 /// What the reference of a comparison is.
 enum class ComparisonMode {
-  one_reference,      ///< its noise is part of every square
-  reference_halves,   ///< two independent halves: no noise floor
-  own_halves          ///< test and reference are two halves of one image: their difference is its noise
+  one_reference,     ///< its noise is part of every square
+  reference_halves,  ///< two independent halves: no noise floor
+  own_halves         ///< test and reference are two halves of one image: their difference is its noise
 };
 
 /// A frame or a sequence against its reference: what formats/comparison/comparison.md describes.
 struct Comparison {
-  std::string command;                                ///< the tool's line of history
-  std::string test;                                   ///< file or pattern, as given
-  std::vector<std::string> references;                ///< one or two
-  std::string relative_to;                            ///< file or pattern in relMSE's denominator; "": reference
+  std::string command;                  ///< the tool's line of history
+  std::string test;                     ///< file or pattern, as given
+  std::vector<std::string> references;  ///< one or two
+  std::string relative_to;              ///< file or pattern in relMSE's denominator; "": reference
   ComparisonMode mode = ComparisonMode::one_reference;
-  std::string layer;                                  ///< "" is RGB
+  std::string layer;  ///< "" is RGB
   std::vector<std::string> channels;
   int width = 0, height = 0;
   struct Frame {
     int frame = 0;
     FrameError error;
-    std::optional<AnimationQuality> quality;          ///< AQM, where it was asked for
+    std::optional<AnimationQuality> quality;  ///< AQM, where it was asked for
   };
   std::vector<Frame> frames;
-  FrameError total;                                   ///< over all frames
-  std::optional<SquaredFigure> flicker;               ///< absent for one frame
-  std::optional<AnimationQuality> quality;            ///< AQM over all frames
-  std::optional<VisionOptions> viewing;               ///< who looked, where there is AQM
-  std::string flow;                                   ///< file or pattern; "": everything stood still
+  FrameError total;                         ///< over all frames
+  std::optional<SquaredFigure> flicker;     ///< absent for one frame
+  std::optional<AnimationQuality> quality;  ///< AQM over all frames
+  std::optional<VisionOptions> viewing;     ///< who looked, where there is AQM
+  std::string flow;                         ///< file or pattern; "": everything stood still
 };
 
 /// Collects the frames of a comparison, one in memory at a time.

@@ -25,8 +25,7 @@ std::optional<double> value_of(const std::optional<Estimate>& estimate, double s
 }
 
 std::optional<double> standard_error_of(const std::optional<Estimate>& estimate, double scale = 1) {
-  return estimate && estimate->standard_error ? std::optional(*estimate->standard_error * scale)
-                                              : std::nullopt;
+  return estimate && estimate->standard_error ? std::optional(*estimate->standard_error * scale) : std::nullopt;
 }
 
 std::string error_line(const std::string& name, const FrameError& error) {
@@ -41,10 +40,8 @@ std::string caveat(const std::string& name, const SquaredFigure& figure) {
   if (figure.resolved()) return "";
   const std::string standard_error =
       figure.squared.standard_error ? format("%.3g", *figure.squared.standard_error) : "unknown";
-  const std::string square =
-      format("%s: mean square %.3g, standard error ", name.c_str(), figure.squared.value);
-  if (figure.squared.value < 0)
-    return square + standard_error + ": below what the reference resolves, reported as 0\n";
+  const std::string square = format("%s: mean square %.3g, standard error ", name.c_str(), figure.squared.value);
+  if (figure.squared.value < 0) return square + standard_error + ": below what the reference resolves, reported as 0\n";
   if (figure.squared.value == 0) return "";
   return square + standard_error + ": not below a third of it, the figure is not settled\n";
 }
@@ -66,8 +63,7 @@ std::string worst_objects(const std::vector<ObjectError>& objects) {
   }
   if (judged.size() > kShown) text += format("and %zu objects with less bias\n", judged.size() - kShown);
   if (judged.size() < objects.size())
-    text += format("%zu objects not shown: too few pixels, or no light on them\n",
-                   objects.size() - judged.size());
+    text += format("%zu objects not shown: too few pixels, or no light on them\n", objects.size() - judged.size());
   return text;
 }
 
@@ -80,15 +76,13 @@ std::string quality_text(const Comparison& comparison) {
     for (const Comparison::Frame& frame : comparison.frames)
       text += format("frame %d: AQM %.2f %%\n", frame.frame, 100 * frame.quality->all.share());
   text += format("AQM %.2f %%: %llu of %llu pixels are seen to differ (P > %.2f)\n", 100 * total.all.share(),
-                 static_cast<unsigned long long>(total.all.seen),
-                 static_cast<unsigned long long>(total.all.pixels), vision::kSeenProbability);
+                 static_cast<unsigned long long>(total.all.seen), static_cast<unsigned long long>(total.all.pixels),
+                 vision::kSeenProbability);
   std::vector<std::pair<std::uint32_t, SeenShare>> objects(total.objects.begin(), total.objects.end());
-  std::ranges::stable_sort(objects, std::ranges::greater{},
-                           [](const auto& object) { return object.second.seen; });
+  std::ranges::stable_sort(objects, std::ranges::greater{}, [](const auto& object) { return object.second.seen; });
   for (std::size_t i = 0; i < std::min<std::size_t>(objects.size(), 3) && objects[i].second.seen; ++i)
     text += format("  object %u: %.2f %% of its pixels, %.1f %% of those seen\n", objects[i].first,
-                   100 * objects[i].second.share(),
-                   100 * double(objects[i].second.seen) / double(total.all.seen));
+                   100 * objects[i].second.share(), 100 * double(objects[i].second.seen) / double(total.all.seen));
   return text +
          format("display %s, %g cd/m2, %.1f pixels/degree, exposure %+.2f stops, eyes %s at %g frames/s; ",
                 viewing.display.name.c_str(), viewing.display.peak, viewing.display.pixels_per_degree,
@@ -101,30 +95,25 @@ std::string quality_text(const Comparison& comparison) {
 
 std::string comparison_text(const Comparison& comparison) {
   const FrameError& total = comparison.total;
-  std::string text =
-      comparison.test + (comparison.mode == ComparisonMode::own_halves ? " and " : " against ");
-  for (std::size_t i = 0; i < comparison.references.size(); ++i)
-    text += (i ? " + " : "") + comparison.references[i];
-  text += format("\nlayer %s, %dx%d, %llu pixels counted\n",
-                 comparison.layer.empty() ? "RGB" : comparison.layer.c_str(), comparison.width,
-                 comparison.height, static_cast<unsigned long long>(total.pixels));
-
+  std::string text = comparison.test + (comparison.mode == ComparisonMode::own_halves ? " and " : " against ");
+  for (std::size_t i = 0; i < comparison.references.size(); ++i) text += (i ? " + " : "") + comparison.references[i];
   text +=
-      format("%-8s%10s%10s%10s%10s%10s%10s\n", "frame", "RMSE", "+-", "relMSE", "bias %", "+-", "PSNR dB");
-  for (const Comparison::Frame& frame : comparison.frames)
-    text += error_line(std::to_string(frame.frame), frame.error);
+      format("\nlayer %s, %dx%d, %llu pixels counted\n", comparison.layer.empty() ? "RGB" : comparison.layer.c_str(),
+             comparison.width, comparison.height, static_cast<unsigned long long>(total.pixels));
+
+  text += format("%-8s%10s%10s%10s%10s%10s%10s\n", "frame", "RMSE", "+-", "relMSE", "bias %", "+-", "PSNR dB");
+  for (const Comparison::Frame& frame : comparison.frames) text += error_line(std::to_string(frame.frame), frame.error);
   if (comparison.frames.size() > 1) text += error_line("all", total);
   if (comparison.flicker) {
-    text += format("flicker %10.4g", comparison.flicker->root()) +
-            cell(comparison.flicker->root_standard_error()) + "\n";
+    text +=
+        format("flicker %10.4g", comparison.flicker->root()) + cell(comparison.flicker->root_standard_error()) + "\n";
     text += caveat("flicker", *comparison.flicker);
   }
   if (total.largest.value == 0) text += "no sample differs\n";
   else
-    text += format(
-        "largest difference %.4g in channel %s at column %d, row %d of frame %d; mean difference %.4g\n",
-        total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
-        total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
+    text += format("largest difference %.4g in channel %s at column %d, row %d of frame %d; mean difference %.4g\n",
+                   total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
+                   total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
   text += worst_objects(total.objects);
   if (comparison.quality) text += quality_text(comparison);
   if (comparison.mode == ComparisonMode::own_halves)

@@ -183,8 +183,7 @@ std::optional<double> time_at_error(const std::vector<CurvePoint>& points, doubl
   return std::nullopt;
 }
 
-std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points,
-                               const std::vector<CurvePoint>& baseline) {
+std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points, const std::vector<CurvePoint>& baseline) {
   if (points.empty() || baseline.empty()) return {};
   const auto least = [](const std::vector<CurvePoint>& p) {
     return std::sqrt(std::ranges::min(p, {}, &CurvePoint::mse).mse);

@@ -37,11 +37,11 @@ struct CurveFit {
   /// those whose squared error is above ten times the floor's (there a/t + b has a slope of -0.45 or
   /// steeper).
   std::optional<double> slope;
-  std::optional<double> slope_standard_error;   ///< from the scatter around the line; needs three points
+  std::optional<double> slope_standard_error;  ///< from the scatter around the line; needs three points
   std::size_t slope_points = 0;
   /// e^2 = a/t + b, least squares of relative deviations, a and b not negative. Needs three points.
-  double noise = 0;               ///< a [error^2 s]
-  double floor_squared = 0;       ///< b
+  double noise = 0;          ///< a [error^2 s]
+  double floor_squared = 0;  ///< b
   /// sqrt(b) where a floor is seen: b is above two of its standard errors and above 1 % of the least e^2, and
   /// the model fits better than a straight line in log-log. Otherwise absent, which does not prove that there
   /// is none.
@@ -62,7 +62,6 @@ struct SpeedUp {
 };
 
 /// At both ends and the geometric middle of the errors that both curves reach; empty if they share none.
-std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points,
-                               const std::vector<CurvePoint>& baseline);
+std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points, const std::vector<CurvePoint>& baseline);
 
 }  // namespace tempolux

@@ -61,8 +61,7 @@ int wait_for(pid_t child, double timeout_s) {
   for (int status = 0;;) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
-    if (ended < 0 && errno != EINTR)
-      throw ResourceError(std::string("gnuplot: lost: ") + std::strerror(errno));
+    if (ended < 0 && errno != EINTR) throw ResourceError(std::string("gnuplot: lost: ") + std::strerror(errno));
     if (std::chrono::steady_clock::now() > deadline) {
       kill(child, SIGKILL);
       waitpid(child, &status, 0);

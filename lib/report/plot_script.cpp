@@ -42,9 +42,7 @@ struct Range {
 std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat format) {
   std::string data, plots;
   Range time, error;
-  const auto add_plot = [&](const std::string& plot) {
-    plots += (plots.empty() ? "plot " : ", \\\n  ") + plot;
-  };
+  const auto add_plot = [&](const std::string& plot) { plots += (plots.empty() ? "plot " : ", \\\n  ") + plot; };
   std::size_t colour = 0;
   for (std::size_t i = 0; i < report.curves.size(); ++i) {
     const Curve& curve = report.curves[i];
@@ -58,20 +56,18 @@ std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat for
     }
     data += "END\n";
     const CurveFit& fit = report.fits[i];
-    add_plot(block + " with linespoints lw 2 pt 7 ps 0.7 lc " + style + " title " +
-             quoted(key_text(curve, fit)));
+    add_plot(block + " with linespoints lw 2 pt 7 ps 0.7 lc " + style + " title " + quoted(key_text(curve, fit)));
     if (fit.noise > 0 && fit.floor)
       add_plot("[" + number_text(curve.points.front().time_s, "%.9g") + ":" +
-               number_text(curve.points.back().time_s, "%.9g") + "] sqrt(" + number_text(fit.noise, "%.9g") +
-               "/x + " + number_text(fit.floor_squared, "%.9g") + ") with lines dt 3 lc " + style +
-               " notitle");
+               number_text(curve.points.back().time_s, "%.9g") + "] sqrt(" + number_text(fit.noise, "%.9g") + "/x + " +
+               number_text(fit.floor_squared, "%.9g") + ") with lines dt 3 lc " + style + " notitle");
   }
   if (kind == TimeKind::cpu)
     for (std::size_t i = 0; i < report.points.size(); ++i) {
       const GivenPoint& point = report.points[i];
       const std::string block = "$given" + std::to_string(i);
-      data += block + " << END\n" + number_text(point.cpu_s, "%.9g") + " " + number_text(point.rmse, "%.9g") +
-              "\nEND\n";
+      data +=
+          block + " << END\n" + number_text(point.cpu_s, "%.9g") + " " + number_text(point.rmse, "%.9g") + "\nEND\n";
       time.include(point.cpu_s);
       error.include(point.rmse);
       add_plot(block + " with points ps 1.2 lw 1.5 pt " + std::to_string(1 + i % 3) + " lc " +

@@ -59,11 +59,17 @@ std::vector<std::string> error_cells(const std::optional<ErrorRecord>& error) {
   constexpr const char* kExact = "%.9g";
   if (!error) return std::vector<std::string>(12);
   const auto& worst = error->worst_object;
-  return {error->layer, number_text(error->pixels, "%.0f"), std::to_string(error->frames),
-          number_text(error->rmse(), kExact), number_text(error->mse, kExact),
-          number_text(error->mse_standard_error, kExact), number_text(error->relmse, kExact),
-          number_text(error->bias, kExact), number_text(error->bias_standard_error, kExact),
-          worst ? number_text(worst->second, kExact) : "", number_text(error->psnr_db, kExact),
+  return {error->layer,
+          number_text(error->pixels, "%.0f"),
+          std::to_string(error->frames),
+          number_text(error->rmse(), kExact),
+          number_text(error->mse, kExact),
+          number_text(error->mse_standard_error, kExact),
+          number_text(error->relmse, kExact),
+          number_text(error->bias, kExact),
+          number_text(error->bias_standard_error, kExact),
+          worst ? number_text(worst->second, kExact) : "",
+          number_text(error->psnr_db, kExact),
           number_text(error->flicker, kExact)};
 }
 
@@ -76,8 +82,8 @@ std::string report_csv(const ReportInput& input) {
       for (const auto& [name, value] : columns_of(run))
         if (std::ranges::find(numbers, name) == numbers.end()) numbers.push_back(name);
 
-  std::vector<std::string> header{"scene", "curve", "label", "x", "parameters", "stages", "cpu_s", "wall_s",
-                                  "peak_memory_bytes"};
+  std::vector<std::string> header{
+      "scene", "curve", "label", "x", "parameters", "stages", "cpu_s", "wall_s", "peak_memory_bytes"};
   header.insert(header.end(), numbers.begin(), numbers.end());
   for (const char* name : {"layer", "pixels", "frames", "rmse", "mse", "mse_standard_error", "relmse", "bias",
                            "bias_standard_error", "worst_object_bias", "psnr_db", "flicker"})

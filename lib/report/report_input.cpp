@@ -38,8 +38,7 @@ struct Place {
   std::vector<Place> items() const {
     if (!json.is_array()) refuse("not an array");
     std::vector<Place> all;
-    for (std::size_t i = 0; i < json.size(); ++i)
-      all.push_back({json[i], name + "[" + std::to_string(i) + "]"});
+    for (std::size_t i = 0; i < json.size(); ++i) all.push_back({json[i], name + "[" + std::to_string(i) + "]"});
     return all;
   }
   std::vector<std::pair<std::string, Place>> members() const {
@@ -149,10 +148,8 @@ MeasuredRun run_of(const Place& entry, const Folder& folder) {
   if (const auto parameters = entry.find("parameters"))
     for (const auto& [key, value] : parameters->members())
       run.parameters[key] = value.json.is_string() ? value.string() : value.json.dump();
-  for (const Place& stats : entry.at("stats").items())
-    run.stages.push_back(read_stats(folder.file(stats.string())));
-  if (const auto comparison = entry.find("comparison"))
-    run.error = read_comparison(folder.file(comparison->string()));
+  for (const Place& stats : entry.at("stats").items()) run.stages.push_back(read_stats(folder.file(stats.string())));
+  if (const auto comparison = entry.find("comparison")) run.error = read_comparison(folder.file(comparison->string()));
   if (const auto image = entry.find("image")) run.image = folder.file(image->string());
   if (const auto difference = entry.find("difference")) run.difference = folder.file(difference->string());
   return run;
@@ -162,9 +159,7 @@ MeasuredRun run_of(const Place& entry, const Folder& folder) {
 
 double ErrorRecord::rmse() const { return mse > 0 ? std::sqrt(mse) : 0; }
 
-bool ErrorRecord::usable() const {
-  return mse > 0 && (!mse_standard_error || *mse_standard_error < mse / 3);
-}
+bool ErrorRecord::usable() const { return mse > 0 && (!mse_standard_error || *mse_standard_error < mse / 3); }
 
 double MeasuredRun::cpu_s() const {
   double sum = 0;
@@ -194,8 +189,8 @@ StatsRecord read_stats(const std::string& path) {
   if (const auto peak = top.find("peak_memory_bytes")) record.peak_memory_bytes = peak->number_from_0();
   if (const auto phases = top.find("phases"))
     for (const Place& phase : phases->items())
-      record.phases.push_back({phase.at("name").string(), phase.at("cpu_s").number_from_0(),
-                               phase.at("wall_s").number_from_0()});
+      record.phases.push_back(
+          {phase.at("name").string(), phase.at("cpu_s").number_from_0(), phase.at("wall_s").number_from_0()});
   if (const auto counts = top.find("counts"))
     for (const auto& [name, value] : counts->members())
       if (!value.json.is_null()) record.counts[name] = value.number();
@@ -235,19 +230,17 @@ ReportInput read_manifest(const std::string& path) {
   for (const Place& entry : top.at("runs").items()) input.runs.push_back(run_of(entry, folder));
   if (const auto points = top.find("points"))
     for (const Place& entry : points->items()) {
-      GivenPoint point{string_of(entry, "scene", "scene"), entry.at("label").string(),
-                       string_of(entry, "note"), entry.at("cpu_s").number(), entry.at("rmse").number()};
+      GivenPoint point{string_of(entry, "scene", "scene"), entry.at("label").string(), string_of(entry, "note"),
+                       entry.at("cpu_s").number(), entry.at("rmse").number()};
       if (point.cpu_s <= 0 || point.rmse <= 0) entry.refuse("cpu_s and rmse must be above 0");
       input.points.push_back(std::move(point));
     }
   if (const auto references = top.find("references"))
-    for (const auto& [scene, image] : references->members())
-      input.references[scene] = folder.file(image.string());
+    for (const auto& [scene, image] : references->members()) input.references[scene] = folder.file(image.string());
   return input;
 }
 
-void add_run(ReportInput& input, const std::string& what, const std::string& stats,
-             const std::string& comparison) {
+void add_run(ReportInput& input, const std::string& what, const std::string& stats, const std::string& comparison) {
   MeasuredRun run;
   run.scene = "scene";
   for (const std::string& pair : split(what, ',')) {

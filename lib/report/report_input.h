@@ -28,10 +28,10 @@ struct ErrorRecord {
   std::string layer;
   double pixels = 0;
   std::size_t frames = 0;
-  double mse = 0;                                     ///< may be negative
+  double mse = 0;  ///< may be negative
   std::optional<double> mse_standard_error;
   std::optional<double> relmse, bias, bias_standard_error, psnr_db, flicker;
-  bool halves = false;                                ///< the reference's noise is not in mse
+  bool halves = false;                                           ///< the reference's noise is not in mse
   std::optional<std::pair<std::uint32_t, double>> worst_object;  ///< id and bias, objects of few pixels apart
 
   /// Root of mse, 0 where that is not positive.
@@ -43,15 +43,15 @@ struct ErrorRecord {
 /// One measured run of a chain of tools: one line of the report, one point of a curve.
 struct MeasuredRun {
   std::string scene, curve, label;
-  std::optional<double> x;                            ///< the swept parameter
+  std::optional<double> x;  ///< the swept parameter
   std::map<std::string, std::string> parameters;
-  std::vector<StatsRecord> stages;                    ///< every process counted
+  std::vector<StatsRecord> stages;  ///< every process counted
   std::optional<ErrorRecord> error;
-  std::string image, difference;                      ///< PNG files, or empty
+  std::string image, difference;  ///< PNG files, or empty
 
-  double cpu_s() const;                               ///< sum over the stages
+  double cpu_s() const;  ///< sum over the stages
   double wall_s() const;
-  double peak_memory_bytes() const;                   ///< of the largest process
+  double peak_memory_bytes() const;  ///< of the largest process
 };
 
 /// A point measured elsewhere (a peer): given, never fitted.
@@ -65,8 +65,8 @@ struct ReportInput {
   std::string baseline;  ///< curve that speed-ups are over; empty: each scene's first
   std::vector<MeasuredRun> runs;
   std::vector<GivenPoint> points;
-  std::map<std::string, std::string> references;      ///< scene -> PNG of its reference
-  std::vector<std::string> files;                     ///< everything read
+  std::map<std::string, std::string> references;  ///< scene -> PNG of its reference
+  std::vector<std::string> files;                 ///< everything read
 };
 
 /// Read one file. Throw InputError "FILE: PLACE: WHAT; REMEDY".
@@ -79,7 +79,6 @@ ReportInput read_manifest(const std::string& path);
 
 /// Adds a run given on the command line: `what` is KEY=VALUE{,KEY=VALUE} with the keys scene, curve, label, x
 /// (others are parameters); `stats` is FILE{+FILE}; `comparison` is a file. Throws InputError.
-void add_run(ReportInput& input, const std::string& what, const std::string& stats,
-             const std::string& comparison);
+void add_run(ReportInput& input, const std::string& what, const std::string& stats, const std::string& comparison);
 
 }  // namespace tempolux

@@ -66,23 +66,21 @@ std::string base64(const std::string& bytes) {
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k)
       group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }
 
 std::string figure(const std::string& type, const std::string& bytes, const std::string& caption) {
-  return "<figure><img alt=\"" + html_text(caption) + "\" src=\"data:image/" + type + ";base64," +
-         base64(bytes) + "\"><figcaption>" + html_text(caption) + "</figcaption></figure>\n";
+  return "<figure><img alt=\"" + html_text(caption) + "\" src=\"data:image/" + type + ";base64," + base64(bytes) +
+         "\"><figcaption>" + html_text(caption) + "</figcaption></figure>\n";
 }
 
 std::string png_figure(const std::string& path, const std::string& caption) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be read; the report names it as an image");
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n"))
-    throw InputError(path + ": not a PNG; give images of runs as PNG");
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw InputError(path + ": not a PNG; give images of runs as PNG");
   return figure("png", bytes, caption);
 }
 
@@ -108,20 +106,17 @@ constexpr const char* kStyle =
 
 }  // namespace
 
-std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes,
-                            const Plots& plots) {
+std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots) {
   std::string text = "# " + markdown_cell(input.title) + "\n\n";
   for (const SceneReport& scene : scenes) {
     text += "## " + markdown_cell(scene.scene) + "\n\n";
-    if (plots.contains(scene.file_stem + ".svg"))
-      text += "![error against time](" + scene.file_stem + ".svg)\n\n";
+    if (plots.contains(scene.file_stem + ".svg")) text += "![error against time](" + scene.file_stem + ".svg)\n\n";
     for (const Table& table : scene.tables) text += markdown_table(table);
   }
   return text;
 }
 
-std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes,
-                        const Plots& plots) {
+std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots) {
   std::string text = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
                      html_text(input.title) + "</title>\n<style>" + kStyle + "</style></head>\n<body>\n<h1>" +
                      html_text(input.title) + "</h1>\n";

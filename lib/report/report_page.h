@@ -13,8 +13,7 @@ namespace tempolux {
 using Plots = std::map<std::string, std::string>;
 
 /// Tables and links to the plots that are there.
-std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes,
-                            const Plots& plots);
+std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
 /// The same in one file that needs no other: plots, frames, references and difference images as data URIs.
 /// Throws InputError if an image named by a run cannot be read or is no PNG.

@@ -18,8 +18,8 @@ std::optional<double> percent(std::optional<double> value) {
 
 Table runs_table(const ReportInput& input, const std::string& scene) {
   Table table{"Runs",
-              {"curve", "run", "x", "CPU s", "wall s", "peak MB", "RMSE", "relMSE", "bias %", "+-",
-               "worst object %", "flicker"},
+              {"curve", "run", "x", "CPU s", "wall s", "peak MB", "RMSE", "relMSE", "bias %", "+-", "worst object %",
+               "flicker"},
               {},
               ""};
   bool noisy = false;
@@ -28,15 +28,13 @@ Table runs_table(const ReportInput& input, const std::string& scene) {
     const ErrorRecord none, &error = run.error ? *run.error : none;
     noisy = noisy || (run.error && !error.halves);
     const std::string rmse = !run.error ? "" : error.usable() ? number_text(error.rmse()) : "not resolved";
-    const std::string worst = error.worst_object
-                                  ? number_text(100 * error.worst_object->second, "%.2f") + " (id " +
-                                        std::to_string(error.worst_object->first) + ")"
-                                  : "";
-    table.rows.push_back(
-        {run.curve, run.label, number_text(run.x, "%g"), number_text(run.cpu_s(), "%.3g"),
-         number_text(run.wall_s(), "%.3g"), number_text(run.peak_memory_bytes() / 1e6, "%.0f"), rmse,
-         number_text(error.relmse), number_text(percent(error.bias), "%.3f"),
-         number_text(percent(error.bias_standard_error), "%.3f"), worst, number_text(error.flicker)});
+    const std::string worst = error.worst_object ? number_text(100 * error.worst_object->second, "%.2f") + " (id " +
+                                                       std::to_string(error.worst_object->first) + ")"
+                                                 : "";
+    table.rows.push_back({run.curve, run.label, number_text(run.x, "%g"), number_text(run.cpu_s(), "%.3g"),
+                          number_text(run.wall_s(), "%.3g"), number_text(run.peak_memory_bytes() / 1e6, "%.0f"), rmse,
+                          number_text(error.relmse), number_text(percent(error.bias), "%.3f"),
+                          number_text(percent(error.bias_standard_error), "%.3f"), worst, number_text(error.flicker)});
   }
   if (noisy) table.note = "Some runs were compared with one reference: its noise is part of their RMSE.";
   return table;
@@ -69,9 +67,8 @@ Table speed_up_table(const SceneReport& report, const std::string& baseline, Tim
   for (const Curve& curve : report.curves)
     if (&curve != &*base)
       for (const SpeedUp& found : speed_ups(curve.points, base->points))
-        table.rows.push_back({curve.name, base->name, number_text(found.rmse),
-                              number_text(found.time_s, "%.3g"), number_text(found.baseline_time_s, "%.3g"),
-                              number_text(found.ratio(), "%.2f")});
+        table.rows.push_back({curve.name, base->name, number_text(found.rmse), number_text(found.time_s, "%.3g"),
+                              number_text(found.baseline_time_s, "%.3g"), number_text(found.ratio(), "%.2f")});
   return table;
 }
 
@@ -93,8 +90,7 @@ Table points_table(const SceneReport& report) {
 
 std::string stem_of(const std::string& scene, std::set<std::string>& taken) {
   std::string stem = "error-";
-  for (const char c : scene)
-    stem += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ? c : '_';
+  for (const char c : scene) stem += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ? c : '_';
   std::string unique = stem;
   for (int i = 2; !taken.insert(unique).second; ++i) unique = stem + "-" + std::to_string(i);
   return unique;
@@ -123,10 +119,9 @@ std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind) 
   for (SceneReport& report : reports) {
     const std::string first = report.curves.empty() ? "" : report.curves.front().name;
     const TimeKind cpu = TimeKind::cpu;
-    for (Table& table :
-         std::vector{runs_table(input, report.scene), fits_table(report, kind),
-                     speed_up_table(report, input.baseline.empty() ? first : input.baseline, kind),
-                     kind == cpu ? points_table(report) : Table{}})
+    for (Table& table : std::vector{runs_table(input, report.scene), fits_table(report, kind),
+                                    speed_up_table(report, input.baseline.empty() ? first : input.baseline, kind),
+                                    kind == cpu ? points_table(report) : Table{}})
       if (!table.rows.empty()) report.tables.push_back(std::move(table));
   }
   return reports;

@@ -18,9 +18,9 @@ struct Table {
 
 struct SceneReport {
   std::string scene;
-  std::string file_stem;                              ///< "error-SCENE", unique, of letters, digits, - _ only
+  std::string file_stem;  ///< "error-SCENE", unique, of letters, digits, - _ only
   std::vector<Curve> curves;
-  std::vector<CurveFit> fits;                         ///< of each curve
+  std::vector<CurveFit> fits;  ///< of each curve
   std::vector<GivenPoint> points;
   std::vector<Table> tables;  ///< runs, curves, speed-ups, given points; none is empty
 };

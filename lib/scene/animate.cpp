@@ -47,8 +47,7 @@ void spline(const AnimationTrack& track, std::size_t key, double s, double dt_s,
   const double *out0 = v0 + n, *in1 = v0 + 2 * n, *v1 = v0 + 3 * n;
   const double s2 = s * s, s3 = s2 * s;
   for (std::size_t c = 0; c < n; ++c)
-    out[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) +
-             dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
+    out[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) + dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
 }
 
 void set_rotation(std::span<double> out, const Value& q) { std::copy(q.begin(), q.end(), out.begin()); }
@@ -97,8 +96,7 @@ Value evaluate(const AnimationTrack& track, double time_s) {
   return value;
 }
 
-Animator::Animator(const Scene& scene)
-    : scene_(&scene), tracks_(scene.nodes.size()), joint_used_(scene.nodes.size()) {
+Animator::Animator(const Scene& scene) : scene_(&scene), tracks_(scene.nodes.size()), joint_used_(scene.nodes.size()) {
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
       anything_animated_ = true;
@@ -131,10 +129,8 @@ Affine Animator::local(std::size_t n, double time_s) const {
   for (const AnimationTrack* track : tracks_[n]) {
     if (track->path == Path::weights) continue;
     const Value v = evaluate(*track, time_s);
-    if (track->path == Path::rotation)
-      rotation = v;
-    else
-      (track->path == Path::translation ? translation : scale) = {v[0], v[1], v[2]};
+    if (track->path == Path::rotation) rotation = v;
+    else (track->path == Path::translation ? translation : scale) = {v[0], v[1], v[2]};
   }
   return affine_from_trs(translation, rotation, scale);
 }

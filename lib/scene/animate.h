@@ -21,9 +21,9 @@ std::array<double, 4> evaluate(const AnimationTrack& track, double time_s);
 
 /// The shape of a node's mesh: two equal poses have equal vertices.
 struct Pose {
-  std::vector<double> weights;              ///< by morph target; empty: none
-  std::vector<Affine> world_from_mesh;      ///< by joint of the node's skin (identity where no vertex follows
-                                            ///< it); empty: no skin
+  std::vector<double> weights;          ///< by morph target; empty: none
+  std::vector<Affine> world_from_mesh;  ///< by joint of the node's skin (identity where no vertex follows
+                                        ///< it); empty: no skin
   bool operator==(const Pose&) const = default;
 };
 
@@ -55,7 +55,7 @@ class Animator {
   const Scene* scene_;
   std::vector<std::vector<const AnimationTrack*>> tracks_;
   std::vector<const AnimationTrack*> property_tracks_;
-  std::vector<std::vector<std::uint8_t>> joint_used_;   ///< per node with a skin: by joint
+  std::vector<std::vector<std::uint8_t>> joint_used_;  ///< per node with a skin: by joint
   bool anything_animated_ = false;
 };
 

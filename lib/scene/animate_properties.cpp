@@ -81,8 +81,14 @@ PunctualLight Animator::light(std::size_t index, double time_s) const {
     if (track->path < Path::light_color || track->path > Path::outer_cone) continue;
     const std::array<double, 4> v = evaluate(*track, time_s);
     switch (track->path) {
-      case Path::light_color: factors.color = limited_colour(v); product = true; break;
-      case Path::light_intensity: factors.strength = limited(v[0], 0); product = true; break;
+      case Path::light_color:
+        factors.color = limited_colour(v);
+        product = true;
+        break;
+      case Path::light_intensity:
+        factors.strength = limited(v[0], 0);
+        product = true;
+        break;
       case Path::inner_cone: inner = v[0]; break;
       default: outer = v[0]; break;
     }

@@ -87,8 +87,7 @@ SceneFrame SegmentScene::at(int frame) const {
   at.segment = segment_;
   at.surfaces = static_surfaces_;
   at.static_count = at.surfaces.size();
-  const std::vector<Surface> moving =
-      place_surfaces(*scene_, *animator_, *sharing_, segment_, at.time_s, world, true);
+  const std::vector<Surface> moving = place_surfaces(*scene_, *animator_, *sharing_, segment_, at.time_s, world, true);
   at.surfaces.insert(at.surfaces.end(), moving.begin(), moving.end());
   at.materials = materials_stay_ ? scene_->materials : animator_->materials(at.time_s);
   at.images = scene_->images;

@@ -15,31 +15,31 @@ namespace tempolux {
 
 class Animator;
 class Sharing;
-class Media;   // lib/volume/medium.h
+class Media;  // lib/volume/medium.h
 
 /// A material, light or camera that an animation changes in a segment (KHR_animation_pointer).
 struct PropertyChange {
-  std::string name, why;                    ///< "Glass", "roughness of Glass"
-  std::string carries;                      ///< "material", "light" or "camera"
+  std::string name, why;  ///< "Glass", "roughness of Glass"
+  std::string carries;    ///< "material", "light" or "camera"
 };
 
 /// An interval of frames over which "static" means static (docs/methods/formulas.md). Both ends belong to it.
 struct Segment {
   int first = 0, last = 0;
-  std::vector<std::uint8_t> node_moves;     ///< per node: its evaluated state differs between two frames: its
-                                            ///< world transform, the morph weights and joints of its mesh, its
-                                            ///< materials or its light
-  std::vector<std::string> why_moves;       ///< per node: "" or what differs, e.g. "translation of MovingBox"
-  std::vector<PropertyChange> changes;      ///< materials, lights and cameras that differ between two frames
-  Vec3d origin{};                           ///< world position of scene space's origin: 0 unless the scene
-                                            ///< is far from the world's origin for its size
-  Box3d world_bounds;                       ///< of all geometry over the whole segment, world space, m
+  std::vector<std::uint8_t> node_moves;  ///< per node: its evaluated state differs between two frames: its
+                                         ///< world transform, the morph weights and joints of its mesh, its
+                                         ///< materials or its light
+  std::vector<std::string> why_moves;    ///< per node: "" or what differs, e.g. "translation of MovingBox"
+  std::vector<PropertyChange> changes;   ///< materials, lights and cameras that differ between two frames
+  Vec3d origin{};                        ///< world position of scene space's origin: 0 unless the scene
+                                         ///< is far from the world's origin for its size
+  Box3d world_bounds;                    ///< of all geometry over the whole segment, world space, m
 };
 
 struct TimeOptions {
-  double fps = 24;                          ///< frame f is at time f / fps
-  int segment_length = 24;                  ///< frames; borders at multiples of it
-  std::string light_units = "raw";          ///< raw, or spec: punctual lights divided by 683
+  double fps = 24;                  ///< frame f is at time f / fps
+  int segment_length = 24;          ///< frames; borders at multiples of it
+  std::string light_units = "raw";  ///< raw, or spec: punctual lights divided by 683
 };
 
 /// `frame`, or the animation's nearest end if it lies outside: 0, or the frame of the last key (the next if
@@ -82,15 +82,15 @@ class SharedArray {
 /// Where many nodes or instances share a large primitive, the surface is `instanced`: it keeps no vertices of
 /// its own, position() and normal() transform the primitive's. They give the same numbers either way.
 struct Surface {
-  std::uint32_t object = 0;                 ///< id.object
+  std::uint32_t object = 0;  ///< id.object
   std::uint32_t node = 0;
   std::uint32_t material = 0;
-  bool flipped = false;                     ///< transform mirrors: the front is on the other winding
-  const Primitive* primitive = nullptr;     ///< triangles and uvs; owned by the Scene
-  SharedArray<Vec3> positions;              ///< scene space, m; double transform, rounded once; empty: instanced
-  SharedArray<Vec3> normals;                ///< unit, or empty: flat shading, or instanced
-  SharedArray<Vec3> tangents;               ///< only of a shape that deforms and has them; not unit
-  Affine scene_from_node;                   ///< of an instance: its own transform included
+  bool flipped = false;                  ///< transform mirrors: the front is on the other winding
+  const Primitive* primitive = nullptr;  ///< triangles and uvs; owned by the Scene
+  SharedArray<Vec3> positions;           ///< scene space, m; double transform, rounded once; empty: instanced
+  SharedArray<Vec3> normals;             ///< unit, or empty: flat shading, or instanced
+  SharedArray<Vec3> tangents;            ///< only of a shape that deforms and has them; not unit
+  Affine scene_from_node;                ///< of an instance: its own transform included
 
   bool instanced() const { return positions.empty(); }
   /// Scene space, m.
@@ -111,22 +111,22 @@ struct Surface {
 
 struct PlacedLight {
   PunctualLight light;
-  Vec3 position;                            ///< scene space
-  Vec3 direction;                           ///< unit, the way it shines
+  Vec3 position;   ///< scene space
+  Vec3 direction;  ///< unit, the way it shines
   std::uint32_t node = 0;
 };
 
 struct PlacedCamera {
   Camera camera;
-  Affine scene_from_camera;                 ///< rigid: right, up, -forward in its columns; scale removed
+  Affine scene_from_camera;  ///< rigid: right, up, -forward in its columns; scale removed
 };
 
 /// What a stage depends on, hashed by concern; 32 hexadecimal digits each (formats/plan/plan.md).
 struct SceneHashes {
-  std::string camera;                       ///< never part of an identity
-  std::string static_geometry;              ///< of the segment
-  std::string moving_geometry;              ///< at this frame
-  std::string lights;                       ///< punctual lights, which triangles emit what at this frame, environment
+  std::string camera;           ///< never part of an identity
+  std::string static_geometry;  ///< of the segment
+  std::string moving_geometry;  ///< at this frame
+  std::string lights;           ///< punctual lights, which triangles emit what at this frame, environment
   std::string materials;
   std::string media;
 };
@@ -137,17 +137,17 @@ struct SceneFrame {
   int frame = 0;
   double time_s = 0;
   Segment segment;
-  std::vector<Surface> surfaces;            ///< first the static ones, then those that move
+  std::vector<Surface> surfaces;  ///< first the static ones, then those that move
   std::size_t static_count = 0;
-  std::vector<Material> materials;          ///< evaluated
-  std::shared_ptr<const TextureImages> images;   ///< of the materials' textures; null: there are none
+  std::vector<Material> materials;              ///< evaluated
+  std::shared_ptr<const TextureImages> images;  ///< of the materials' textures; null: there are none
   std::vector<PlacedLight> lights;
-  const Environment* environment = nullptr; ///< the scene's; nullptr: none
-  std::shared_ptr<const Media> media;       ///< nullptr: none. at() leaves that; who reads the volumes sets it
-  Vec3d origin{};                           ///< world = origin + scene space
-  Box3 bounds;                              ///< of the whole segment, scene space
-  std::vector<Affine> world_from_node;      ///< per node, at this frame
-  std::vector<Camera> cameras;              ///< evaluated
+  const Environment* environment = nullptr;  ///< the scene's; nullptr: none
+  std::shared_ptr<const Media> media;        ///< nullptr: none. at() leaves that; who reads the volumes sets it
+  Vec3d origin{};                            ///< world = origin + scene space
+  Box3 bounds;                               ///< of the whole segment, scene space
+  std::vector<Affine> world_from_node;       ///< per node, at this frame
+  std::vector<Camera> cameras;               ///< evaluated
   SceneHashes hashes;
 
   /// The camera of a node (an index into Scene::nodes, as Scene::camera_node returns it) at this frame.

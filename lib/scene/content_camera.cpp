@@ -14,19 +14,20 @@ namespace tempolux {
 namespace {
 
 // docs/methods/content-camera.md has the reason of each.
-constexpr int kTimes = 8;                     ///< of an animation, evenly spread, that are looked at
+constexpr int kTimes = 8;  ///< of an animation, evenly spread, that are looked at
 constexpr std::size_t kMostTriangles = 400'000;
-constexpr double kGap = 2;                    ///< a ground's triangle is longer than so many diagonals of the rest
-constexpr double kDetail = 0.75;              ///< the rest is at least this share of all triangles
-constexpr double kStrays = 0.005;             ///< share of the lengths that may be left out at each end of an axis ...
-constexpr double kShrink = 0.5;               ///< ... if the axis shrinks below this share
+constexpr double kGap = 2;         ///< a ground's triangle is longer than so many diagonals of the rest
+constexpr double kDetail = 0.75;   ///< the rest is at least this share of all triangles
+constexpr double kStrays = 0.005;  ///< share of the lengths that may be left out at each end of an axis ...
+constexpr double kShrink = 0.5;    ///< ... if the axis shrinks below this share
 constexpr double kYfov_rad = 0.7, kAspect = 4.0 / 3.0, kMargin = 1.06;
-const Vec3d kTowardsEye = normalize(Vec3d{0.5, 0.4, 1});  ///< glTF's front is +z: from the front, a little right and above
+const Vec3d kTowardsEye =
+    normalize(Vec3d{0.5, 0.4, 1});  ///< glTF's front is +z: from the front, a little right and above
 
 struct Piece {
-  std::array<Vec3, 3> corners;                ///< of a triangle, scene space
-  float length = 0;                           ///< diagonal of its box
-  float count = 1;                            ///< triangles that this one stands for
+  std::array<Vec3, 3> corners;  ///< of a triangle, scene space
+  float length = 0;             ///< diagonal of its box
+  float count = 1;              ///< triangles that this one stands for
   Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) * (1 / 3.0f); }
 };
 
@@ -64,8 +65,8 @@ std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   return pieces;
 }
 
-/// Leaves out triangles that are far larger than all the smaller ones together: a ground, a backdrop, a sky. What is left
-/// must be most of the triangles: it is the detail.
+/// Leaves out triangles that are far larger than all the smaller ones together: a ground, a backdrop, a sky. What is
+/// left must be most of the triangles: it is the detail.
 void leave_out_grounds(std::vector<Piece>& pieces) {
   std::ranges::stable_sort(pieces, {}, &Piece::length);
   double count = 0, whole = 0;
@@ -143,11 +144,12 @@ Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes
   return axes[0] * ((right - left) / 2) + axes[1] * ((up - down) / 2) + axes[2] * distance;
 }
 
-/// The rotation that takes x, y, z to these axes, as a quaternion x y z w. The largest of its four parts is found first, so
-/// that nothing is divided by a small number.
+/// The rotation that takes x, y, z to these axes, as a quaternion x y z w. The largest of its four parts is found
+/// first, so that nothing is divided by a small number.
 std::array<double, 4> quaternion_of(const std::array<Vec3d, 3>& a) {
   const double m00 = a[0].x, m11 = a[1].y, m22 = a[2].z;
-  const std::array<double, 4> squares{1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22, 1 + m00 + m11 + m22};
+  const std::array<double, 4> squares{1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22,
+                                      1 + m00 + m11 + m22};
   const auto largest = std::size_t(std::ranges::max_element(squares) - squares.begin());
   const double s = 0.5 / std::sqrt(squares[largest]);
   const double xy = (a[1].x + a[0].y) * s, xz = (a[2].x + a[0].z) * s, yz = (a[2].y + a[1].z) * s;

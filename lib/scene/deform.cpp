@@ -37,9 +37,8 @@ bool follows_joints(const Primitive& primitive, const Pose& pose) {
 void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
   if (local.empty()) return;
   for (int corner = 0; corner < 8; ++corner)
-    bounds.add(
-        world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                     corner & 4 ? local.upper.z : local.lower.z}));
+    bounds.add(world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                            corner & 4 ? local.upper.z : local.lower.z}));
 }
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace tempolux {
 bool deforms(const Scene& scene, const Node& node);
 
 struct Shape {
-  std::vector<Vec3> positions;              ///< scene space, m; computed in double, rounded once
-  std::vector<Vec3> normals;                ///< unit; empty: flat shading
-  std::vector<Vec3> tangents;               ///< not unit; empty: the primitive has none, or flat shading
-  bool flipped = false;                     ///< the transform mirrors
+  std::vector<Vec3> positions;  ///< scene space, m; computed in double, rounded once
+  std::vector<Vec3> normals;    ///< unit; empty: flat shading
+  std::vector<Vec3> tangents;   ///< not unit; empty: the primitive has none, or flat shading
+  bool flipped = false;         ///< the transform mirrors
 };
 
 /// The vertices of a primitive in a pose. Morph targets first: p + sum of weight x displacement, normals alike.
@@ -34,9 +34,9 @@ class PoseBounds {
   void add_to(Box3d& bounds, const Pose& pose, const Affine& world_from_node) const;
 
  private:
-  Box3d rigid_;                             ///< vertices that no joint moves
-  std::vector<Box3d> by_joint_;             ///< vertices that follow a joint
-  std::vector<Box3d> displacement_;         ///< by morph target
+  Box3d rigid_;                      ///< vertices that no joint moves
+  std::vector<Box3d> by_joint_;      ///< vertices that follow a joint
+  std::vector<Box3d> displacement_;  ///< by morph target
 };
 
 }  // namespace tempolux

@@ -25,14 +25,14 @@ struct EnvironmentOptions {
 /// Between centres radiance is linear in both; above the first and below the last row it is that row's. One pixel is
 /// the same all around.
 struct Environment {
-  std::string path;           ///< of the file; "" for a colour. For messages
+  std::string path;  ///< of the file; "" for a colour. For messages
   int width = 1, height = 1;
   std::vector<Rgb> radiance;  ///< by pixel, row 0 on top, W/m^2/sr, strength included; finite, >= 0
   double rotation_rad = 0;
-  std::string hash;           ///< of all of it: pixels, strength, rotation
+  std::string hash;                   ///< of all of it: pixels, strength, rotation
   std::vector<std::string> warnings;  ///< what was mended, one line each
 
-  bool emits() const;         ///< some pixel is not black
+  bool emits() const;  ///< some pixel is not black
 };
 
 /// Reads a map: Radiance HDR or OpenEXR, or whatever else load_image reads (8 bits cannot hold a sun). Negative

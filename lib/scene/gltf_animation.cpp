@@ -45,8 +45,7 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
   if (channel.target_node == -1) return false;
   if (channel.target_node < 0 || std::size_t(channel.target_node) >= import.model.nodes.size())
     import.fail(place + ".target.node", "node " + std::to_string(channel.target_node) + " does not exist");
-  return import.node_from_source[std::size_t(channel.target_node)] !=
-         -1;  // else in another scene of the file
+  return import.node_from_source[std::size_t(channel.target_node)] != -1;  // else in another scene of the file
 }
 
 /// Numbers per value: one per morph target of the node's mesh for weights.
@@ -100,16 +99,16 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int
   track.times_s = read_numbers(import, sampler.input, 1, place + ".input");
   for (std::size_t i = 1; i < track.times_s.size(); ++i)
     if (!(track.times_s[i] > track.times_s[i - 1]))
-      import.fail(place + ".input",
-                  "times must increase from key to key; key " + std::to_string(i) + " does not");
+      import.fail(place + ".input", "times must increase from key to key; key " + std::to_string(i) + " does not");
   if (track.times_s.front() < 0) import.fail(place + ".input", "the first time is negative");
   if (path < Path::weights && import.scene.nodes[std::size_t(target)].has_matrix)
-    import.fail(place,
-                "animates a node that is given by a matrix; export it as translation, rotation, scale");
+    import.fail(place, "animates a node that is given by a matrix; export it as translation, rotation, scale");
   read_values(import, sampler, place, track);
   if (!is_known(sampler.interpolation))
-    import.mend(place, "channels whose interpolation \"" + one_line(sampler.interpolation, 40) +
-                           "\" glTF does not have are played as LINEAR", 1);
+    import.mend(place,
+                "channels whose interpolation \"" + one_line(sampler.interpolation, 40) +
+                    "\" glTF does not have are played as LINEAR",
+                1);
   return track;
 }
 
@@ -125,8 +124,8 @@ void check_name(const Import& import, const std::string& asked) {
     if (asked == name) return;
     names += (names.empty() ? "" : ", ") + one_line(name, 60);
   }
-  import.fail("animations", "none is named \"" + one_line(asked, 60) + "\"; there is " +
-                                (names.empty() ? "none at all" : names));
+  import.fail("animations",
+              "none is named \"" + one_line(asked, 60) + "\"; there is " + (names.empty() ? "none at all" : names));
 }
 
 }  // namespace
@@ -137,7 +136,8 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
 
 namespace {
 
-/// The tracks of one animation. A channel with which something is wrong is left out with a warning, or with `strict` refused by InputError.
+/// The tracks of one animation. A channel with which something is wrong is left out with a warning, or with `strict`
+/// refused by InputError.
 std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool strict) {
   const tinygltf::Animation& source = import.model.animations[index];
   std::vector<AnimationTrack> tracks;
@@ -161,7 +161,8 @@ std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool 
     attempt([&] {
       PointedAt at;
       if (channel.animation != index || !resolve_pointer(import, channel.pointer, at)) return;
-      const std::string place = place_of("animations", index, source.name) + ": pointer " + one_line(channel.pointer, 100);
+      const std::string place =
+          place_of("animations", index, source.name) + ": pointer " + one_line(channel.pointer, 100);
       tracks.push_back(read_track(import, source, channel.sampler, at.path, at.target, place));
     });
   return tracks;
@@ -180,8 +181,9 @@ void import_animations(Import& import, const std::string& only) {
     animation.name = source.name;
     for (AnimationTrack& track : tracks) {
       if (!animated.insert({track.target, track.path}).second) {
-        import.ignore("further animation of a property that an earlier animation moves already "
-                      "(--animation NAME chooses one)");
+        import.ignore(
+            "further animation of a property that an earlier animation moves already "
+            "(--animation NAME chooses one)");
         continue;
       }
       import.scene.duration_s = std::max(import.scene.duration_s, track.times_s.back());

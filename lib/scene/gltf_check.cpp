@@ -13,43 +13,30 @@ constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 int component_size(int component_type) {
   switch (component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    default: return 0;
   }
 }
 
 int component_count(int type) {
   switch (type) {
-    case TINYGLTF_TYPE_SCALAR:
-      return 1;
-    case TINYGLTF_TYPE_VEC2:
-      return 2;
-    case TINYGLTF_TYPE_VEC3:
-      return 3;
-    case TINYGLTF_TYPE_VEC4:
-      return 4;
-    case TINYGLTF_TYPE_MAT2:
-      return 4;
-    case TINYGLTF_TYPE_MAT3:
-      return 9;
-    case TINYGLTF_TYPE_MAT4:
-      return 16;
-    default:
-      return 0;
+    case TINYGLTF_TYPE_SCALAR: return 1;
+    case TINYGLTF_TYPE_VEC2: return 2;
+    case TINYGLTF_TYPE_VEC3: return 3;
+    case TINYGLTF_TYPE_VEC4: return 4;
+    case TINYGLTF_TYPE_MAT2: return 4;
+    case TINYGLTF_TYPE_MAT3: return 9;
+    case TINYGLTF_TYPE_MAT4: return 16;
+    default: return 0;
   }
 }
 
 /// offset + stride (count - 1) + size, or kNoLimit if that does not fit 64 bits.
-std::uint64_t bytes_needed(std::uint64_t offset, std::uint64_t stride, std::uint64_t count,
-                           std::uint64_t size) {
+std::uint64_t bytes_needed(std::uint64_t offset, std::uint64_t stride, std::uint64_t count, std::uint64_t size) {
   if (count == 0) return 0;
   std::uint64_t span = 0, end = 0;
   if (__builtin_mul_overflow(stride, count - 1, &span) || __builtin_add_overflow(span, size, &span) ||
@@ -66,8 +53,8 @@ void check_view(const Import& import, std::size_t index) {
   const std::uint64_t length = import.model.buffers[std::size_t(view.buffer)].data.size();
   if (bytes_needed(view.byteOffset, 1, view.byteLength, 1) > length)
     import.fail(place, "bytes " + std::to_string(view.byteOffset) + " + " + std::to_string(view.byteLength) +
-                           " lie outside buffer " + std::to_string(view.buffer) + " of " +
-                           std::to_string(length) + " bytes");
+                           " lie outside buffer " + std::to_string(view.buffer) + " of " + std::to_string(length) +
+                           " bytes");
 }
 
 /// `count` elements of `size` bytes at `stride` from `offset` of a view.
@@ -78,12 +65,11 @@ void check_inside_view(const Import& import, const std::string& place, int view_
   const std::uint64_t length = import.model.bufferViews[std::size_t(view_index)].byteLength;
   if (bytes_needed(offset, stride, count, size) > length)
     import.fail(place, std::to_string(count) + " elements of " + std::to_string(size) + " bytes from byte " +
-                           std::to_string(offset) + " do not fit bufferView " + std::to_string(view_index) +
-                           " of " + std::to_string(length) + " bytes");
+                           std::to_string(offset) + " do not fit bufferView " + std::to_string(view_index) + " of " +
+                           std::to_string(length) + " bytes");
 }
 
-std::uint64_t stride_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
-                        std::uint64_t size) {
+std::uint64_t stride_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::uint64_t size) {
   const std::uint64_t stride = model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
   return stride != 0 ? stride : size;
 }
@@ -96,16 +82,15 @@ void check_sparse(const Import& import, const tinygltf::Accessor& accessor, cons
     import.fail(place, "sparse part is larger than the accessor or has a negative offset");
   const int index_type = sparse.indices.componentType;
   const int index_size = component_size(index_type);
-  if (index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-      index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+  if (index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
     import.fail(place, "sparse indices must be unsigned integers");
   const std::uint64_t count = std::uint64_t(sparse.count);
   check_inside_view(import, place + ".sparse.indices", sparse.indices.bufferView,
                     std::uint64_t(sparse.indices.byteOffset), std::uint64_t(index_size), count,
                     std::uint64_t(index_size));
-  check_inside_view(import, place + ".sparse.values", sparse.values.bufferView,
-                    std::uint64_t(sparse.values.byteOffset), size, count, size);
+  check_inside_view(import, place + ".sparse.values", sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset),
+                    size, count, size);
 }
 
 void check_accessor(const Import& import, std::size_t index) {
@@ -120,8 +105,8 @@ void check_accessor(const Import& import, std::size_t index) {
   if (accessor.bufferView != -1) {
     if (accessor.bufferView < 0 || std::size_t(accessor.bufferView) >= import.model.bufferViews.size())
       import.fail(place, "bufferView " + std::to_string(accessor.bufferView) + " does not exist");
-    check_inside_view(import, place, accessor.bufferView, accessor.byteOffset,
-                      stride_of(import.model, accessor, size), accessor.count, size);
+    check_inside_view(import, place, accessor.bufferView, accessor.byteOffset, stride_of(import.model, accessor, size),
+                      accessor.count, size);
   }
   if (accessor.sparse.isSparse) check_sparse(import, accessor, place, size);
 }
@@ -153,8 +138,7 @@ const unsigned char* view_bytes(const tinygltf::Model& model, int view_index, st
 }
 
 /// A tight copy of a sparse accessor with its replacements put in.
-void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::string& place,
-                Elements& elements) {
+void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::string& place, Elements& elements) {
   const std::uint64_t size = std::uint64_t(component_size(accessor.componentType) * elements.components);
   std::uint64_t bytes = 0;
   if (__builtin_mul_overflow(size, elements.count, &bytes)) bytes = kNoLimit;
@@ -171,8 +155,7 @@ void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::s
     const unsigned char* values =
         view_bytes(import.model, sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset));
     for (std::uint64_t i = 0; i < std::uint64_t(sparse.count); ++i) {
-      const std::uint64_t target =
-          read_index(indices + i * std::uint64_t(component_size(index_type)), index_type);
+      const std::uint64_t target = read_index(indices + i * std::uint64_t(component_size(index_type)), index_type);
       if (target >= elements.count)
         import.fail(place, "sparse index " + std::to_string(target) + " is beyond the accessor's " +
                                std::to_string(elements.count) + " elements");
@@ -218,10 +201,11 @@ void convert(const Elements& elements, double scale, Put put) {
   }
 }
 
-/// Any component type but 32-bit integers (which glTF keeps for indices) as numbers, put(element, component, value). Elements
-/// with NaN or infinity are listed once each; what was put of them is to be overwritten.
+/// Any component type but 32-bit integers (which glTF keeps for indices) as numbers, put(element, component, value).
+/// Elements with NaN or infinity are listed once each; what was put of them is to be overwritten.
 template <class Put>
-std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, const std::string& place, int index, Put put_value) {
+std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, const std::string& place, int index,
+                                    Put put_value) {
   std::vector<std::uint32_t> unusable;
   const auto put = [&](std::uint64_t i, int c, double value) {
     if (!std::isfinite(value) && (unusable.empty() || unusable.back() != i)) unusable.push_back(std::uint32_t(i));
@@ -236,28 +220,19 @@ std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, co
           put(i, c, double(value));
         }
       break;
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      convert<std::int8_t>(elements, 1 / 127.0, put);
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      convert<std::uint8_t>(elements, 1 / 255.0, put);
-      break;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      convert<std::int16_t>(elements, 1 / 32767.0, put);
-      break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      convert<std::uint16_t>(elements, 1 / 65535.0, put);
-      break;
-    default:
-      import.fail(place,
-                  "accessor " + std::to_string(index) + " has 32-bit integers where numbers are needed");
+    case TINYGLTF_COMPONENT_TYPE_BYTE: convert<std::int8_t>(elements, 1 / 127.0, put); break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: convert<std::uint8_t>(elements, 1 / 255.0, put); break;
+    case TINYGLTF_COMPONENT_TYPE_SHORT: convert<std::int16_t>(elements, 1 / 32767.0, put); break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: convert<std::uint16_t>(elements, 1 / 65535.0, put); break;
+    default: import.fail(place, "accessor " + std::to_string(index) + " has 32-bit integers where numbers are needed");
   }
   return unusable;
 }
 
 void refuse(const Import& import, int index, const std::string& place, const std::vector<std::uint32_t>& unusable) {
   if (!unusable.empty())
-    import.fail(place, "accessor " + std::to_string(index) + " holds NaN or infinity; export the mesh again without it");
+    import.fail(place,
+                "accessor " + std::to_string(index) + " holds NaN or infinity; export the mesh again without it");
 }
 
 }  // namespace
@@ -270,8 +245,7 @@ void Import::mend(const std::string& place, const std::string& what, std::size_t
 
 void Import::take_memory(std::uint64_t bytes, const std::string& place) {
   if (bytes > geometry_budget)
-    fail(place,
-         "asks for far more memory than a file of this size can hold (counts or shared accessors are wrong)");
+    fail(place, "asks for far more memory than a file of this size can hold (counts or shared accessors are wrong)");
   geometry_budget -= bytes;
 }
 
@@ -280,17 +254,19 @@ void check_accessors(const Import& import) {
   for (std::size_t i = 0; i < import.model.accessors.size(); ++i) check_accessor(import, i);
 }
 
-std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place, std::vector<std::uint32_t>& unusable) {
+std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place,
+                            std::vector<std::uint32_t>& unusable) {
   const Elements elements = open_accessor(import, accessor, 3, place);
   import.take_memory(elements.count * sizeof(Vec3), place);
   std::vector<Vec3> values(elements.count);
-  unusable = read_all(import, elements, place, accessor,
-                      [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
+  unusable =
+      read_all(import, elements, place, accessor, [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
   for (const std::uint32_t i : unusable) values[i] = {};
   return values;
 }
 
-std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place, std::vector<std::uint32_t>& unusable) {
+std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place,
+                            std::vector<std::uint32_t>& unusable) {
   const Elements elements = open_accessor(import, accessor, 2, place);
   import.take_memory(elements.count * sizeof(Vec2), place);
   std::vector<Vec2> values(elements.count);

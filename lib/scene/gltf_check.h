@@ -19,8 +19,10 @@ void check_accessors(const Import& import);
 /// exist or has another type, or (all but indices) if a number is not finite.
 std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place);
 /// The same, but an element with NaN or infinity becomes 0 and is listed (ascending), for the caller to mend.
-std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place, std::vector<std::uint32_t>& unusable);
-std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place, std::vector<std::uint32_t>& unusable);
+std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place,
+                            std::vector<std::uint32_t>& unusable);
+std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place,
+                            std::vector<std::uint32_t>& unusable);
 std::vector<double> read_numbers(Import& import, int accessor, int components, const std::string& place,
                                  std::vector<std::uint32_t>& unusable);
 /// Unsigned 8, 16 or 32-bit integers, not normalised.

@@ -93,8 +93,8 @@ int skin_of(Import& import, const Node& node, int source, std::vector<int>& skin
   }
   const std::size_t joints = import.scene.skins[std::size_t(index)].joints.size();
   if (largest >= joints)
-    import.fail(place, "its mesh names joint " + std::to_string(largest) + ", but its skin has " +
-                           std::to_string(joints));
+    import.fail(place,
+                "its mesh names joint " + std::to_string(largest) + ", but its skin has " + std::to_string(joints));
   return index;
 }
 
@@ -113,8 +113,8 @@ std::vector<double> weights_of(const Import& import, const Node& node) {
   return given.empty() ? std::vector<double>(count, 0) : given;
 }
 
-/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if it is not there. `usable`: a mark for each instance, cleared where
-/// one of its numbers is not finite.
+/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if it is not there. `usable`: a mark for each instance,
+/// cleared where one of its numbers is not finite.
 std::vector<double> instance_numbers(Import& import, const tinygltf::Value& attributes, const char* name,
                                      std::size_t components, std::vector<bool>& usable, const std::string& place) {
   if (!attributes.Has(name)) return {};
@@ -166,8 +166,7 @@ std::vector<Affine> instances_of(Import& import, const Node& node) {
 
 }  // namespace
 
-void read_targets(Import& import, const tinygltf::Primitive& source, const std::string& place,
-                  Primitive& primitive) {
+void read_targets(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   for (std::size_t t = 0; t < source.targets.size(); ++t) {
     const std::string target = place + ".targets[" + std::to_string(t) + "]";
     const std::size_t vertices = primitive.positions.size();
@@ -187,12 +186,13 @@ void read_influences(Import& import, const tinygltf::Primitive& source, const st
     const auto w = source.attributes.find("WEIGHTS_" + std::to_string(set));
     if (j == source.attributes.end() || w == source.attributes.end()) break;
     joints.push_back(read_numbers(import, j->second, 4, place + "." + j->first));
-    std::vector<std::uint32_t> unusable;   // become 0
+    std::vector<std::uint32_t> unusable;  // become 0
     weights.push_back(read_numbers(import, w->second, 4, place + "." + w->first, unusable));
     std::size_t left_out = unusable.size();
     for (double& weight : weights.back())
       if (weight < 0) weight = 0, ++left_out;
-    if (left_out > 0) import.mend(place + "." + w->first, "joint weights below 0, NaN or infinite are left out", left_out);
+    if (left_out > 0)
+      import.mend(place + "." + w->first, "joint weights below 0, NaN or infinite are left out", left_out);
     if (joints.back().size() != 4 * primitive.positions.size() || weights.back().size() != joints.back().size())
       import.fail(place, "does not have as many joints and weights as positions");
   }

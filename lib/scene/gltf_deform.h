@@ -11,7 +11,6 @@ namespace tempolux::gltf {
 /// as many as the primitive has vertices.
 void read_targets(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
 /// JOINTS_n and WEIGHTS_n for all n there are; weights of a vertex are brought to a sum of 1.
-void read_influences(Import& import, const tinygltf::Primitive& source, const std::string& place,
-                     Primitive& primitive);
+void read_influences(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
 
 }  // namespace tempolux::gltf

@@ -19,13 +19,15 @@ struct Extension {
 // `ktxdecompress` calls the program ktx. gltfpack reads packed files from version 0.22 on.
 constexpr const char* kToPng = "convert its textures with `gltf-transform png IN.glb OUT.glb --formats '*'`";
 constexpr std::array kExtensions{
-    Extension{"KHR_draco_mesh_compression", "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export without Compression"},
+    Extension{"KHR_draco_mesh_compression",
+              "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export without Compression"},
     Extension{"EXT_meshopt_compression",
               "unpack it with `gltf-transform cp IN.glb OUT.glb` or `gltfpack -noq -kn -i IN.glb -o OUT.glb`"},
     Extension{"KHR_meshopt_compression", "unpack it with `gltfpack -noq -kn -i IN.glb -o OUT.glb`"},
     Extension{"EXT_texture_avif", kToPng, true},
     Extension{"KHR_texture_basisu",
-              "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb` (it calls ktx of KTX-Software)", true},
+              "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb` (it calls ktx of KTX-Software)",
+              true},
     Extension{"KHR_materials_pbrSpecularGlossiness",
               "convert its materials with `gltf-transform metalrough IN.glb OUT.glb`"},
     Extension{"KHR_gaussian_splatting", "only triangles can be rendered"}};

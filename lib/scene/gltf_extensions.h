@@ -11,8 +11,8 @@
 namespace tempolux::gltf {
 
 /// Refuses extensions outside `known` that the file calls required or that hold images it has in no other form:
-/// throws InputError that names the extension, the place, and the command that makes a readable file. Where the file also
-/// has the image as PNG or JPEG a warning says that this is read; those extensions go to `handled`. Call after
+/// throws InputError that names the extension, the place, and the command that makes a readable file. Where the file
+/// also has the image as PNG or JPEG a warning says that this is read; those extensions go to `handled`. Call after
 /// check_types() and before prune().
 void check_packing(const Json& document, const std::string& file, const std::set<std::string>& known,
                    std::set<std::string>& handled, std::vector<std::string>& warnings);

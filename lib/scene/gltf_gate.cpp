@@ -26,12 +26,12 @@ constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
 // Read in full, or read as far as this version renders it (gltf_material.cpp says what is left out).
-const std::set<std::string> kKnown{"KHR_lights_punctual",    "KHR_materials_emissive_strength",
-                                   "KHR_materials_specular", "KHR_materials_ior",
-                                   "KHR_mesh_quantization",  "KHR_materials_transmission",
-                                   "KHR_materials_volume",   "KHR_materials_unlit",
-                                   "KHR_texture_transform",  "EXT_mesh_gpu_instancing",
-                                   "KHR_animation_pointer",  "KHR_draco_mesh_compression",
+const std::set<std::string> kKnown{"KHR_lights_punctual",     "KHR_materials_emissive_strength",
+                                   "KHR_materials_specular",  "KHR_materials_ior",
+                                   "KHR_mesh_quantization",   "KHR_materials_transmission",
+                                   "KHR_materials_volume",    "KHR_materials_unlit",
+                                   "KHR_texture_transform",   "EXT_mesh_gpu_instancing",
+                                   "KHR_animation_pointer",   "KHR_draco_mesh_compression",
                                    "EXT_meshopt_compression", "KHR_meshopt_compression",
                                    "EXT_texture_webp"};
 
@@ -64,8 +64,7 @@ class File {
           ::pread(descriptor_, out, std::size_t(std::min<std::uint64_t>(count, 1u << 30)), off_t(offset));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) throw ResourceError(path_ + ": cannot be read: " + std::strerror(errno));
-      if (got == 0)
-        throw InputError(path_ + ": ends at byte " + std::to_string(offset) + "; it is cut short");
+      if (got == 0) throw InputError(path_ + ": ends at byte " + std::to_string(offset) + "; it is cut short");
       out += got;
       offset += std::uint64_t(got);
       count -= std::uint64_t(got);
@@ -93,8 +92,7 @@ Container open_glb(const File& file, const std::string& path) {
   if (file.size() < 20)
     fail(path, "GLB header", "the file has " + std::to_string(file.size()) + " bytes; it is cut short");
   file.read(0, header.data(), sizeof header);
-  if (header[1] != 2)
-    fail(path, "GLB header", "version " + std::to_string(header[1]) + "; only 2 can be read");
+  if (header[1] != 2) fail(path, "GLB header", "version " + std::to_string(header[1]) + "; only 2 can be read");
   const std::uint64_t end = header[2];
   if (end > file.size())
     fail(path, "GLB header",
@@ -125,13 +123,11 @@ Container open_glb(const File& file, const std::string& path) {
 Container open_container(const std::string& path, const GltfOptions& options) {
   const File file(path);
   if (file.size() > options.max_file_bytes)
-    fail(path, "size",
-         std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
+    fail(path, "size", std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
   std::uint32_t magic = 0;
   if (file.size() >= sizeof magic) file.read(0, &magic, sizeof magic);
   if (magic == kGlbMagic) return open_glb(file, path);
-  if (file.size() > kMaxJsonBytes)
-    fail(path, "size", "more than 1 GB of JSON; move the data into a buffer file");
+  if (file.size() > kMaxJsonBytes) fail(path, "size", "more than 1 GB of JSON; move the data into a buffer file");
   Container container;
   container.json.resize(file.size());
   file.read(0, container.json.data(), file.size());
@@ -209,8 +205,7 @@ std::string percent_decoded(const std::string& uri, const std::string& path, con
       const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
       const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
       if (low < 0)
-        fail(path, place,
-             "\"" + uri.substr(0, 80) + "\" has a % that is not followed by two hexadecimal digits");
+        fail(path, place, "\"" + uri.substr(0, 80) + "\" has a % that is not followed by two hexadecimal digits");
       c = char(high * 16 + low);
       i += 2;
     }
@@ -221,8 +216,7 @@ std::string percent_decoded(const std::string& uri, const std::string& path, con
 }
 
 bool has_scheme(const std::string& uri) {
-  const std::size_t end =
-      uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
+  const std::size_t end = uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
   return end != std::string::npos && end > 0 && uri[end] == ':';
 }
 
@@ -238,13 +232,11 @@ std::string resolved(const std::string& uri, const std::string& path, const std:
     fail(path, place, shown + " is an absolute path; put the file into the scene's folder");
   const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
   std::error_code error;
-  const fs::path base = fs::weakly_canonical(folder, error),
-                 target = fs::weakly_canonical(folder / relative, error);
+  const fs::path base = fs::weakly_canonical(folder, error), target = fs::weakly_canonical(folder / relative, error);
   if (error) fail(path, place, shown + ": " + error.message());
   const auto [base_end, target_at] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
   if (base_end != base.end() && !options.allow_outside)
-    fail(path, place,
-         shown + " leads out of the scene's folder; put the file there, or allow it with --allow-outside");
+    fail(path, place, shown + " leads out of the scene's folder; put the file there, or allow it with --allow-outside");
   return (folder / relative).string();
 }
 
@@ -252,8 +244,7 @@ std::string resolved(const std::string& uri, const std::string& path, const std:
 std::string checked_data_uri(const std::string& uri, std::uint64_t length, const std::string& path,
                              const std::string& place) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string::npos || comma > 200 ||
-      !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+  if (comma == std::string::npos || comma > 200 || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
     fail(path, place, "a data URI must be base64");
   std::string_view payload = std::string_view(uri).substr(comma + 1);
   while (payload.ends_with('=')) payload.remove_suffix(1);
@@ -263,9 +254,9 @@ std::string checked_data_uri(const std::string& uri, std::uint64_t length, const
   if (!std::all_of(payload.begin(), payload.end(), is_base64))
     fail(path, place, "holds characters that are not base64");
   if (payload.size() * 3 / 4 != length)
-    fail(path, place,
-         "decodes to " + std::to_string(payload.size() * 3 / 4) + " bytes, but byteLength is " +
-             std::to_string(length));
+    fail(
+        path, place,
+        "decodes to " + std::to_string(payload.size() * 3 / 4) + " bytes, but byteLength is " + std::to_string(length));
   return "data:application/octet-stream;base64," + uri.substr(comma + 1);
 }
 
@@ -280,13 +271,12 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
   if (length == 0) fail(path, place + ".byteLength", "is 0");
   if (!buffer.contains("uri")) {
-    if (index != 0 || container.bin.length == 0)
-      fail(path, place, "has no uri, and there is no binary chunk for it");
+    if (index != 0 || container.bin.length == 0) fail(path, place, "has no uri, and there is no binary chunk for it");
     range = container.bin;
     if (length > range.length)
       fail(path, place,
-           "byteLength " + std::to_string(length) + " is beyond the binary chunk of " +
-               std::to_string(range.length) + " bytes");
+           "byteLength " + std::to_string(length) + " is beyond the binary chunk of " + std::to_string(range.length) +
+               " bytes");
   } else if (const std::string uri = buffer["uri"].get<std::string>(); uri.starts_with("data:")) {
     buffer["uri"] = checked_data_uri(uri, length, path, place + ".uri");
     gated.buffers.push_back(range);
@@ -300,8 +290,8 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
            std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
     if (length > file.size())
       fail(path, place,
-           "byteLength " + std::to_string(length) + " is beyond " + range.path + " of " +
-               std::to_string(file.size()) + " bytes");
+           "byteLength " + std::to_string(length) + " is beyond " + range.path + " of " + std::to_string(file.size()) +
+               " bytes");
   }
   range.length = length;
   buffer["uri"] = buffer_name(index);
@@ -311,8 +301,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   gated.buffers.push_back(range);
 }
 
-GatedImage approve_image(const Json& image, std::size_t index, const std::string& path,
-                         const GltfOptions& options) {
+GatedImage approve_image(const Json& image, std::size_t index, const std::string& path, const GltfOptions& options) {
   GatedImage approved;
   approved.name = image.value("name", "");
   const std::string place = "images[" + std::to_string(index) + "].uri";
@@ -325,8 +314,7 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos || comma > 200 || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
       approved.refused = "a data URI must be base64";
-    else
-      approved.base64 = uri.substr(comma + 1);
+    else approved.base64 = uri.substr(comma + 1);
   } else if (has_scheme(uri)) {
     approved.refused =
         "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
@@ -343,8 +331,8 @@ void check_total(const std::string& path, const GltfOptions& options, const Gate
   for (const ByteRange& range : gated.buffers) wanted += range.length;
   if (wanted > options.max_file_bytes || wanted > 2 * on_disk + (1u << 20))
     fail(path, "buffers",
-         std::to_string(wanted) + " bytes in total, more than can be right for files of " +
-             std::to_string(on_disk) + " bytes");
+         std::to_string(wanted) + " bytes in total, more than can be right for files of " + std::to_string(on_disk) +
+             " bytes");
 }
 
 }  // namespace
@@ -383,8 +371,9 @@ std::vector<unsigned char> read_range(const ByteRange& range) {
 
 void require_file(const std::string& named, const std::string& path, const std::string& place) {
   if (::access(named.c_str(), F_OK) != 0)
-    fail(path, place, named + " cannot be opened: " + std::strerror(errno) +
-                          "; copy all files of the scene, or export it as one .glb");
+    fail(path, place,
+         named + " cannot be opened: " + std::strerror(errno) +
+             "; copy all files of the scene, or export it as one .glb");
 }
 
 std::vector<unsigned char> read_whole(const std::string& path, std::uint64_t max_bytes) {

@@ -27,27 +27,27 @@ struct ByteRange {
 struct GatedImage {
   std::string name;
   int buffer_view = -1;
-  std::string base64;                 ///< payload of a data URI
-  std::string path;                   ///< of a file
-  std::string refused;                ///< why the image cannot be used, should a texture name it; "": it can
+  std::string base64;   ///< payload of a data URI
+  std::string path;     ///< of a file
+  std::string refused;  ///< why the image cannot be used, should a texture name it; "": it can
 };
 
 /// A channel of KHR_animation_pointer.
 struct PointerChannel {
   std::size_t animation = 0;
   int sampler = -1;
-  std::string pointer;                ///< such as "/materials/2/pbrMetallicRoughness/roughnessFactor"; "": not said
+  std::string pointer;  ///< such as "/materials/2/pbrMetallicRoughness/roughnessFactor"; "": not said
 };
 
 /// A file that passed.
 struct Gated {
-  std::string json;                   ///< buffers are named by buffer_name(index) or are base64 data URIs
-  std::vector<ByteRange> buffers;     ///< by index of the buffer; length 0: a data URI
-  std::vector<GatedImage> images;     ///< by index of the image
-  std::vector<std::string> files;     ///< the scene file and every file a buffer lies in, each once
+  std::string json;                     ///< buffers are named by buffer_name(index) or are base64 data URIs
+  std::vector<ByteRange> buffers;       ///< by index of the buffer; length 0: a data URI
+  std::vector<GatedImage> images;       ///< by index of the image
+  std::vector<std::string> files;       ///< the scene file and every file a buffer lies in, each once
   std::vector<unsigned char> unpacked;  ///< what Draco or meshopt had packed (gltf_unpack.h); a buffer of its own
-  std::uint64_t byte_count = 0;       ///< size of the JSON and of all buffers
-  std::vector<std::string> warnings;  ///< what the file has and nothing here reads
+  std::uint64_t byte_count = 0;         ///< size of the JSON and of all buffers
+  std::vector<std::string> warnings;    ///< what the file has and nothing here reads
   std::vector<PointerChannel> pointers;
   std::map<std::size_t, std::string> node_extras;  ///< by index of the node: its `extras` as JSON text
 };

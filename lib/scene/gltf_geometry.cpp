@@ -20,16 +20,13 @@ std::vector<Triangle> triangles_from(const std::vector<std::uint32_t>& indices, 
   const std::size_t count = indices.size();
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     triangles.reserve(count / 3);
-    for (std::size_t i = 0; i + 2 < count; i += 3)
-      triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    for (std::size_t i = 0; i + 2 < count; i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   } else {
     const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
     if (count > 2) triangles.reserve(count - 2);
     for (std::size_t i = 0; i + 2 < count; ++i) {
-      if (fan)
-        triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
-      else
-        triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+      if (fan) triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
+      else triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
     }
   }
   return triangles;
@@ -57,8 +54,8 @@ void drop_unused_vertices(Primitive& primitive) {
     for (std::uint32_t& i : t) i = new_index[i];
 }
 
-std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitive& source,
-                                        std::size_t vertices, const std::string& place) {
+std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitive& source, std::size_t vertices,
+                                        const std::string& place) {
   if (source.indices == -1) {
     import.take_memory(vertices * sizeof(std::uint32_t), place);
     std::vector<std::uint32_t> all(vertices);
@@ -68,14 +65,14 @@ std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitiv
   std::vector<std::uint32_t> indices = read_indices(import, source.indices, place + ".indices");
   const auto largest = std::max_element(indices.begin(), indices.end());
   if (largest != indices.end() && *largest >= vertices)
-    import.fail(place + ".indices", "index " + std::to_string(*largest) + " is beyond the " +
-                                        std::to_string(vertices) + " vertices");
+    import.fail(place + ".indices",
+                "index " + std::to_string(*largest) + " is beyond the " + std::to_string(vertices) + " vertices");
   return indices;
 }
 
 void read_normals(Import& import, int accessor, const std::string& place, Primitive& primitive) {
   std::vector<std::uint32_t> unusable;
-  primitive.normals = read_vec3(import, accessor, place, unusable);   // those become 0, too
+  primitive.normals = read_vec3(import, accessor, place, unusable);  // those become 0, too
   if (primitive.normals.size() != primitive.positions.size())
     import.fail(place, "there are not as many normals as positions");
   unusable.clear();
@@ -101,7 +98,7 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   const Material& material = import.scene.materials[primitive.material];
   if (found == source.attributes.end() || primitive.normals.empty()) return;
   if (!material.textures || !material.textures->normal || !keeps_axes(material.textures->normal)) return;
-  std::vector<std::uint32_t> unusable;   // become 0
+  std::vector<std::uint32_t> unusable;  // become 0
   const std::vector<double> numbers = read_numbers(import, found->second, 4, place, unusable);
   const std::size_t count = primitive.positions.size();
   if (numbers.size() != 4 * count) import.fail(place, "there are not as many tangents as positions");
@@ -118,8 +115,8 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   }
 }
 
-std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const char* name, const Primitive& primitive,
-                           const std::string& place) {
+std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const char* name,
+                           const Primitive& primitive, const std::string& place) {
   const auto found = source.attributes.find(name);
   if (found == source.attributes.end()) return {};
   std::vector<std::uint32_t> unusable;
@@ -129,7 +126,8 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   static_assert(sizeof(Vec2) == 2 * sizeof(float));
   if (unusable.empty()) return uvs;
   mend_from_neighbours(primitive, unusable, {&uvs.front().x, 2 * uvs.size()}, 2);
-  import.mend(place + "." + name, "texture coordinates with NaN or infinity take the mean of their neighbours'", unusable.size());
+  import.mend(place + "." + name, "texture coordinates with NaN or infinity take the mean of their neighbours'",
+              unusable.size());
   return uvs;
 }
 
@@ -138,7 +136,8 @@ void read_colors(Import& import, const tinygltf::Primitive& source, const std::s
   const auto found = source.attributes.find("COLOR_0");
   if (found == source.attributes.end()) return;
   const auto accessor = std::size_t(found->second);
-  const bool rgb = accessor < import.model.accessors.size() && import.model.accessors[accessor].type == TINYGLTF_TYPE_VEC3;
+  const bool rgb =
+      accessor < import.model.accessors.size() && import.model.accessors[accessor].type == TINYGLTF_TYPE_VEC3;
   const std::size_t components = rgb ? 3 : 4;
   std::vector<std::uint32_t> unusable;
   const std::vector<double> numbers = read_numbers(import, found->second, int(components), place, unusable);
@@ -158,7 +157,9 @@ void read_colors(Import& import, const tinygltf::Primitive& source, const std::s
     mend_from_neighbours(primitive, unusable, {primitive.colors.front().data(), 4 * count}, 4);
     import.mend(place, "colours with NaN or infinity take the mean of their neighbours'", unusable.size());
   }
-  if (std::ranges::all_of(primitive.colors, [](const auto& color) { return color == std::array<float, 4>{1, 1, 1, 1}; })) {
+  if (std::ranges::all_of(primitive.colors, [](const auto& color) {
+        return color == std::array<float, 4>{1, 1, 1, 1};
+      })) {
     primitive.colors.clear();
     return;
   }
@@ -196,18 +197,16 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   primitive.triangles = triangles_from(order, source.mode);
   const std::size_t before = primitive.triangles.size();
   const bool opens = !source.targets.empty() || source.attributes.contains("JOINTS_0");  // in another pose
-  if (!opens)
-    std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
-  if (before > primitive.triangles.size())
-    import.ignore("triangles of zero area", before - primitive.triangles.size());
+  if (!opens) std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
+  if (before > primitive.triangles.size()) import.ignore("triangles of zero area", before - primitive.triangles.size());
   if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
     read_normals(import, normal->second, place + ".NORMAL", primitive);
   primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive, place);
   primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive, place);
   if (source.material < -1 || source.material >= int(import.model.materials.size()))
     import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
-  primitive.material = source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1)
-                                             : std::uint32_t(source.material);
+  primitive.material =
+      source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1) : std::uint32_t(source.material);
   read_colors(import, source, place + ".COLOR_0", primitive);
   read_tangents(import, source, place + ".TANGENT", primitive);
   read_targets(import, source, place, primitive);
@@ -254,13 +253,11 @@ void import_meshes(Import& import) {
     node.mesh = mesh_of(import, std::size_t(node.mesh), seen);
     if (node.mesh == -1) continue;
     if (scene.object_names.size() >= kMaxObjects)
-      import.fail("nodes",
-                  "more than " + std::to_string(kMaxObjects) + " objects; join meshes that move together");
+      import.fail("nodes", "more than " + std::to_string(kMaxObjects) + " objects; join meshes that move together");
     node.object = std::uint32_t(scene.object_names.size());
     scene.object_names.push_back(node.name.empty() ? scene.meshes[std::size_t(node.mesh)].name : node.name);
   }
-  if (scene.meshes.empty())
-    import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render");
+  if (scene.meshes.empty()) import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render");
 }
 
 }  // namespace tempolux::gltf

@@ -71,19 +71,7 @@ class Counter final : public nlohmann::json_sax<Json> {
 
 // ---- types ----------------------------------------------------------------------------------------------
 
-enum class Type {
-  boolean,
-  string,
-  number,
-  numbers,
-  index,
-  indices,
-  size,
-  strings,
-  index_map,
-  object,
-  objects
-};
+enum class Type { boolean, string, number, numbers, index, indices, size, strings, index_map, object, objects };
 
 struct Rule {
   std::string_view key;
@@ -108,12 +96,10 @@ const Rules kPrimitive{{"attributes", Type::index_map, kRequired},
                        {"material", Type::index},
                        {"mode", Type::index},
                        {"targets", Type::objects, false, &kTarget}};
-const Rules kMesh{{"name", Type::string},
-                  {"primitives", Type::objects, kRequired, &kPrimitive},
-                  {"weights", Type::numbers}};
-const Rules kSparseIndices{{"bufferView", Type::index, kRequired},
-                           {"byteOffset", Type::index},
-                           {"componentType", Type::index, kRequired}};
+const Rules kMesh{
+    {"name", Type::string}, {"primitives", Type::objects, kRequired, &kPrimitive}, {"weights", Type::numbers}};
+const Rules kSparseIndices{
+    {"bufferView", Type::index, kRequired}, {"byteOffset", Type::index}, {"componentType", Type::index, kRequired}};
 const Rules kSparseValues{{"bufferView", Type::index, kRequired}, {"byteOffset", Type::index}};
 const Rules kSparse{{"count", Type::index, kRequired},
                     {"indices", Type::object, kRequired, &kSparseIndices},
@@ -132,10 +118,8 @@ const Rules kBufferView{{"name", Type::string},     {"buffer", Type::index, kReq
                         {"byteOffset", Type::size}, {"byteLength", Type::size, kRequired},
                         {"byteStride", Type::size}, {"target", Type::index}};
 const Rules kBuffer{{"name", Type::string}, {"uri", Type::string}, {"byteLength", Type::size, kRequired}};
-const Rules kTextureInfo{{"index", Type::index, kRequired},
-                         {"texCoord", Type::index},
-                         {"scale", Type::number},
-                         {"strength", Type::number}};
+const Rules kTextureInfo{
+    {"index", Type::index, kRequired}, {"texCoord", Type::index}, {"scale", Type::number}, {"strength", Type::number}};
 const Rules kPbr{{"baseColorFactor", Type::numbers},
                  {"metallicFactor", Type::number},
                  {"roughnessFactor", Type::number},
@@ -172,8 +156,7 @@ const Rules kCamera{{"name", Type::string},
                     {"perspective", Type::object, false, &kPerspective},
                     {"orthographic", Type::object, false, &kOrthographic}};
 const Rules kChannelTarget{{"node", Type::index}, {"path", Type::string, kRequired}};
-const Rules kChannel{{"sampler", Type::index, kRequired},
-                     {"target", Type::object, kRequired, &kChannelTarget}};
+const Rules kChannel{{"sampler", Type::index, kRequired}, {"target", Type::object, kRequired, &kChannelTarget}};
 const Rules kAnimationSampler{
     {"input", Type::index, kRequired}, {"output", Type::index, kRequired}, {"interpolation", Type::string}};
 const Rules kAnimation{{"name", Type::string},
@@ -185,9 +168,13 @@ const Rules kLight{{"name", Type::string},   {"type", Type::string, kRequired},
                    {"range", Type::number},  {"spot", Type::object, false, &kSpot}};
 const Rules kLights{{"lights", Type::objects, kRequired, &kLight}};
 const Rules kDraco{{"bufferView", Type::index, kRequired}, {"attributes", Type::index_map, kRequired}};
-const Rules kMeshopt{{"buffer", Type::index, kRequired},    {"byteOffset", Type::size}, {"byteLength", Type::size, kRequired},
-                     {"byteStride", Type::size, kRequired}, {"mode", Type::string, kRequired},
-                     {"count", Type::size, kRequired},      {"filter", Type::string}};
+const Rules kMeshopt{{"buffer", Type::index, kRequired},
+                     {"byteOffset", Type::size},
+                     {"byteLength", Type::size, kRequired},
+                     {"byteStride", Type::size, kRequired},
+                     {"mode", Type::string, kRequired},
+                     {"count", Type::size, kRequired},
+                     {"filter", Type::string}};
 const Rules kWebp{{"source", Type::index, kRequired}};
 const Rules kRootExtensions{{"KHR_lights_punctual", Type::object, false, &kLights}};
 const Rules kRoot{{"asset", Type::object, kRequired, &kAsset},
@@ -211,28 +198,17 @@ const Rules kRoot{{"asset", Type::object, kRequired, &kAsset},
 
 const char* describe(Type type) {
   switch (type) {
-    case Type::boolean:
-      return "true or false";
-    case Type::string:
-      return "a string";
-    case Type::number:
-      return "a number";
-    case Type::numbers:
-      return "an array of numbers";
-    case Type::index:
-      return "a whole number from 0 to 2147483647";
-    case Type::indices:
-      return "an array of whole numbers from 0 to 2147483647";
-    case Type::size:
-      return "a whole number, 0 or more";
-    case Type::strings:
-      return "an array of strings";
-    case Type::index_map:
-      return "an object of whole numbers from 0 to 2147483647";
-    case Type::object:
-      return "an object";
-    case Type::objects:
-      return "an array of objects";
+    case Type::boolean: return "true or false";
+    case Type::string: return "a string";
+    case Type::number: return "a number";
+    case Type::numbers: return "an array of numbers";
+    case Type::index: return "a whole number from 0 to 2147483647";
+    case Type::indices: return "an array of whole numbers from 0 to 2147483647";
+    case Type::size: return "a whole number, 0 or more";
+    case Type::strings: return "an array of strings";
+    case Type::index_map: return "an object of whole numbers from 0 to 2147483647";
+    case Type::object: return "an object";
+    case Type::objects: return "an array of objects";
   }
   return "";
 }
@@ -255,28 +231,17 @@ bool all_of(Container& container, Test test) {
 
 bool has_type(Json& value, Type type) {
   switch (type) {
-    case Type::boolean:
-      return value.is_boolean();
-    case Type::string:
-      return value.is_string();
-    case Type::number:
-      return value.is_number();
-    case Type::numbers:
-      return value.is_array() && all_of(value, [](Json& v) { return v.is_number(); });
-    case Type::index:
-      return is_index(value);
-    case Type::indices:
-      return value.is_array() && all_of(value, is_index);
-    case Type::size:
-      return is_whole(value, 1e18);
-    case Type::strings:
-      return value.is_array() && all_of(value, [](Json& v) { return v.is_string(); });
-    case Type::index_map:
-      return value.is_object() && all_of(value, is_index);
-    case Type::object:
-      return value.is_object();
-    case Type::objects:
-      return value.is_array() && all_of(value, [](Json& v) { return v.is_object(); });
+    case Type::boolean: return value.is_boolean();
+    case Type::string: return value.is_string();
+    case Type::number: return value.is_number();
+    case Type::numbers: return value.is_array() && all_of(value, [](Json& v) { return v.is_number(); });
+    case Type::index: return is_index(value);
+    case Type::indices: return value.is_array() && all_of(value, is_index);
+    case Type::size: return is_whole(value, 1e18);
+    case Type::strings: return value.is_array() && all_of(value, [](Json& v) { return v.is_string(); });
+    case Type::index_map: return value.is_object() && all_of(value, is_index);
+    case Type::object: return value.is_object();
+    case Type::objects: return value.is_array() && all_of(value, [](Json& v) { return v.is_object(); });
   }
   return false;
 }
@@ -293,15 +258,11 @@ void check_property(Json& value, const Rule& rule, const std::string& place, con
 
 /// Depth is that of the rules, not of the file.
 void check_object(Json& object, const Rules& rules, const std::string& place, const std::string& file) {
-  const auto inside = [&](std::string_view key) {
-    return (place.empty() ? "" : place + ".") + std::string(key);
-  };
+  const auto inside = [&](std::string_view key) { return (place.empty() ? "" : place + ".") + std::string(key); };
   for (const Rule& rule : rules) {
     const auto found = object.find(rule.key);
-    if (found != object.end())
-      check_property(*found, rule, inside(rule.key), file);
-    else if (rule.required)
-      fail(file, inside(rule.key), std::string("is missing; it must be ") + describe(rule.type));
+    if (found != object.end()) check_property(*found, rule, inside(rule.key), file);
+    else if (rule.required) fail(file, inside(rule.key), std::string("is missing; it must be ") + describe(rule.type));
   }
   const auto extensions = object.find("extensions");
   if (extensions == object.end()) return;
@@ -351,8 +312,7 @@ Json parse_json(std::string_view text, const std::string& file) {
   Counter counter;
   if (!Json::sax_parse(text.begin(), text.end(), &counter)) {
     const auto line =
-        1 + std::count(text.begin(),
-                       text.begin() + std::ptrdiff_t(std::min(counter.trouble_byte, text.size())), '\n');
+        1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(std::min(counter.trouble_byte, text.size())), '\n');
     fail(file, counter.trouble_byte > 0 ? "line " + std::to_string(line) : "JSON", counter.trouble);
   }
   Json document = Json::parse(text.begin(), text.end());

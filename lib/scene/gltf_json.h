@@ -30,7 +30,6 @@ void check_webp(Json& extension, const std::string& place, const std::string& fi
 /// Removes all `extras` and all extensions whose name is not in `known`, which tinygltf would copy into
 /// values of 200 bytes each; the names found go to `unknown`. Throws InputError if the known ones hold more
 /// than a million values.
-void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown,
-           const std::string& file);
+void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown, const std::string& file);
 
 }  // namespace tempolux::gltf

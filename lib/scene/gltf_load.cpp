@@ -45,20 +45,16 @@ std::string same_name(const std::string& name, void*) { return name; }
 
 bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& name, void* gated) {
   const ByteRange* range = range_named(name, gated);
-  if (range && range->path.empty())
-    *out = std::move(static_cast<Gated*>(gated)->unpacked);  // each buffer is read once
-  else if (range)
-    *out = read_range(*range);
+  if (range && range->path.empty()) *out = std::move(static_cast<Gated*>(gated)->unpacked);  // each buffer is read once
+  else if (range) *out = read_range(*range);
   return range != nullptr;
 }
 
-bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-  return false;
-}
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
 /// Images never reach tinygltf; should one, its pixels are not decoded.
-bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
-                    int, void*) {
+bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
+                    void*) {
   return true;
 }
 
@@ -68,8 +64,7 @@ tinygltf::Model parse(const std::string& path, Gated& gated) {
   parser.SetFsCallbacks({buffer_exists, same_name, read_buffer, write_nothing, &gated});
   tinygltf::Model model;
   std::string error, warning;
-  if (!parser.LoadASCIIFromString(&model, &error, &warning, gated.json.data(), unsigned(gated.json.size()),
-                                  ""))
+  if (!parser.LoadASCIIFromString(&model, &error, &warning, gated.json.data(), unsigned(gated.json.size()), ""))
     fail(path, "glTF", error.empty() ? "cannot be read" : one_line(error, 200));
   return model;
 }
@@ -101,12 +96,11 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   import_deformation(import);
   import_animations(import, options.animation);
   for (const auto& [what, count] : import.ignored)
-    scene.warnings.push_back(path + ": ignored: " + what +
-                             (count > 1 ? ", " + std::to_string(count) + " times" : ""));
+    scene.warnings.push_back(path + ": ignored: " + what + (count > 1 ? ", " + std::to_string(count) + " times" : ""));
   for (const auto& [what, mended] : import.mended)
     scene.warnings.push_back(path + ": " + mended.first_place +
-                             (mended.places > 1 ? " and " + std::to_string(mended.places - 1) + " more" : "") + ": " + what +
-                             (mended.count > 1 ? " (" + std::to_string(mended.count) + ")" : ""));
+                             (mended.places > 1 ? " and " + std::to_string(mended.places - 1) + " more" : "") + ": " +
+                             what + (mended.count > 1 ? " (" + std::to_string(mended.count) + ")" : ""));
   return scene;
 }
 
@@ -116,9 +110,7 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
 Scene load_gltf(const std::string& path, const GltfOptions& options) {
   try {
     return gltf::import_scene(path, options);
-  } catch (const InputError&) {
-    throw;
-  } catch (const ResourceError&) {
+  } catch (const InputError&) { throw; } catch (const ResourceError&) {
     throw;
   } catch (const std::bad_alloc&) {
     throw ResourceError(path + ": not enough memory to load the scene");

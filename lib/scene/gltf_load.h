@@ -10,9 +10,9 @@
 namespace tempolux {
 
 struct GltfOptions {
-  bool allow_outside = false;                    ///< URIs may leave the scene's folder
-  std::string animation{};                       ///< play only the animation of this name; empty: all together
-  std::uint64_t max_file_bytes = 4ull << 30;     ///< of the scene file, of each buffer and of each image
+  bool allow_outside = false;                 ///< URIs may leave the scene's folder
+  std::string animation{};                    ///< play only the animation of this name; empty: all together
+  std::uint64_t max_file_bytes = 4ull << 30;  ///< of the scene file, of each buffer and of each image
   TextureLimits textures{};
 };
 

@@ -25,9 +25,8 @@ float limited(Import& import, double value, double lower, double upper, const st
   if (!std::isfinite(value)) import.fail(place, "is not finite");
   if (value < lower || value > upper) {
     import.scene.warnings.push_back(place + ": " + std::to_string(value) + " brought into its range " +
-                                    (upper == kNoUpper
-                                         ? "from " + std::to_string(lower) + " up"
-                                         : std::to_string(lower) + " .. " + std::to_string(upper)));
+                                    (upper == kNoUpper ? "from " + std::to_string(lower) + " up"
+                                                       : std::to_string(lower) + " .. " + std::to_string(upper)));
   }
   return float(std::clamp(value, lower, upper));
 }
@@ -58,8 +57,7 @@ struct ExtensionReader {
     if (!object.Has(key)) return values;
     const Value& array = object.Get(key);
     for (std::size_t i = 0; i < array.ArrayLen(); ++i) {
-      if (!array.Get(int(i)).IsNumber())
-        import.fail(place + "." + key, "holds something that is not a number");
+      if (!array.Get(int(i)).IsNumber()) import.fail(place + "." + key, "holds something that is not a number");
       values.push_back(array.Get(int(i)).GetNumberAsDouble());
     }
     if (values.size() != 3) import.fail(place + "." + key, "must have 3 numbers");
@@ -102,8 +100,7 @@ void read_extension(Import& import, const std::string& name, const Value& value,
     textures.transmission = reader.texture("transmissionTexture");
   } else if (name == "KHR_materials_volume") {
     material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
-    material.attenuation_color =
-        limited_colour(import, reader.numbers("attenuationColor"), Rgb{1.0f}, 1, reader.place);
+    material.attenuation_color = limited_colour(import, reader.numbers("attenuationColor"), Rgb{1.0f}, 1, reader.place);
     if (value.Has("attenuationDistance"))
       material.attenuation_distance =
           limited(import, reader.number("attenuationDistance", 1), kLeastDistance, kNoUpper, reader.place);
@@ -115,10 +112,8 @@ void read_extension(Import& import, const std::string& name, const Value& value,
 
 void read_alpha(Import& import, const tinygltf::Material& source, const std::string& place, Material& material) {
   const std::vector<double>& factor = source.pbrMetallicRoughness.baseColorFactor;
-  if (source.alphaMode == "MASK")
-    material.alpha_mode = Material::Alpha::mask;
-  else if (source.alphaMode == "BLEND")
-    material.alpha_mode = Material::Alpha::blend;
+  if (source.alphaMode == "MASK") material.alpha_mode = Material::Alpha::mask;
+  else if (source.alphaMode == "BLEND") material.alpha_mode = Material::Alpha::blend;
   else if (source.alphaMode != "OPAQUE")
     import.fail(place + ".alphaMode", "\"" + one_line(source.alphaMode, 40) + "\" is not OPAQUE, MASK or BLEND");
   if (factor.size() > 3) material.alpha = limited(import, factor[3], 0, 1, place + ".baseColorFactor");
@@ -140,11 +135,9 @@ Material read_material(Import& import, std::size_t index) {
   MaterialTextures textures;
   for (const auto& [name, value] : source.extensions)
     read_extension(import, name, value, place, material, textures, strength);
-  material.emission =
-      limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
+  material.emission = limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
   material.emission *= float(strength);
-  if (!is_finite(material.emission))
-    import.fail(place, "emissiveFactor times emissiveStrength is not finite");
+  if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
   if (material.unlit) material.emission = Rgb(0.0f);  // base_color is all it shows
   textures.base_color = read_texture(import, pbr.baseColorTexture, place + ".baseColorTexture");
   textures.metallic_roughness = read_texture(import, pbr.metallicRoughnessTexture, place + ".metallicRoughnessTexture");
@@ -162,14 +155,10 @@ PunctualLight read_light(Import& import, std::size_t index) {
   const std::string place = place_of("extensions.KHR_lights_punctual.lights", index, source.name);
   PunctualLight light;
   light.name = source.name;
-  if (source.type == "point")
-    light.kind = PunctualLight::Kind::point;
-  else if (source.type == "spot")
-    light.kind = PunctualLight::Kind::spot;
-  else if (source.type == "directional")
-    light.kind = PunctualLight::Kind::directional;
-  else
-    import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
+  if (source.type == "point") light.kind = PunctualLight::Kind::point;
+  else if (source.type == "spot") light.kind = PunctualLight::Kind::spot;
+  else if (source.type == "directional") light.kind = PunctualLight::Kind::directional;
+  else import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
   light.intensity = limited_colour(import, source.color, Rgb{1.0f}, kNoUpper, place + ".color");
   light.intensity *= limited(import, source.intensity, 0, kNoUpper, place + ".intensity");
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
@@ -218,13 +207,11 @@ void import_materials(Import& import) {
 }
 
 void import_lights(Import& import) {
-  for (std::size_t i = 0; i < import.model.lights.size(); ++i)
-    import.scene.lights.push_back(read_light(import, i));
+  for (std::size_t i = 0; i < import.model.lights.size(); ++i) import.scene.lights.push_back(read_light(import, i));
 }
 
 void import_cameras(Import& import) {
-  for (std::size_t i = 0; i < import.model.cameras.size(); ++i)
-    import.scene.cameras.push_back(read_camera(import, i));
+  for (std::size_t i = 0; i < import.model.cameras.size(); ++i) import.scene.cameras.push_back(read_camera(import, i));
 }
 
 }  // namespace tempolux::gltf

@@ -25,7 +25,8 @@ Vec3d at_corner(const Primitive& primitive, const std::array<std::uint32_t, 3>& 
 
 }  // namespace
 
-void mend_normals(Import& import, const std::string& place, const std::vector<std::uint32_t>& unusable, Primitive& primitive) {
+void mend_normals(Import& import, const std::string& place, const std::vector<std::uint32_t>& unusable,
+                  Primitive& primitive) {
   if (unusable.empty()) return;
   std::vector<Vec3d> sums(unusable.size());
   std::vector<bool> used(unusable.size(), false);
@@ -49,8 +50,8 @@ void mend_normals(Import& import, const std::string& place, const std::vector<st
     import.mend(place, "normals of zero length, NaN or infinity are made from the triangles there", std::size_t(count));
 }
 
-void mend_from_neighbours(const Primitive& primitive, const std::vector<std::uint32_t>& unusable, std::span<float> values,
-                          std::size_t components) {
+void mend_from_neighbours(const Primitive& primitive, const std::vector<std::uint32_t>& unusable,
+                          std::span<float> values, std::size_t components) {
   if (unusable.empty()) return;
   std::vector<double> sums(unusable.size() * components, 0), counts(unusable.size(), 0);
   for (const auto& triangle : primitive.triangles)
@@ -60,7 +61,8 @@ void mend_from_neighbours(const Primitive& primitive, const std::vector<std::uin
       for (const std::uint32_t other : triangle) {
         if (find(unusable, other) < unusable.size()) continue;
         counts[at] += 1;
-        for (std::size_t c = 0; c < components; ++c) sums[at * components + c] += double(values[other * components + c]);
+        for (std::size_t c = 0; c < components; ++c)
+          sums[at * components + c] += double(values[other * components + c]);
       }
     }
   for (std::size_t i = 0; i < unusable.size(); ++i)

@@ -31,12 +31,12 @@ struct Import {
   Scene& scene;
   const Gated* gated = nullptr;
   const GltfOptions* options = nullptr;
-  std::uint64_t geometry_budget = 0;    ///< bytes that may still be allocated for geometry
-  std::vector<int> node_from_source{};  ///< node index of the file -> of the scene, -1: not in the scene
-  std::vector<int> mesh_from_source{};  ///< the same for meshes; -1: not used or without triangles
+  std::uint64_t geometry_budget = 0;               ///< bytes that may still be allocated for geometry
+  std::vector<int> node_from_source{};             ///< node index of the file -> of the scene, -1: not in the scene
+  std::vector<int> mesh_from_source{};             ///< the same for meshes; -1: not used or without triangles
   std::vector<EncodedImage> images{};              ///< of the scene, as they are met
   std::vector<std::uint32_t> image_from_source{};  ///< image of the file -> of the scene, kNone: not read
-  std::map<std::string, std::size_t> ignored{};  ///< what was ignored -> how often; warnings at the end
+  std::map<std::string, std::size_t> ignored{};    ///< what was ignored -> how often; warnings at the end
   struct Mended {
     std::string first_place;
     std::size_t count = 0, places = 0;
@@ -71,12 +71,12 @@ Texture read_texture(Import& import, const tinygltf::Value& info, const std::str
 std::size_t target_count(const tinygltf::Mesh& mesh);
 
 // The steps of load_gltf, in this order.
-void import_nodes(Import& import);       ///< gltf_nodes.cpp: default scene's nodes, parents first
-void import_materials(Import& import);   ///< gltf_material.cpp
-void import_lights(Import& import);      ///< gltf_material.cpp: KHR_lights_punctual
-void import_cameras(Import& import);     ///< gltf_material.cpp
-void import_meshes(Import& import);      ///< gltf_geometry.cpp: those that nodes use
-void import_deformation(Import& import); ///< gltf_deform.cpp: skins, morph weights, instances of nodes
+void import_nodes(Import& import);        ///< gltf_nodes.cpp: default scene's nodes, parents first
+void import_materials(Import& import);    ///< gltf_material.cpp
+void import_lights(Import& import);       ///< gltf_material.cpp: KHR_lights_punctual
+void import_cameras(Import& import);      ///< gltf_material.cpp
+void import_meshes(Import& import);       ///< gltf_geometry.cpp: those that nodes use
+void import_deformation(Import& import);  ///< gltf_deform.cpp: skins, morph weights, instances of nodes
 /// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all, but for
 /// channels with which something is wrong: a warning names what, and the scene is still without them.
 void import_animations(Import& import, const std::string& only);

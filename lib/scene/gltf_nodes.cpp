@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::size_t kMaxNodes = 1u << 20;
 
-Vec3d vec3_of(const Import& import, const std::vector<double>& values, Vec3d fallback,
-              const std::string& place) {
+Vec3d vec3_of(const Import& import, const std::vector<double>& values, Vec3d fallback, const std::string& place) {
   if (values.empty()) return fallback;
   if (values.size() != 3) import.fail(place, "must have 3 numbers");
   const Vec3d v{values[0], values[1], values[2]};
@@ -19,8 +18,7 @@ Vec3d vec3_of(const Import& import, const std::vector<double>& values, Vec3d fal
   return v;
 }
 
-void read_matrix(const Import& import, const std::vector<double>& values, const std::string& place,
-                 Node& node) {
+void read_matrix(const Import& import, const std::vector<double>& values, const std::string& place, Node& node) {
   if (values.size() != 16) import.fail(place, "must have 16 numbers");
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
     import.fail(place, "is not finite");
@@ -60,8 +58,7 @@ Node read_node(Import& import, std::uint32_t index, int parent) {
   if (!source.rotation.empty()) {
     if (source.rotation.size() != 4) import.fail(place + ".rotation", "must have 4 numbers");
     std::copy(source.rotation.begin(), source.rotation.end(), node.rotation.begin());
-    if (!normalize_rotation(node.rotation))
-      import.fail(place + ".rotation", "is not a quaternion: zero or not finite");
+    if (!normalize_rotation(node.rotation)) import.fail(place + ".rotation", "is not a quaternion: zero or not finite");
   }
   node.mesh = checked_index(import, source.mesh, import.model.meshes.size(), place + ".mesh");
   node.camera = checked_index(import, source.camera, import.model.cameras.size(), place + ".camera");
@@ -105,8 +102,7 @@ void import_nodes(Import& import) {
     const Pending next = stack.back();
     stack.pop_back();
     if (next.source < 0 || std::size_t(next.source) >= count)
-      import.fail("nodes",
-                  "node " + std::to_string(next.source) + " is named as a child or root but does not exist");
+      import.fail("nodes", "node " + std::to_string(next.source) + " is named as a child or root but does not exist");
     const std::size_t source = std::size_t(next.source);
     if (import.node_from_source[source] != -1)
       import.fail(place_of("nodes", source, import.model.nodes[source].name),

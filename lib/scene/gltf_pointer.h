@@ -9,7 +9,7 @@ namespace tempolux::gltf {
 
 struct PointedAt {
   AnimationTrack::Path path = AnimationTrack::Path::translation;
-  int target = 0;                     ///< index of the scene
+  int target = 0;  ///< index of the scene
 };
 
 /// True if the property is one that is played; otherwise it is noted as ignored, with the pointer. Throws

@@ -13,8 +13,8 @@
 namespace tempolux::gltf {
 namespace {
 
-/// Draco needs less than a bit for a triangle of a regular grid, which unpacked are 12 bytes and more; meshopt shrinks 64
-/// times at most.
+/// Draco needs less than a bit for a triangle of a regular grid, which unpacked are 12 bytes and more; meshopt shrinks
+/// 64 times at most.
 constexpr std::uint64_t kMostGrowth = 1000, kSmall = 64u << 20;
 
 std::string numbered(const char* array, std::size_t index) {
@@ -34,7 +34,8 @@ class Unpacking {
     Json packed = view["extensions"][name];
     check_meshopt(packed, place, path_);
     PackedPiece piece = piece_of(Packer::meshopt, place, name);
-    const std::uint64_t count = packed["count"].get<std::uint64_t>(), stride = packed["byteStride"].get<std::uint64_t>();
+    const std::uint64_t count = packed["count"].get<std::uint64_t>(),
+                        stride = packed["byteStride"].get<std::uint64_t>();
     if (count == 0 || count > 0xffffffffu || stride == 0 || stride > 256)
       fail(place, "count and byteStride must be at least 1, byteStride at most 256");
     piece.settings = {std::uint32_t(mode_of(packed, place)), std::uint32_t(filter_of(packed, place)),
@@ -50,7 +51,8 @@ class Unpacking {
   /// their bytes by now: a primitive that shares all of them is not packed any more.
   void add_primitive(std::size_t mesh, std::size_t number) {
     Json& primitive = document_["meshes"][mesh]["primitives"][number];
-    const std::string place = numbered("meshes", mesh) + ".primitives[" + std::to_string(number) + "].extensions." + kDraco;
+    const std::string place =
+        numbered("meshes", mesh) + ".primitives[" + std::to_string(number) + "].extensions." + kDraco;
     Json packed = primitive["extensions"][kDraco];
     check_draco(packed, place, path_);
     if (primitive.value("mode", 4) != 4) fail(place, "packs something else than a list of triangles");
@@ -58,7 +60,8 @@ class Unpacking {
     const std::size_t source = packed["bufferView"].get<std::size_t>();
     std::vector<Part> parts{{primitive["indices"].get<std::size_t>(), kIndices}};
     for (const auto& [name, id] : packed["attributes"].items()) {
-      if (!primitive["attributes"].contains(name)) fail(place + ".attributes." + name.substr(0, 60), "is no attribute of the primitive");
+      if (!primitive["attributes"].contains(name))
+        fail(place + ".attributes." + name.substr(0, 60), "is no attribute of the primitive");
       parts.push_back({primitive["attributes"][name].get<std::size_t>(), id.get<std::int64_t>()});
     }
     add_parts(source, parts, place);
@@ -102,7 +105,8 @@ class Unpacking {
   void add(PackedPiece piece) {
     packed_bytes_ += piece.bytes.size();
     unpacked_bytes_ += piece.unpacked_bytes;
-    if (unpacked_bytes_ > options_.max_file_bytes) fail("unpacked", "more than " + std::to_string(options_.max_file_bytes) + " bytes");
+    if (unpacked_bytes_ > options_.max_file_bytes)
+      fail("unpacked", "more than " + std::to_string(options_.max_file_bytes) + " bytes");
     pieces_.push_back(std::move(piece));
   }
 
@@ -147,7 +151,8 @@ class Unpacking {
     if (count == 0 || count > 0xffffffffu) fail(accessor_place, "count " + std::to_string(count) + " cannot be right");
     piece.unpacked_bytes += count * size * components;
     if (part.id == kIndices) {
-      if (components != 1 || (type != 5121 && type != 5123 && type != 5125)) fail(accessor_place, "indices must be unsigned integers");
+      if (components != 1 || (type != 5121 && type != 5123 && type != 5125))
+        fail(accessor_place, "indices must be unsigned integers");
       piece.settings = {size, std::uint32_t(count), 0, 0};
       return;
     }
@@ -183,7 +188,8 @@ class Unpacking {
     if (filter == "OCTAHEDRAL") return MeshoptFilter::octahedral;
     if (filter == "QUATERNION") return MeshoptFilter::quaternion;
     if (filter == "EXPONENTIAL") return MeshoptFilter::exponential;
-    fail(place + ".filter", "\"" + filter.substr(0, 40) + "\" is not supported; " + remedy_of("KHR_meshopt_compression"));
+    fail(place + ".filter",
+         "\"" + filter.substr(0, 40) + "\" is not supported; " + remedy_of("KHR_meshopt_compression"));
   }
 
   std::vector<unsigned char> bytes_of_view(std::size_t index, const std::string& place) const {

@@ -6,7 +6,8 @@
 namespace tempolux {
 namespace {
 
-constexpr float kDoubtful = 500;   ///< cd or lux; multiplied: a lamp of 9.2 W, a sun of .73 W/m^2. Not: one of 6.3 kW, a sun of 500
+constexpr float kDoubtful =
+    500;  ///< cd or lux; multiplied: a lamp of 9.2 W, a sun of .73 W/m^2. Not: one of 6.3 kW, a sun of 500
 
 bool is_from_blender(const std::string& generator) {
   return generator.find("Blender") != std::string::npos && generator.find("tempolux_export") == std::string::npos;
@@ -20,7 +21,8 @@ std::string doubt_of_light_units(const Scene& scene) {
   for (const PunctualLight& light : scene.lights) brightest = std::max(brightest, max_component(light.intensity));
   if (brightest < kDoubtful) return "";
   return scene.path + ": its brightest lamp has " + std::to_string(std::lround(brightest)) +
-         " cd (sun: lux): Blender's default export multiplies lamps, but not emitting surfaces, by 683; if these are, give --light-units spec "
+         " cd (sun: lux): Blender's default export multiplies lamps, but not emitting surfaces, by 683; if these are, "
+         "give --light-units spec "
          "(make: LIGHT_UNITS=spec; docs/from-blender.md)";
 }
 

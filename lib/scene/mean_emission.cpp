@@ -14,7 +14,8 @@ class Spread {
  public:
   Spread(const SceneFrame& frame, const Surface& surface, std::uint32_t triangle, const Texture& texture,
          TextureTransfer transfer)
-      : texture_(texture), pyramid_(frame.images->pyramid(texture.image, transfer)),
+      : texture_(texture),
+        pyramid_(frame.images->pyramid(texture.image, transfer)),
         at_(corner_coordinates(*surface.primitive, surface.primitive->triangles[triangle], texture)),
         lower_{std::min({at_[0].x, at_[1].x, at_[2].x}), std::min({at_[0].y, at_[1].y, at_[2].y})},
         upper_{std::max({at_[0].x, at_[1].x, at_[2].x}), std::max({at_[0].y, at_[1].y, at_[2].y})} {}
@@ -72,7 +73,9 @@ Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface_index, st
         const float u = (float(i) + third) / float(cuts), v = (float(j) + third) / float(cuts);
         Rgba value{1, 1, 1, 1};
         if (emission) value = emission->read(u, v, level);
-        const float alpha = covers ? 1 : (base_color ? base_color->read(u, v, 0)[3] : 1) * TextureSpot(frame, surface_index, triangle, u, v, 0).vertex_color()[3];
+        const float alpha = covers ? 1
+                                   : (base_color ? base_color->read(u, v, 0)[3] : 1) *
+                                         TextureSpot(frame, surface_index, triangle, u, v, 0).vertex_color()[3];
         const double share = covers ? 1 : double(coverage(material, alpha));
         sum += Rgbd(Rgb{value[0], value[1], value[2]}) * share;
       }

@@ -23,7 +23,7 @@ class MovingObjects {
   bool contains(std::uint32_t object) const { return object < moves_.size() && moves_[object]; }
 
  private:
-  std::vector<bool> moves_;   ///< by object
+  std::vector<bool> moves_;  ///< by object
 };
 
 }  // namespace tempolux

@@ -65,9 +65,8 @@ std::vector<Vec3> place_normals(const std::vector<Vec3>& normals, const Affine& 
 
 void add_corners(Box3& bounds, const Box3d& local, const Affine& scene) {
   for (int corner = 0; corner < 8; ++corner)
-    bounds.add(Vec3(
-        scene.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                     corner & 4 ? local.upper.z : local.lower.z})));
+    bounds.add(Vec3(scene.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                                 corner & 4 ? local.upper.z : local.lower.z})));
 }
 
 void check_range(const Scene& scene, std::size_t n, const Surface& surface, const Sharing& sharing) {

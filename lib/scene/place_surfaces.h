@@ -31,7 +31,7 @@ class Sharing {
   const Box3d& box(const Primitive& primitive) const { return box_.at(&primitive); }
 
  private:
-  std::unordered_map<const Primitive*, Box3d> box_;   ///< of the primitives that are shared
+  std::unordered_map<const Primitive*, Box3d> box_;  ///< of the primitives that are shared
 };
 
 /// World transform of each place where the node's mesh stands: one but for EXT_mesh_gpu_instancing.

@@ -56,16 +56,13 @@ int Scene::camera_node(const std::string& name) const {
     throw InputError(path +
                      ": cameras: the scene has no camera; in Blender's glTF exporter tick Include > Cameras, or let "
                      "--camera auto frame what is there");
-  if (name != "auto")
-    throw InputError(path + ": cameras: no camera is named \"" + name + "\"; there is " + names);
+  if (name != "auto") throw InputError(path + ": cameras: no camera is named \"" + name + "\"; there is " + names);
   return first;
 }
 
 void require_lights(const Scene& scene) {
   if (scene.environment && scene.environment->emits()) return;
-  const auto emits = [&](const Primitive& primitive) {
-    return scene.materials[primitive.material].emissive();
-  };
+  const auto emits = [&](const Primitive& primitive) { return scene.materials[primitive.material].emissive(); };
   for (const Animation& animation : scene.animations)  // dark at rest, lit at some time
     for (const AnimationTrack& track : animation.tracks)
       if (track.path == AnimationTrack::Path::emissive_factor ||

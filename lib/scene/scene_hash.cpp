@@ -73,8 +73,8 @@ void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Tex
   hasher.add(std::string_view(name));
   hasher.add(std::string_view(scene.images->encoded(texture.image).digest));
   for (const float number : texture.transform) hasher.add(number);
-  for (const std::uint32_t number : {texture.uv_set, std::uint32_t(texture.wrap_u), std::uint32_t(texture.wrap_v),
-                                     std::uint32_t(texture.nearest)})
+  for (const std::uint32_t number :
+       {texture.uv_set, std::uint32_t(texture.wrap_u), std::uint32_t(texture.wrap_v), std::uint32_t(texture.nearest)})
     hasher.add(number);
 }
 
@@ -129,9 +129,9 @@ std::string materials_hash(const Scene& scene, std::span<const Material> materia
   for (const Material* material : ordered) {
     if (!material) break;
     for (const Rgb& colour : {material->base_color, material->specular_color}) hasher.add(colour);
-    for (const float number : {material->metallic, material->roughness, material->specular, material->ior,
-                               material->transmission, material->thin_walled ? 1.0f : 0.0f,
-                               material->double_sided ? 1.0f : 0.0f})
+    for (const float number :
+         {material->metallic, material->roughness, material->specular, material->ior, material->transmission,
+          material->thin_walled ? 1.0f : 0.0f, material->double_sided ? 1.0f : 0.0f})
       hasher.add(number);
     if (material->attenuation_distance < std::numeric_limits<float>::infinity()) {
       hasher.add(material->attenuation_color);

@@ -39,9 +39,10 @@ void set_borders(const Scene& scene, int frame, const TimeOptions& options, Segm
 
 const char* path_word(Path path) {
   static const std::array<const char*, 20> words{
-      "translation", "rotation", "scale", "weights", "base colour", "alpha cutoff", "metallic", "roughness",
-      "emissive factor", "emissive strength", "specular", "specular colour", "ior", "transmission", "colour",
-      "intensity", "inner cone", "outer cone", "yfov", "ymag"};
+      "translation", "rotation",     "scale",           "weights",           "base colour", "alpha cutoff",
+      "metallic",    "roughness",    "emissive factor", "emissive strength", "specular",    "specular colour",
+      "ior",         "transmission", "colour",          "intensity",         "inner cone",  "outer cone",
+      "yfov",        "ymag"};
   return words[std::size_t(path)];
 }
 
@@ -60,8 +61,7 @@ std::string name_of(const Node& node) {
 }
 
 /// Which of the node's own properties differ between two frames, else that its parent or a joint moves.
-std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n,
-                   double fps) {
+std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n, double fps) {
   std::string properties;
   const Node& node = scene.nodes[n];
   for (const AnimationTrack* track : animator.tracks(n))
@@ -122,9 +122,12 @@ void add_changed_nodes(const Scene& scene, const Animator& animator, double fps,
     if (kind == "camera" || !differs_in(*track, segment, fps)) continue;
     for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
       const Node& node = scene.nodes[n];
-      const bool has = kind == "light" ? node.light == int(track->target)
-                                       : node.mesh >= 0 && std::ranges::any_of(scene.meshes[std::size_t(node.mesh)].primitives,
-                                                                               [&](const Primitive& p) { return int(p.material) == int(track->target); });
+      const bool has = kind == "light"
+                           ? node.light == int(track->target)
+                           : node.mesh >= 0 && std::ranges::any_of(scene.meshes[std::size_t(node.mesh)].primitives,
+                                                                   [&](const Primitive& p) {
+                                                                     return int(p.material) == int(track->target);
+                                                                   });
       if (!has || segment.node_moves[n]) continue;
       segment.node_moves[n] = 1;
       segment.why_moves[n] = std::string(path_word(track->path)) + " of its " + std::string(kind);
@@ -141,9 +144,8 @@ Box3d local_box(const Mesh& mesh) {
 
 void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
   for (int corner = 0; corner < 8; ++corner)
-    bounds.add(
-        world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                     corner & 4 ? local.upper.z : local.lower.z}));
+    bounds.add(world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                            corner & 4 ? local.upper.z : local.lower.z}));
 }
 
 /// Every vertex of what stands; of instances and of what has a pose the boxes.
@@ -161,8 +163,7 @@ void add_static_bounds(const Scene& scene, const Animator& animator, const std::
     }
     for (const Affine& place : places(node, world[n]))
       for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
-        if (sharing.instanced(primitive, place))
-          add_corners(segment.world_bounds, sharing.box(primitive), place);
+        if (sharing.instanced(primitive, place)) add_corners(segment.world_bounds, sharing.box(primitive), place);
         else
           for (const Vec3& p : primitive.positions) segment.world_bounds.add(place.point(Vec3d(p)));
   }
@@ -175,10 +176,8 @@ void add_moving_bounds(const Scene& scene, const Animator& animator, double fps,
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
     if (node.mesh < 0 || !segment.node_moves[n]) continue;
-    if (deforms(scene, node))
-      deforming.emplace_back(n, PoseBounds(scene, node));
-    else
-      rigid.emplace_back(n, local_box(scene.meshes[std::size_t(node.mesh)]));
+    if (deforms(scene, node)) deforming.emplace_back(n, PoseBounds(scene, node));
+    else rigid.emplace_back(n, local_box(scene.meshes[std::size_t(node.mesh)]));
   }
   if (rigid.empty() && deforming.empty()) return;
   for (int f = segment.first; f <= segment.last; ++f) {
@@ -197,8 +196,7 @@ Vec3d scene_origin(const Box3d& bounds) {
   const double diagonal = bounds.diagonal();
   if (!(length(centre) > kFarRatio * diagonal)) return {};
   const double step = std::exp2(std::ceil(std::log2(std::max(diagonal, 1e-6))) + 2);
-  return {std::round(centre.x / step) * step, std::round(centre.y / step) * step,
-          std::round(centre.z / step) * step};
+  return {std::round(centre.x / step) * step, std::round(centre.y / step) * step, std::round(centre.z / step) * step};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 constexpr float kMargin = 0x1p-18f;
 /// A piece for as many triangles at least: what is kept of a surface is then less than its own vertices and indices.
 constexpr double kTrianglesOfPiece = 4;
-constexpr std::size_t kMostAlong = 4;   ///< cells along each axis (docs/methods/dynamic.md)
+constexpr std::size_t kMostAlong = 4;  ///< cells along each axis (docs/methods/dynamic.md)
 
 bool moves(const SceneFrame& frame, std::uint32_t node) {
   return node < frame.segment.node_moves.size() && frame.segment.node_moves[node] != 0;
@@ -66,7 +66,7 @@ SceneFrame standing_scene(SceneFrame frame) {
     if (moves(frame, placed.node)) placed.light.intensity = Rgb(0.0f);
     else standing.push_back(placed);
   }
-  if (!frame.scene) return frame;   // of no file: there is nothing to compare with
+  if (!frame.scene) return frame;  // of no file: there is nothing to compare with
   const Scene& scene = *frame.scene;
   const std::span<const Surface> fixed(frame.surfaces.data(), frame.static_count);
   const std::span<const std::uint8_t> left_out(frame.segment.node_moves);
@@ -92,7 +92,7 @@ void MovingBoxes::add(const MovingBoxes& other) {
     surfaces[i].add(other.surfaces[i]);
     const std::span<const Box3> more = other.pieces_of(i);
     if (i >= known) pieces[i].assign(more.begin(), more.end());
-    else if (pieces[i].size() != more.size()) pieces[i].clear();   // of one frame the whole box is all that is known
+    else if (pieces[i].size() != more.size()) pieces[i].clear();  // of one frame the whole box is all that is known
     else
       for (std::size_t k = 0; k < more.size(); ++k) pieces[i][k].add(more[k]);
   }

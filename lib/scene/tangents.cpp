@@ -80,12 +80,12 @@ class TangentGroups {
 
   const Primitive& primitive_;
   const Texture& normal_map_;
-  std::vector<std::uint32_t> joined_;   // by vertex: the first that is equal to it
-  std::vector<bool> speaks_;            // by triangle: has corners and coordinates that are apart
-  std::vector<std::int8_t> turns_;      // by triangle: +1 (-1) u and v turn as (against) the corners; 0: not known
-  std::vector<std::uint32_t> across_;   // by corner: of the edge to the next the corner beyond it, or kNone
-  std::vector<std::uint32_t> group_;    // by corner
-  std::vector<float> side_;             // by group
+  std::vector<std::uint32_t> joined_;  // by vertex: the first that is equal to it
+  std::vector<bool> speaks_;           // by triangle: has corners and coordinates that are apart
+  std::vector<std::int8_t> turns_;     // by triangle: +1 (-1) u and v turn as (against) the corners; 0: not known
+  std::vector<std::uint32_t> across_;  // by corner: of the edge to the next the corner beyond it, or kNone
+  std::vector<std::uint32_t> group_;   // by corner
+  std::vector<float> side_;            // by group
 };
 
 void TangentGroups::join_vertices() {

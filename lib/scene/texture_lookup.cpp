@@ -42,7 +42,7 @@ float TextureSpot::level(const Corners& corners, const TexturePyramid& pyramid) 
   const float area = length(cross(edge(1), edge(2)));
   const float texels = std::abs(cross2(minus(corners[1], corners[0]), minus(corners[2], corners[0]))) *
                        float(pyramid.width()) * float(pyramid.height());
-  const float ratio = texels / area * width_ * width_;   // texels in the footprint
+  const float ratio = texels / area * width_ * width_;  // texels in the footprint
   return ratio > 1 ? 0.5f * std::log2(std::min(ratio, 1e30f)) : 0;
 }
 
@@ -90,7 +90,7 @@ bool TextureSpot::axes_of_coordinates(const Texture& normal_map, Vec3 normal, Ve
   const Vec3 along_u = (edge(1) * b.y - edge(2) * a.y) * side, along_v = (edge(2) * a.x - edge(1) * b.x) * side;
   right = normalize(along_u - normal * dot(normal, along_u));
   up = cross(normal, right);
-  if (dot(up, along_v) > 0) up = -up;   // v grows downwards in the image
+  if (dot(up, along_v) > 0) up = -up;  // v grows downwards in the image
   return length2(right) > 0.5f;
 }
 
@@ -98,8 +98,8 @@ Vec3 TextureSpot::bend(const Texture& normal_map, float scale, Vec3 normal, Vec3
   Vec3 right, up;
   if (!axes_of_tangents(normal, right, up) && !axes_of_coordinates(normal_map, normal, right, up)) return normal;
   const Rgba code = read(normal_map, TextureTransfer::linear);
-  Vec3 bent = normalize(right * (scale * (2 * code[0] - 1)) + up * (scale * (2 * code[1] - 1)) +
-                        normal * (2 * code[2] - 1));
+  Vec3 bent =
+      normalize(right * (scale * (2 * code[0] - 1)) + up * (scale * (2 * code[1] - 1)) + normal * (2 * code[2] - 1));
   if (!(length2(bent) > 0.5f)) return normal;
   if (const float rise = dot(bent, geometric); rise < kLeastRise)
     bent = normalize(bent + geometric * (kLeastRise - rise));
@@ -109,8 +109,8 @@ Vec3 TextureSpot::bend(const Texture& normal_map, float scale, Vec3 normal, Vec3
 bool lets_rays_pass(const Material& material) {
   if (material.alpha_mode == Material::Alpha::opaque) return false;
   const bool textured = material.textures && (material.textures->base_color || material.textures->vertex_colors);
-  return textured || (material.alpha_mode == Material::Alpha::mask ? material.alpha < material.alpha_cutoff
-                                                                   : material.alpha < 1);
+  return textured ||
+         (material.alpha_mode == Material::Alpha::mask ? material.alpha < material.alpha_cutoff : material.alpha < 1);
 }
 
 TextureTransfer base_color_transfer(const Material& material) {
@@ -123,7 +123,8 @@ float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t 
   float alpha = 1;
   if (material.textures) {
     const TextureSpot spot(frame, surface, triangle, u, v, 0);
-    if (material.textures->base_color) alpha = spot.read(material.textures->base_color, base_color_transfer(material))[3];
+    if (material.textures->base_color)
+      alpha = spot.read(material.textures->base_color, base_color_transfer(material))[3];
     if (material.textures->vertex_colors) alpha *= spot.vertex_color()[3];
   }
   return coverage(material, alpha);

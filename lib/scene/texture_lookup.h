@@ -20,8 +20,12 @@ class TextureSpot {
  public:
   /// u, v: barycentrics of corners 1 and 2; width [m]: of what looks at the point, 0: the finest level.
   TextureSpot(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width)
-      : frame_(frame), surface_(frame.surfaces[surface]), corners_(surface_.primitive->triangles[triangle]),
-        u_(u), v_(v), width_(width) {}
+      : frame_(frame),
+        surface_(frame.surfaces[surface]),
+        corners_(surface_.primitive->triangles[triangle]),
+        u_(u),
+        v_(v),
+        width_(width) {}
 
   /// Linear value at the point; the texture must have an image. A primitive without the coordinates that the
   /// texture asks for shows the corner (0, 0).
@@ -62,10 +66,11 @@ bool emission_varies(const Material& material);
 /// Radiance that the material emits at a point [glTF nits].
 Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width);
 
-/// Share of rays that meet the surface at a point, by the finest level of the texture and the vertices' colour: 1 for opaque
-/// materials, alpha for BLEND, 1 or 0 for MASK.
+/// Share of rays that meet the surface at a point, by the finest level of the texture and the vertices' colour: 1 for
+/// opaque materials, alpha for BLEND, 1 or 0 for MASK.
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
-/// The same of a material that lets rays pass, where the alpha of its texture times that of the vertices is `texel` (1: none).
+/// The same of a material that lets rays pass, where the alpha of its texture times that of the vertices is `texel` (1:
+/// none).
 inline float coverage(const Material& material, float texel) {
   const float alpha = material.alpha * texel;
   if (material.alpha_mode == Material::Alpha::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;

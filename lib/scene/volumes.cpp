@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFarthest = 1e15, kSmallest = 1e-12;   ///< m, of a medium's box: float32 has room for its cells and their inverses
+constexpr double kFarthest = 1e15,
+                 kSmallest = 1e-12;  ///< m, of a medium's box: float32 has room for its cells and their inverses
 
 /// Values of one node's extras, each checked.
 class Extras {
@@ -49,7 +50,8 @@ class Extras {
     if (!value) return otherwise;
     if (!value->is_array()) return Rgb(number(*value, key, 0, 1, wanted));
     if (value->size() != 3) fail(key, wanted);
-    return {number((*value)[0], key, 0, 1, wanted), number((*value)[1], key, 0, 1, wanted), number((*value)[2], key, 0, 1, wanted)};
+    return {number((*value)[0], key, 0, 1, wanted), number((*value)[1], key, 0, 1, wanted),
+            number((*value)[2], key, 0, 1, wanted)};
   }
   std::optional<std::pair<int, int>> range(const char* first, const char* last) const {
     const Json *a = find(first), *b = find(last);
@@ -81,7 +83,8 @@ std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside) {
     if (node.extras.empty() || node.extras.find("vdb_pattern") == std::string::npos) continue;
     const Json object = Json::parse(node.extras, nullptr, false);
     if (!object.is_object() || !object.contains("vdb_pattern")) continue;
-    const std::string place = scene.path + ": node " + (node.name.empty() ? std::to_string(node.source_index) : node.name);
+    const std::string place =
+        scene.path + ": node " + (node.name.empty() ? std::to_string(node.source_index) : node.name);
     const Extras extras(object, place);
     const std::string pattern = extras.text("vdb_pattern");
     if (pattern.empty()) extras.fail("vdb_pattern", "a file name");
@@ -105,25 +108,25 @@ std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<
   std::vector<Medium> media;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const VdbVolume volume = series.read({files[i], sources[i].grid}, max_memory);
-    if (volume.voxels->empty()) continue;    // smoke that has not begun
+    if (volume.voxels->empty()) continue;  // smoke that has not begun
     Affine scene_from_index = volume.world_from_index;
     scene_from_index.translation -= origin;
     try {
       media.emplace_back(volume.voxels, scene_from_index, sources[i].options);
-    } catch (const std::invalid_argument& error) {
-      throw InputError(files[i] + ": " + error.what());
-    }
+    } catch (const std::invalid_argument& error) { throw InputError(files[i] + ": " + error.what()); }
     const Medium& medium = media.back();
-    if (medium.bounds().empty()) {           // sigma_t is 0
+    if (medium.bounds().empty()) {  // sigma_t is 0
       media.pop_back();
       continue;
     }
     if (!(max_component(max(abs(medium.bounds().lower), abs(medium.bounds().upper))) < kFarthest))
       throw InputError(files[i] + ": its voxels lie beyond 1e15 m");
-    if (const Vec3d size = medium.bounds().upper - medium.bounds().lower; !(std::min({size.x, size.y, size.z}) > kSmallest))
+    if (const Vec3d size = medium.bounds().upper - medium.bounds().lower;
+        !(std::min({size.x, size.y, size.z}) > kSmallest))
       throw InputError(files[i] + ": all its voxels lie within 1e-12 m; its transform is in another unit than metres?");
     if (!std::isfinite(medium.grid().largest() * medium.options().sigma_t))
-      throw InputError(files[i] + ": its extinction is beyond what numbers can hold; lower " + sources[i].place + "'s sigma_t");
+      throw InputError(files[i] + ": its extinction is beyond what numbers can hold; lower " + sources[i].place +
+                       "'s sigma_t");
   }
   return media;
 }

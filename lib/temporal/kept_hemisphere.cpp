@@ -32,7 +32,7 @@ void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
   std::array<std::uint8_t, 4>& rgbe = kept.samples[cell].rgbe;
   const Rgb scaled{float(rgbe[0]) * ratio.r, float(rgbe[1]) * ratio.g, float(rgbe[2]) * ratio.b};
   const float largest = max_component(scaled);
-  if (rgbe[3] >= 11 && largest >= 128 && largest < 255) {   // as encode_rgbe() would: the exponent stays
+  if (rgbe[3] >= 11 && largest >= 128 && largest < 255) {  // as encode_rgbe() would: the exponent stays
     const std::array<float, 3> up = rounding_of(kept.record, cell);
     for (std::size_t c = 0; c < 3; ++c) {
       const auto whole = std::uint8_t(scaled[int(c)]);
@@ -49,14 +49,15 @@ void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float dist
   formats::RadianceSample& sample = kept.samples[cell];
   const bool hit = distance < INFINITY, anchored = hit && may_anchor;
   sample.flags = std::uint16_t(formats::age_of(sample) | formats::sample_valid | (hit ? 0 : formats::sample_miss) |
-                               (source.mover ? formats::sample_dynamic : 0) | (source.partial ? formats::sample_near : 0) |
-                               (anchored ? formats::sample_anchored : 0));
+                               (source.mover ? formats::sample_dynamic : 0) |
+                               (source.partial ? formats::sample_near : 0) | (anchored ? formats::sample_anchored : 0));
   sample.distance = hit ? units.encode(distance) : std::uint16_t(0);
   kept.anchors[cell] = anchored ? source.point : kNone;
   keep_radiance(kept, cell, radiance);
 }
 
-IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units, float* further_share) {
+IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units,
+                             float* further_share) {
   thread_local Hemisphere sky;
   sky.reset(kept.record.rings, kept.record.sectors);
   const float closest = closest_distance(place);
@@ -138,7 +139,8 @@ formats::RadsamplesFile head_of(const KeptHemispheres& kept) {
   return file;
 }
 
-void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift, KeptHemispheres& kept) {
+void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift,
+                  KeptHemispheres& kept) {
   kept.records.resize(head.records.size());
   KeptHemisphere& k = kept.records[record];
   k.record = head.records[record];

@@ -9,19 +9,22 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kTurns = 8;   ///< updates in which each near hit is traced again once (table in docs/methods/temporal.md)
-constexpr float kLargestRatio = 2;   ///< of an anchor's light: beyond, and below its inverse, cells are traced again
+constexpr std::uint64_t kTurns =
+    8;  ///< updates in which each near hit is traced again once (table in docs/methods/temporal.md)
+constexpr float kLargestRatio = 2;  ///< of an anchor's light: beyond, and below its inverse, cells are traced again
 
 Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
 /// Is it the cell's turn in this update of its record? The answer depends on no light, so it brings no bias.
-bool is_its_turn(const formats::RadsamplesRecord& record, std::uint32_t cell) { return (mix64(record.key + cell) + record.updates) % kTurns == 0; }
-bool holds(const Box3& box, Vec3 p) {
-  return min(p, box.lower) == box.lower && max(p, box.upper) == box.upper;
+bool is_its_turn(const formats::RadsamplesRecord& record, std::uint32_t cell) {
+  return (mix64(record.key + cell) + record.updates) % kTurns == 0;
 }
+bool holds(const Box3& box, Vec3 p) { return min(p, box.lower) == box.lower && max(p, box.upper) == box.upper; }
 
 }  // namespace
 
-bool is_bright(const TemporalScene& scene, std::uint32_t point) { return point < scene.high_shares.size() && scene.high_shares[point] > 0; }
+bool is_bright(const TemporalScene& scene, std::uint32_t point) {
+  return point < scene.high_shares.size() && scene.high_shares[point] > 0;
+}
 
 LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept) {
   TEMPOLUX_CHECK(kept.point_light.size() <= scene.points.size());
@@ -35,22 +38,22 @@ LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& ke
   changes.ratios.resize(changes.points.size(), Rgb(1.0f));
   for (std::size_t i = 0; i < changes.points.size(); ++i) {
     const Rgb before = kept.point_light[i], light = scene.points[i].total();
-    if (is_bright(scene, std::uint32_t(i))) changes.points[i] = lost;   // it is a bright one since this frame
+    if (is_bright(scene, std::uint32_t(i))) changes.points[i] = lost;  // it is a bright one since this frame
     if (before == light) continue;
     if (changes.points[i] == lost) continue;
     changes.points[i] = scaled;
     changes.anything = true;
     for (int c = 0; c < 3; ++c) {
       if (before[c] == light[c]) continue;
-      const float ratio = changes.ratios[i][c] = light[c] / before[c];   // infinite: the next line
+      const float ratio = changes.ratios[i][c] = light[c] / before[c];  // infinite: the next line
       if (!(ratio <= kLargestRatio && ratio * kLargestRatio >= 1)) changes.points[i] = lost;
     }
   }
   return changes;
 }
 
-bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions, SampleUnits units,
-                std::vector<std::uint8_t>& marks) {
+bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,
+                SampleUnits units, std::vector<std::uint8_t>& marks) {
   const std::size_t cells = kept.samples.size();
   marks.assign(cells, changes.materials ? std::uint8_t(moved) : std::uint8_t(unmarked));
   for (std::size_t c = 0; c < cells; ++c) {
@@ -60,7 +63,8 @@ bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const G
       marks[c] = moved;
     } else if (flags & formats::sample_anchored) {
       marks[c] = changes.points[kept.anchors[c]];
-    } else if (flags & formats::sample_near) {   // what neither has an anchor nor more along it is black, whatever the light
+    } else if (flags &
+               formats::sample_near) {  // what neither has an anchor nor more along it is black, whatever the light
       marks[c] = unanchored;
     }
   }
@@ -77,13 +81,15 @@ bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const G
   }
   if (std::none_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != unmarked; })) return false;
   for (std::uint32_t c = 0; c < cells; ++c)
-    if (marks[c] <= scaled && (kept.samples[c].flags & formats::sample_near) && is_its_turn(kept.record, c)) marks[c] = near;
+    if (marks[c] <= scaled && (kept.samples[c].flags & formats::sample_near) && is_its_turn(kept.record, c))
+      marks[c] = near;
   return true;
 }
 
 bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes) {
-  return std::any_of(changes.boxes.begin(), changes.boxes.end(),
-                     [&](const Box3& box) { return holds(grown(box, std::min(kept.record.clearance_reach, 1e15f)), kept.position()); });
+  return std::any_of(changes.boxes.begin(), changes.boxes.end(), [&](const Box3& box) {
+    return holds(grown(box, std::min(kept.record.clearance_reach, 1e15f)), kept.position());
+  });
 }
 
 }  // namespace tempolux

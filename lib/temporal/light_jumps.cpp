@@ -7,9 +7,10 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLeast = 1.0 / 16;          ///< the noise of irradiance under the spatial filter: what is smaller is not seen
-constexpr double kStandsOut = 2;             ///< of the steps around it: motion that starts or ends has a step of its own size beside it
-constexpr std::uint32_t kLooked = 64;        ///< vertices of a surface that are followed
+constexpr double kLeast = 1.0 / 16;  ///< the noise of irradiance under the spatial filter: what is smaller is not seen
+constexpr double kStandsOut =
+    2;  ///< of the steps around it: motion that starts or ends has a step of its own size beside it
+constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are followed
 
 /// Power of the lamps, up to textures [W for lamps of W/sr and W/m^2/sr; suns count by their irradiance].
 double lamp_power(const SceneFrame& frame) {
@@ -62,7 +63,9 @@ bool light_jumps(const FramesInARow& frames) {
   if (!frames.last || !frames.here) return false;
   if (jumps(frames, step_of_lamps)) return true;
   for (std::size_t s = frames.here->static_count; s < frames.here->surfaces.size(); ++s)
-    if (jumps(frames, [&](const SceneFrame& a, const SceneFrame& b) { return step_of_surface(a.surfaces[s], b.surfaces[s]); })) return true;
+    if (jumps(frames,
+              [&](const SceneFrame& a, const SceneFrame& b) { return step_of_surface(a.surfaces[s], b.surfaces[s]); }))
+      return true;
   return false;
 }
 

@@ -15,12 +15,12 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 1024;         ///< elements in a piece of work
-constexpr int kRegions = 3;                  ///< whose tests can reject stationary light: element, kernel, ring
+constexpr std::size_t kChunk = 1024;  ///< elements in a piece of work
+constexpr int kRegions = 3;           ///< whose tests can reject stationary light: element, kernel, ring
 /// Photons that a block must be expected to hold for a test: below, the tails of its distribution are not a Gaussian's.
 constexpr double kPhotonsInBlock = 8;
 
-constexpr double kLargestSum = 0x1p55;      ///< of a frame, so that those of 255 frames do not overflow
+constexpr double kLargestSum = 0x1p55;  ///< of a frame, so that those of 255 frames do not overflow
 
 /// Blocks of 1, 1, 2, 4, 8 ... frames.
 int block_end(int distance) { return distance == 0 ? 1 : 2 * distance; }
@@ -46,7 +46,8 @@ struct Sides {
   bool any() const { return before || after; }
 };
 
-/// How a window grows to one side: distances of the last frame of each step from the middle, each frame a step, and the blocks that follow.
+/// How a window grows to one side: distances of the last frame of each step from the middle, each frame a step, and the
+/// blocks that follow.
 template <class Visit>
 void each_step(int reach, const Visit& visit) {
   for (int start = 0; start < reach; start = block_end(start)) {
@@ -60,7 +61,9 @@ void each_step(int reach, const Visit& visit) {
 int tests_of(double rate, const Added& most, int reach) {
   int tests = 0;
   each_step(reach, [&](int from, int to) {
-    const auto frames = [&](int distance) { return 1 + std::min(distance, most.before) + std::min(distance, most.after); };
+    const auto frames = [&](int distance) {
+      return 1 + std::min(distance, most.before) + std::min(distance, most.after);
+    };
     const int old = frames(from), added = frames(to) - old;
     tests += added > 0 && std::min(old, added) * rate >= kPhotonsInBlock;
   });
@@ -77,8 +80,8 @@ class Grower {
     threshold_ = thresholds.of(tests);
   }
 
-  /// On which sides may these frames join the window? If both sides together differ from it, that one may that does not by itself; if
-  /// neither does by itself, light passes through an extreme, and neither may.
+  /// On which sides may these frames join the window? If both sides together differ from it, that one may that does not
+  /// by itself; if neither does by itself, light passes through an extreme, and neither may.
   Sides sides(const Window& window, const Added& added) const {
     if (added.frames() == 0 || !differs(window, added)) return {true, true};
     const bool before = added.before > 0 && differs(window, {added.before, 0});
@@ -101,7 +104,9 @@ class Grower {
     if (a.after > 0) block += s.block(at_ + w.after + 1, at_ + w.after + a.after);
     return block;
   }
-  HitBlock all_of(const HitSeries& s, const Window& w, const Added& a) const { return old_of(s, w) + added_of(s, w, a); }
+  HitBlock all_of(const HitSeries& s, const Window& w, const Added& a) const {
+    return old_of(s, w) + added_of(s, w, a);
+  }
 
   bool rejects(const HitSeries& s, const Window& w, const Added& a) const {
     const int old_frames = w.before + 1 + w.after;
@@ -115,7 +120,7 @@ class Grower {
     const double old_frames = w.before + 1 + w.after, frames = old_frames + a.frames();
     const HitBlock all = all_of(s, w, a);
     if (!(all.flux > 0) || !(kernel.flux > 0)) return all.flux > 0;
-    const double shift = old_of(s, w).flux / all.flux * frames / old_frames - 1;   // of the mean, relative
+    const double shift = old_of(s, w).flux / all.flux * frames / old_frames - 1;  // of the mean, relative
     return shift * shift > kernel.squares / (kernel.flux * kernel.flux) * (frames / old_frames - 1);
   }
 
@@ -132,20 +137,26 @@ struct HitTable {
   };
   std::vector<std::size_t> first;
   std::vector<Entry> entries;
-  std::span<const Entry> of(std::size_t element) const { return {entries.data() + first[element], first[element + 1] - first[element]}; }
+  std::span<const Entry> of(std::size_t element) const {
+    return {entries.data() + first[element], first[element + 1] - first[element]};
+  }
 };
 
 HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<formats::MeshElement>& elements) {
-  std::unordered_map<std::uint64_t, std::size_t> sides;   // first element
-  const auto key = [](const formats::MeshElement& e) { return std::uint64_t(e.surface) << 32 | std::uint64_t(e.triangle) << 1 | e.side; };
-  for (std::size_t i = 0; i < elements.size(); i += std::size_t(elements[i].cuts) * elements[i].cuts) sides.emplace(key(elements[i]), i);
+  std::unordered_map<std::uint64_t, std::size_t> sides;  // first element
+  const auto key = [](const formats::MeshElement& e) {
+    return std::uint64_t(e.surface) << 32 | std::uint64_t(e.triangle) << 1 | e.side;
+  };
+  for (std::size_t i = 0; i < elements.size(); i += std::size_t(elements[i].cuts) * elements[i].cuts)
+    sides.emplace(key(elements[i]), i);
   const auto each = [&](const auto& visit) {
     for (std::uint32_t f = 0; f < frames.size(); ++f)
       for (const formats::MeshElement& e : frames[f]->elements) {
         const auto found = sides.find(key(e));
-        if (found == sides.end()) continue;   // it has no area now
+        if (found == sides.end()) continue;  // it has no area now
         if (elements[found->second].cuts != e.cuts)
-          throw std::invalid_argument("collect_windows: a triangle is cut otherwise in frame " + std::to_string(frames[f]->frame));
+          throw std::invalid_argument("collect_windows: a triangle is cut otherwise in frame " +
+                                      std::to_string(frames[f]->frame));
         visit(found->second + e.cell, HitTable::Entry{&e, f});
       }
   };
@@ -160,10 +171,13 @@ HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<
 }
 
 /// The unit of an entry's counts.
-double unit_of(std::span<const FrameCounts* const> frames, const HitTable::Entry& entry) { return frames[entry.frame]->unit; }
+double unit_of(std::span<const FrameCounts* const> frames, const HitTable::Entry& entry) {
+  return frames[entry.frame]->unit;
+}
 
 HitBlock hits_of(const formats::MeshElement& e, double unit) {
-  return {double(e.photons), unit * luminance(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2]))), unit * unit * e.squares()};
+  return {double(e.photons), unit * luminance(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2]))),
+          unit * unit * e.squares()};
 }
 
 /// Regions of elements: those in a cube that face along one axis and belong to one object.
@@ -177,7 +191,8 @@ class Regions {
     for (std::size_t c = 1; c < 3; ++c)
       if (std::abs(n[c]) > std::abs(n[axis])) axis = c;
     std::uint64_t key = mix64(std::uint64_t(e.object) * 6 + axis * 2 + (n[axis] < 0));
-    for (std::size_t c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(e.position[c]) * per_m_))));
+    for (std::size_t c = 0; c < 3; ++c)
+      key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(e.position[c]) * per_m_))));
     const auto [found, is_new] = numbers_.try_emplace(key, std::uint32_t(all_.size()));
     if (is_new) all_.push_back({HitSeries(frames_), 0});
     all_[found->second].area += double(e.area);
@@ -185,7 +200,7 @@ class Regions {
   }
   struct Region {
     HitSeries series;
-    double area;                             ///< m^2
+    double area;  ///< m^2
   };
   Region& operator[](std::uint32_t region) { return all_[region]; }
   const Region& operator[](std::uint32_t region) const { return all_[region]; }
@@ -204,8 +219,8 @@ class Regions {
 class Surroundings {
  public:
   /// `edge` [m]: of the kernels' cubes.
-  Surroundings(std::span<const FrameCounts* const> frames, const HitTable& table, const std::vector<formats::MeshElement>& elements,
-               double edge)
+  Surroundings(std::span<const FrameCounts* const> frames, const HitTable& table,
+               const std::vector<formats::MeshElement>& elements, double edge)
       : kernels_(frames.size(), edge), rings_(frames.size(), 3 * edge), all_(frames.size()), of_(elements.size()) {
     for (std::size_t i = 0; i < elements.size(); ++i) {
       of_[i] = {kernels_.add(elements[i]), rings_.add(elements[i])};
@@ -246,9 +261,10 @@ struct PlacedWindow {
   bool changes_size = false;
 };
 
-/// Writes the photons of the window into the element. Returns their flux in a frame [unit], for the area that the element has.
-Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries, const PlacedWindow& placed,
-                formats::MeshElement& e) {
+/// Writes the photons of the window into the element. Returns their flux in a frame [unit], for the area that the
+/// element has.
+Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
+                const PlacedWindow& placed, formats::MeshElement& e) {
   const auto& [now, window, changes_size] = placed;
   e.before = std::uint8_t(window.before);
   e.after = std::uint8_t(window.after);
@@ -270,7 +286,8 @@ Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitT
 }  // namespace
 
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames) {
-  const double p = double(added_frames) / (old_frames + added_frames), flux = old.flux + added.flux, squares = old.squares + added.squares;
+  const double p = double(added_frames) / (old_frames + added_frames), flux = old.flux + added.flux,
+               squares = old.squares + added.squares;
   if (!(squares > 0)) return 0;
   const double z = (added.flux - p * flux) / std::sqrt(p * (1 - p) * squares);
   const double skewness = (1 - 2 * p) / std::sqrt(p * (1 - p)) * std::sqrt(squares) / flux;
@@ -324,16 +341,19 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
   const HitTable table = table_of(frames, elements);
   const Surroundings around(frames, table, elements, std::sqrt(4 * std::numbers::pi) * options.width);
   const WindowThresholds thresholds(options);
-  const double widest = options.width * std::sqrt(std::max(1.0, (2 * options.reach + 1) * kPhotonsInKernel / kPhotonsInWindow));
+  const double widest =
+      options.width * std::sqrt(std::max(1.0, (2 * options.reach + 1) * kPhotonsInKernel / kPhotonsInWindow));
   CollectedLight result{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<float>(elements.size(), 0)};
   parallel_chunks(elements.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const HitSeries& kernel = around.kernel(i);
       if (kernel.block(0, int(frames.size()) - 1).photons == 0) continue;
       HitSeries own(frames.size());
-      for (const HitTable::Entry& entry : table.of(i)) own.at(entry.frame) += hits_of(*entry.counted, unit_of(frames, entry));
+      for (const HitTable::Entry& entry : table.of(i))
+        own.at(entry.frame) += hits_of(*entry.counted, unit_of(frames, entry));
       own.sum_up();
-      const Window window = grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
+      const Window window =
+          grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
       result.flux[i] = put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
       const double photons = kernel.block(now - window.before, now + window.after).photons;
       const double width = photons > 0 ? kernel_width(around.kernel_area(i), photons, kPhotonsInWindow) : widest;

@@ -17,15 +17,17 @@ namespace {
 constexpr std::size_t kSample = sizeof(formats::RadianceSample), kAnchor = sizeof(std::uint32_t);
 
 [[noreturn]] void fail(const std::string& folder, const char* what, int error) {
-  throw ResourceError("samples that --max-memory keeps in a file in " + folder + ": " + what + ": " + std::strerror(error) + "; make room there, or raise --max-memory");
+  throw ResourceError("samples that --max-memory keeps in a file in " + folder + ": " + what + ": " +
+                      std::strerror(error) + "; make room there, or raise --max-memory");
 }
 
 /// A file without a name.
 int open_nameless(const std::string& folder) {
   int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0) return file;
-  if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL && errno != ENOENT) fail(folder, "cannot create it", errno);
-  std::string name = folder + "/.samples.tmp.XXXXXX";   // a file system that has none
+  if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL && errno != ENOENT)
+    fail(folder, "cannot create it", errno);
+  std::string name = folder + "/.samples.tmp.XXXXXX";  // a file system that has none
   file = mkostemp(name.data(), O_CLOEXEC);
   if (file < 0) fail(folder, "cannot create it", errno);
   unlink(name.c_str());
@@ -63,7 +65,8 @@ std::int64_t SampleShelf::free_place(std::size_t count) {
   return std::exchange(end_, end_ + std::int64_t(count * (kSample + kAnchor)));
 }
 
-void SampleShelf::put(Place& place, std::vector<formats::RadianceSample>& samples, std::vector<std::uint32_t>& anchors) {
+void SampleShelf::put(Place& place, std::vector<formats::RadianceSample>& samples,
+                      std::vector<std::uint32_t>& anchors) {
   const std::size_t count = samples.size(), bytes = count * (kSample + kAnchor);
   if (!place.on_disk()) {
     if (place.counted) return;
@@ -74,24 +77,30 @@ void SampleShelf::put(Place& place, std::vector<formats::RadianceSample>& sample
     in_memory_ -= bytes;
     place.offset = free_place(count);
   }
-  const auto write = [](int file, const char* data, std::size_t size, std::int64_t at) { return pwrite(file, data, size, at); };
+  const auto write = [](int file, const char* data, std::size_t size, std::int64_t at) {
+    return pwrite(file, data, size, at);
+  };
   if (transfer_all(file_, reinterpret_cast<const char*>(samples.data()), count * kSample, place.offset, write) < 0 ||
-      transfer_all(file_, reinterpret_cast<const char*>(anchors.data()), count * kAnchor, place.offset + std::int64_t(count * kSample), write) < 0)
+      transfer_all(file_, reinterpret_cast<const char*>(anchors.data()), count * kAnchor,
+                   place.offset + std::int64_t(count * kSample), write) < 0)
     fail(folder_, "write failed", errno);
   let_go(place, samples, anchors);
 }
 
-void SampleShelf::fetch(std::size_t count, const Place& place, std::vector<formats::RadianceSample>& samples, std::vector<std::uint32_t>& anchors) const {
+void SampleShelf::fetch(std::size_t count, const Place& place, std::vector<formats::RadianceSample>& samples,
+                        std::vector<std::uint32_t>& anchors) const {
   if (!place.on_disk()) return;
   samples.resize(count), anchors.resize(count);
   const auto read = [](int file, char* data, std::size_t size, std::int64_t at) { return pread(file, data, size, at); };
-  errno = EIO;   // if the file ends
+  errno = EIO;  // if the file ends
   if (transfer_all(file_, reinterpret_cast<char*>(samples.data()), count * kSample, place.offset, read) <= 0 ||
-      transfer_all(file_, reinterpret_cast<char*>(anchors.data()), count * kAnchor, place.offset + std::int64_t(count * kSample), read) <= 0)
+      transfer_all(file_, reinterpret_cast<char*>(anchors.data()), count * kAnchor,
+                   place.offset + std::int64_t(count * kSample), read) <= 0)
     fail(folder_, "read failed", errno);
 }
 
-void SampleShelf::let_go(const Place& place, std::vector<formats::RadianceSample>& samples, std::vector<std::uint32_t>& anchors) const {
+void SampleShelf::let_go(const Place& place, std::vector<formats::RadianceSample>& samples,
+                         std::vector<std::uint32_t>& anchors) const {
   if (!place.on_disk()) return;
   std::vector<formats::RadianceSample>().swap(samples);
   std::vector<std::uint32_t>().swap(anchors);

@@ -8,8 +8,8 @@
 namespace tempolux {
 namespace {
 
-constexpr float kMargin = 0x1p-18f;   ///< of the largest coordinate: rounding of rays and boxes
-constexpr float kAngle = 1e-3f;       ///< radians: rounding of angles
+constexpr float kMargin = 0x1p-18f;  ///< of the largest coordinate: rounding of rays and boxes
+constexpr float kAngle = 1e-3f;      ///< radians: rounding of angles
 
 void widen(Box3& box) {
   const float margin = kMargin * max_component(max(abs(box.lower), abs(box.upper)));
@@ -50,7 +50,8 @@ bool meets(const Ray& ray, float t, const Box3& box) {
   return first <= last;
 }
 
-CellsTowards::CellsTowards(Vec3 position, const Frame& frame, const Box3& box, int rings, int sectors) : sectors_(sectors) {
+CellsTowards::CellsTowards(Vec3 position, const Frame& frame, const Box3& box, int rings, int sectors)
+    : sectors_(sectors) {
   const Vec3 to = box.centre() - position;
   const Vec3 local{dot(to, frame.tangent), dot(to, frame.bitangent), dot(to, frame.normal)};
   const float distance = length(local), radius = 0.5f * box.diagonal();
@@ -69,12 +70,13 @@ CellsTowards::CellsTowards(Vec3 position, const Frame& frame, const Box3& box, i
     return std::min(rings - 1, int(s * s * float(rings)));
   };
   last_ring_ = ring_at(tilt + half);
-  if (tilt <= half) return;   // the cone holds the normal: all azimuths
+  if (tilt <= half) return;  // the cone holds the normal: all azimuths
   first_ring_ = ring_at(tilt - half);
   const float spread = std::asin(std::min(1.0f, std::sin(std::min(half, kPi / 2)) / std::sin(tilt))) + kAngle;
   if (tilt + half >= kPi / 2 && !(spread < kPi / 2)) return;
   const float azimuth = std::atan2(local.y, local.x), per_radian = float(sectors) / (2 * kPi);
-  const int first = int(std::floor((azimuth - spread) * per_radian)), last = int(std::floor((azimuth + spread) * per_radian));
+  const int first = int(std::floor((azimuth - spread) * per_radian)),
+            last = int(std::floor((azimuth + spread) * per_radian));
   sector_count_ = std::min(sectors, last - first + 1);
   first_sector_ = (first % sectors + sectors) % sectors;
 }

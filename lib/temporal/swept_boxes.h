@@ -10,23 +10,23 @@
 
 namespace tempolux {
 
-/// One box for each surface whose vertices differ between two frames of a segment: around both places, m, scene space, a little
-/// larger than they are.
+/// One box for each surface whose vertices differ between two frames of a segment: around both places, m, scene space,
+/// a little larger than they are.
 std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now);
 
 /// Does the ray, up to `t` of its lengths (infinity: all of it), meet the box? True where rounding leaves it open.
 bool meets(const Ray& ray, float t, const Box3& box);
 
-/// Which cells of a hemisphere can a box be seen through? Those whose cone about the box's sphere may hold it: none is left out.
+/// Which cells of a hemisphere can a box be seen through? Those whose cone about the box's sphere may hold it: none is
+/// left out.
 class CellsTowards {
  public:
   CellsTowards(Vec3 position, const Frame& frame, const Box3& box, int rings, int sectors);
 
   template <class Body>
-  void for_each(const Body& body) const {   // body(cell)
+  void for_each(const Body& body) const {  // body(cell)
     for (int j = first_ring_; j <= last_ring_; ++j)
-      for (int i = 0; i < sector_count_; ++i)
-        body(std::uint32_t(j * sectors_ + (first_sector_ + i) % sectors_));
+      for (int i = 0; i < sector_count_; ++i) body(std::uint32_t(j * sectors_ + (first_sector_ + i) % sectors_));
   }
 
  private:

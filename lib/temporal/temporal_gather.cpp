@@ -14,12 +14,13 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSteps = 15;             ///< of strata: 9 times the rays, in steps of 2^(1/4), and one
-constexpr int kStepForEvenness = 1;    ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
+constexpr int kSteps = 15;  ///< of strata: 9 times the rays, in steps of 2^(1/4), and one
+constexpr int kStepForEvenness =
+    1;  ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
 constexpr int kFadingFrames = 4;
-constexpr float kLeastOfHidden = 1.0f / 64;   ///< of the smallest radius: radii stay above 0
-constexpr std::uint32_t kAhead = 12;   ///< cells: of the light that is fetched from memory
-constexpr float kLeastAged = 0.25f;    ///< of `refresh`: drawn by age however many cells are traced anyway
+constexpr float kLeastOfHidden = 1.0f / 64;  ///< of the smallest radius: radii stay above 0
+constexpr std::uint32_t kAhead = 12;         ///< cells: of the light that is fetched from memory
+constexpr float kLeastAged = 0.25f;          ///< of `refresh`: drawn by age however many cells are traced anyway
 
 /// Unit vectors along a triangle's first edge, across it and along its normal.
 std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
@@ -33,7 +34,7 @@ std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
 bool stays(const SceneFrame& before, const SceneFrame& now, const formats::RadsamplesRecord& r) {
   for (const SceneFrame* frame : {&before, &now})
     for (const Vec3 edge : edges_of(frame->surfaces[r.surface], r.triangle))
-      if (!(length2(edge) > 0.5f)) return false;   // 1, or NaN
+      if (!(length2(edge) > 0.5f)) return false;  // 1, or NaN
   return true;
 }
 
@@ -42,7 +43,8 @@ bool deforms(const SceneFrame& frame, std::uint32_t surface) {
 }
 
 void add(const TemporalCounts& from, TemporalCounts& to) {
-  to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.near += from.near, to.aged += from.aged;
+  to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.near += from.near,
+      to.aged += from.aged;
   to.scaled += from.scaled, to.explicit_only += from.explicit_only;
   to.update += from.update;
 }
@@ -50,8 +52,8 @@ void add(const TemporalCounts& from, TemporalCounts& to) {
 }  // namespace
 
 struct TemporalGather::Marked {
-  std::vector<std::uint8_t> marks;    ///< by cell; of samples that are not in memory empty, to be made again
-  std::size_t count = 0;              ///< of those that are traced
+  std::vector<std::uint8_t> marks;  ///< by cell; of samples that are not in memory empty, to be made again
+  std::size_t count = 0;            ///< of those that are traced
   bool changed = false;
 };
 
@@ -62,8 +64,8 @@ std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradianceP
   return count;
 }
 
-TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& gather, const PlacementOptions& placement,
-                               const TemporalOptions& options, float diagonal)
+TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& gather,
+                               const PlacementOptions& placement, const TemporalOptions& options, float diagonal)
     : scene_(scene),
       gather_options_(gather),
       placement_(placement),
@@ -77,7 +79,7 @@ TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& 
 const GatherStrata& TemporalGather::strata_of(int rings, int sectors) const {
   for (const GatherStrata& strata : strata_)
     if (strata.rings == rings && strata.sectors == sectors) return strata;
-  thread_local GatherStrata other;   // of a file made with another number of rays
+  thread_local GatherStrata other;  // of a file made with another number of rays
   if (other.rings != rings || other.sectors != sectors) other = GatherStrata(rings, sectors);
   return other;
 }
@@ -103,7 +105,8 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
 
 /// Traces the marked cells along the rays that their ages say.
 void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
-                           const GatherStrata& strata, std::span<const std::uint8_t> marks, GatherCounts& counts) const {
+                           const GatherStrata& strata, std::span<const std::uint8_t> marks,
+                           GatherCounts& counts) const {
   thread_local std::vector<Ray> rays;
   thread_local std::vector<std::uint64_t> keys;
   thread_local std::vector<std::uint32_t> cells;
@@ -130,13 +133,16 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
     if (coated) radiance[i] *= bsdf.arrival_weight(dot(rays[i].direction, kept.normal()));
     const bool bright = is_bright(scene_, sources[i].point);
     sources[i].partial |= bright;
-    keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], sources[i].point < scene_.anchored_points && !bright, units_);
+    keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], sources[i].point < scene_.anchored_points && !bright,
+             units_);
   }
 }
 
-/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come close, and hidden
-/// it? Behind a lamp that glides along a ceiling it is dark; it would darken what is seen beside the lamp.
-bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const {
+/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come
+/// close, and hidden it? Behind a lamp that glides along a ceiling it is dark; it would darken what is seen beside the
+/// lamp.
+bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before,
+                              const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
   const bool had_its_own = std::abs(before.radius - smallest) > 1e-4f * smallest;
   if (!scene_.eye || !had_its_own || radius_of(made, before.footprint, placement_) > smallest) return false;
@@ -145,7 +151,8 @@ bool TemporalGather::outlived(const SurfacePoint& place, const formats::Radsampl
 }
 
 /// The record that the samples make.
-void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const {
+void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born,
+                            GatherCounts& counts) const {
   float further = kept.record.further_share;
   IrradianceRecord made = reconstruct(kept, place, units_, born ? &further : nullptr);
   made.further_share = further;
@@ -173,10 +180,11 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   r.surface = place.surface;
   r.triangle = place.triangle;
   r.barycentric = {place.u, place.v};
-  r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set : formats::SurfaceSet::dynamic_set;
+  r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set
+                                                             : formats::SurfaceSet::dynamic_set;
   r.footprint = seen.footprint;
-  // As many cells as FinalGather::gather has rays, one each, so that each can be drawn again; and a step more for what even rays lose
-  // against those that go where light is uneven.
+  // As many cells as FinalGather::gather has rays, one each, so that each can be drawn again; and a step more for what
+  // even rays lose against those that go where light is uneven.
   const double steps = kStepForEvenness + 4 * std::log2(1 + double(further_share));
   const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
   r.rings = std::uint16_t(strata.rings);
@@ -189,7 +197,8 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   return kept;
 }
 
-/// Takes a record along with what it rides on and marks the cells that are traced again. False if nothing about its light has changed.
+/// Takes a record along with what it rides on and marks the cells that are traced again. False if nothing about its
+/// light has changed.
 bool TemporalGather::look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const {
   if (kept.record.set == formats::SurfaceSet::dynamic_set) ride(kept);
   const SurfacePoint place = place_of(kept);
@@ -199,7 +208,8 @@ bool TemporalGather::look(KeptHemisphere& kept, const LightChanges& changes, Mar
   return marked.changed;
 }
 
-void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, double aged_share, Marked& marked, TemporalCounts& counts) const {
+void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, double aged_share, Marked& marked,
+                            TemporalCounts& counts) const {
   thread_local std::vector<std::uint16_t> ages;
   thread_local std::vector<std::uint32_t> drawn;
   thread_local AgeDraw lot;
@@ -214,9 +224,10 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     ages[c] = formats::age_of(kept.samples[c]);
     kept.samples[c].flags = std::uint16_t(kept.samples[c].flags + (ages[c] < formats::kMaxAge));
   }
-  // From all cells, the marked ones too: were those left out, cells that have come to see what is always traced again would keep
-  // that direction for good, and others would join them.
-  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), options_.age_weight, mix64(r.key + r.updates), drawn);
+  // From all cells, the marked ones too: were those left out, cells that have come to see what is always traced again
+  // would keep that direction for good, and others would join them.
+  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), options_.age_weight,
+           mix64(r.key + r.updates), drawn);
   for (const std::uint32_t c : drawn) {
     marks[c] = aged;
     kept.samples[c].flags = std::uint16_t((kept.samples[c].flags & ~formats::kMaxAge) | 1);
@@ -234,8 +245,10 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   finish(place, kept, near_a_mover(kept, changes), false, counts.update);
 }
 
-/// Looks at all records, then updates those that change: how many cells are drawn by age follows from how many are traced anyway.
-void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone, TemporalCounts& counts) const {
+/// Looks at all records, then updates those that change: how many cells are drawn by age follows from how many are
+/// traced anyway.
+void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone,
+                                TemporalCounts& counts) const {
   std::vector<Marked> marked(kept.records.size());
   std::mutex mutex;
   std::size_t traced = 0, others = 0;
@@ -256,11 +269,13 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
       if (k.place.on_disk() || !marked[i].changed) std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
-    counts.cells += cells, (changes.divided ? counts.explicit_only : counts.kept) += unmoved, traced += here, others += all - here;
+    counts.cells += cells, (changes.divided ? counts.explicit_only : counts.kept) += unmoved, traced += here,
+        others += all - here;
   });
   const double refresh = double(options_.refresh), cells = double(traced + others);
   const double left = others > 0 ? (refresh * cells - double(traced)) / double(others) : 0;
-  const double aged_share = options_.rule == RefreshRule::fixed ? refresh : std::max(left, refresh * double(kLeastAged));
+  const double aged_share =
+      options_.rule == RefreshRule::fixed ? refresh : std::max(left, refresh * double(kLeastAged));
   parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
     TemporalCounts local;
     for (std::size_t i = first; i < last; ++i) {
@@ -322,7 +337,8 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = result_of(k.record);
-    record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames, std::numeric_limits<float>::min());
+    record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames,
+                             std::numeric_limits<float>::min());
     TEMPOLUX_CHECK(store.add(record));
   }
   if (!kept.changed) return;
@@ -343,7 +359,7 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
-    give_up(kept, batch[slot]);   // of one that was not added
+    give_up(kept, batch[slot]);  // of one that was not added
     batch[slot] = birth(seen, store.expected_further_share(seen.surface.position, seen.normal), gathered);
     put_back(kept, batch[slot]);
     return result_of(batch[slot].record);

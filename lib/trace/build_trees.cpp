@@ -77,8 +77,8 @@ void Tracer::Impl::throw_on_error() const {
 RTCGeometry Tracer::Impl::triangles_of(const Primitive& primitive, const Vec3* positions) {
   RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree reads vertices in 16-byte loads, so the last one needs padding: a copy of its own.
-  auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), primitive.positions.size()));
+  auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                              sizeof(Vec3), primitive.positions.size()));
   if (vertices) std::copy_n(positions, primitive.positions.size(), vertices);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, primitive.triangles.data(), 0,
                              sizeof primitive.triangles[0], primitive.triangles.size());
@@ -145,7 +145,7 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
     const RTCGeometry geometry = triangles_of(*surface.primitive, surface.positions.data());
     for (const Vec3 p : surface.positions) tree.bounds.add(p);
     if (const Material& material = frame->materials[surface.material]; lets_rays_pass(material)) {
-      if (material.textures && material.textures->base_color)   // decoded here, not in the filter
+      if (material.textures && material.textures->base_color)  // decoded here, not in the filter
         frame->images->pyramid(material.textures->base_color.image, base_color_transfer(material));
       alpha.push_back({frame, std::uint32_t(s)});
       rtcSetGeometryUserData(geometry, &alpha.back());
@@ -176,7 +176,7 @@ Tracer::Tracer(const SceneFrame& frame, StandingTree& standing) : impl_(std::mak
 void Tracer::build(const SceneFrame& frame, StandingTree& standing) {
   impl_->frame = &frame;
   if (!standing.kept_ || !standing.kept_->holds_for(frame)) {
-    standing.kept_.reset();   // before the next one: they need not fit into memory together
+    standing.kept_.reset();  // before the next one: they need not fit into memory together
     impl_->forest = std::make_shared<Forest>();
     const auto made = std::make_shared<StandingTree::Kept>();
     made->forest = impl_->forest;

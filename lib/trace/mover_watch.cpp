@@ -8,23 +8,26 @@ namespace {
 
 /// A ray as boxes are asked about it.
 struct Slabs {
-  Vec3 below, above, inverse;   ///< the ray's origin a little moved, down and up
+  Vec3 below, above, inverse;  ///< the ray's origin a little moved, down and up
   float leave;
 
-  /// Rays are traced by coordinates relative to their origin, to 2^-24 of the distance. Boxes are 2^-18 of their largest coordinate larger than
-  /// their content; of rays from farther away they are met as if they were 2^-21 of the origin's coordinate larger still. `leave` is a
-  /// few roundings longer than the way.
-  Slabs(const Ray& ray, float t) : inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z}, leave(t * (1 + 0x1p-20f)) {
+  /// Rays are traced by coordinates relative to their origin, to 2^-24 of the distance. Boxes are 2^-18 of their
+  /// largest coordinate larger than their content; of rays from farther away they are met as if they were 2^-21 of the
+  /// origin's coordinate larger still. `leave` is a few roundings longer than the way.
+  Slabs(const Ray& ray, float t)
+      : inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z}, leave(t * (1 + 0x1p-20f)) {
     const float far = 0x1p-21f * max_component(abs(ray.origin));
     below = ray.origin - Vec3{far, far, far};
     above = ray.origin + Vec3{far, far, far};
   }
-  /// False only if the ray does not come near. 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as their second argument.
+  /// False only if the ray does not come near. 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as
+  /// their second argument.
   bool meet(const Box3& box) const {
     if (box.empty()) return false;
     float first = 0, last = leave;
     for (int axis = 0; axis < 3; ++axis) {
-      const float a = (box.lower[axis] - above[axis]) * inverse[axis], b = (box.upper[axis] - below[axis]) * inverse[axis];
+      const float a = (box.lower[axis] - above[axis]) * inverse[axis],
+                  b = (box.upper[axis] - below[axis]) * inverse[axis];
       first = std::max(first, inverse[axis] < 0 ? b : a);
       last = std::min(last, inverse[axis] < 0 ? a : b);
     }
@@ -38,12 +41,12 @@ struct Slabs {
   }
 };
 
-/// Can a segment from `from` to a place in `target` meet `box`? Axis by axis, where along the segment may it be within the
-/// box's slab: at t it lies between from + t low and from + t high.
+/// Can a segment from `from` to a place in `target` meet `box`? Axis by axis, where along the segment may it be within
+/// the box's slab: at t it lies between from + t low and from + t high.
 bool shaft_meets(Vec3 from, const Box3& target, const Box3& box) {
   if (box.empty()) return false;
   float first = 0, last = 1;
-  const auto at_least = [&](float slope, float value) {   // slope t >= value
+  const auto at_least = [&](float slope, float value) {  // slope t >= value
     if (slope > 0) first = std::max(first, value / slope);
     else if (slope < 0) last = std::min(last, value / slope);
     else if (value > 0) last = -1;

@@ -9,8 +9,8 @@
 
 namespace tempolux {
 
-/// Boxes of what moves in the intervals of a segment. A way that meets none of an interval's boxes is met by nothing that moves in
-/// it, so that the photon takes it whether movers are there or not.
+/// Boxes of what moves in the intervals of a segment. A way that meets none of an interval's boxes is met by nothing
+/// that moves in it, so that the photon takes it whether movers are there or not.
 class MoverWatch {
  public:
   /// By interval, 1 to 64; boxes hold all that moves in any frame of the interval.

@@ -45,8 +45,8 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   if (const Vec2* uv = surface.uvs)
     point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * u + uv[corner[2]].x * v,
                 uv[corner[0]].y * w + uv[corner[1]].y * u + uv[corner[2]].y * v};
-  point.offset = surface.instance ? surface.instance_offset
-                                  : kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
+  point.offset =
+      surface.instance ? surface.instance_offset : kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
   point.surface = hit.surface;
   point.triangle = hit.triangle;
   point.object = surface.object;

@@ -19,9 +19,18 @@ bool usable(const Ray& ray) {
 
 RTCRay to_embree(const Ray& ray) {
   RTCRay r;
-  r.org_x = ray.origin.x; r.org_y = ray.origin.y; r.org_z = ray.origin.z; r.tnear = ray.t_min;
-  r.dir_x = ray.direction.x; r.dir_y = ray.direction.y; r.dir_z = ray.direction.z; r.tfar = ray.t_max;
-  r.time = 0; r.mask = 0xffffffffu; r.id = ray.all_blend ? kAllBlend : 0; r.flags = 0;
+  r.org_x = ray.origin.x;
+  r.org_y = ray.origin.y;
+  r.org_z = ray.origin.z;
+  r.tnear = ray.t_min;
+  r.dir_x = ray.direction.x;
+  r.dir_y = ray.direction.y;
+  r.dir_z = ray.direction.z;
+  r.tfar = ray.t_max;
+  r.time = 0;
+  r.mask = 0xffffffffu;
+  r.id = ray.all_blend ? kAllBlend : 0;
+  r.flags = 0;
   return r;
 }
 

@@ -12,16 +12,16 @@
 namespace tempolux {
 
 struct Ray {
-  Vec3 origin;                 ///< scene space
-  Vec3 direction;              ///< need not be unit; t is in units of its length
+  Vec3 origin;     ///< scene space
+  Vec3 direction;  ///< need not be unit; t is in units of its length
   float t_min = 0, t_max = INFINITY;
   bool all_blend = false;  ///< meets surfaces of alpha mode BLEND wherever alpha > 0: to measure them, not for light
 };
 
 struct Hit {
   float t = 0;
-  std::uint32_t surface = kNone, triangle = 0;   ///< index into SceneFrame::surfaces, triangle of its primitive
-  float u = 0, v = 0;                            ///< barycentrics of corners 1 and 2
+  std::uint32_t surface = kNone, triangle = 0;  ///< index into SceneFrame::surfaces, triangle of its primitive
+  float u = 0, v = 0;                           ///< barycentrics of corners 1 and 2
 };
 
 /// The search tree of what stands still, handed from the Tracer of one frame to that of the next: built anew only where

@@ -24,7 +24,7 @@ inline constexpr float kOffsetScale = 0x1p-20f;
 struct Tree {
   RTCScene scene = nullptr;
   std::uint32_t first_surface = 0;
-  Box3 bounds;   ///< a little larger than what is in it
+  Box3 bounds;  ///< a little larger than what is in it
 
   bool exists() const { return scene != nullptr; }
 
@@ -55,15 +55,15 @@ struct Tree {
 struct SharedTree {
   RTCScene scene = nullptr;
   Box3d bounds;
-  float reach = 0;   ///< largest coordinate
+  float reach = 0;  ///< largest coordinate
 };
 
 /// What surface_point reads of a surface, found with one load each.
 struct SurfaceArrays {
   const std::array<std::uint32_t, 3>* triangles;
-  const Vec3 *positions, *normals;   ///< normals, uvs: null if there are none
+  const Vec3 *positions, *normals;  ///< normals, uvs: null if there are none
   const Vec2* uvs;
-  const Surface* instance;           ///< null if positions and normals are there
+  const Surface* instance;  ///< null if positions and normals are there
   std::uint32_t object, material;
   bool flipped, smooth;
   float instance_offset = 0;
@@ -75,11 +75,13 @@ struct SurfaceArrays {
   };
   using Own = std::array<Vec3, 3>;
   Corners corner_positions(const std::array<std::uint32_t, 3>& corner, Own& own) const {
-    if (instance) [[unlikely]] return instance_positions(corner, own);
+    if (instance) [[unlikely]]
+      return instance_positions(corner, own);
     return {positions + corner[0], positions + corner[1], positions + corner[2]};
   }
   Corners corner_normals(const std::array<std::uint32_t, 3>& corner, Own& own) const {
-    if (instance) [[unlikely]] return instance_normals(corner, own);
+    if (instance) [[unlikely]]
+      return instance_normals(corner, own);
     return {normals + corner[0], normals + corner[1], normals + corner[2]};
   }
   [[gnu::noinline]] Corners instance_positions(const std::array<std::uint32_t, 3>& corner, Own& own) const {
@@ -103,7 +105,7 @@ struct SurfaceArrays {
         smooth(s.smooth()) {}
 };
 
-inline constexpr unsigned kAllBlend = 1;   ///< RTCRay::id of a ray with all_blend
+inline constexpr unsigned kAllBlend = 1;  ///< RTCRay::id of a ray with all_blend
 
 /// What the filter of a surface that lets rays pass reads.
 struct AlphaSurface {
@@ -126,8 +128,8 @@ struct Forest {
 struct StandingTree::Kept {
   std::shared_ptr<Forest> forest;
   Tree tree;
-  std::vector<Surface> surfaces;   ///< those in it; they keep its arrays, so that equal addresses are equal arrays
-  bool filtered = false;           ///< filters ask the frame they were made for: such a tree is of no other
+  std::vector<Surface> surfaces;  ///< those in it; they keep its arrays, so that equal addresses are equal arrays
+  bool filtered = false;          ///< filters ask the frame they were made for: such a tree is of no other
 
   ~Kept() {
     if (tree.scene) rtcReleaseScene(tree.scene);
@@ -139,10 +141,10 @@ struct StandingTree::Kept {
 struct Tracer::Impl {
   const SceneFrame* frame = nullptr;
   std::shared_ptr<Forest> forest;
-  std::shared_ptr<const StandingTree::Kept> standing;   ///< owns `fixed`
+  std::shared_ptr<const StandingTree::Kept> standing;  ///< owns `fixed`
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
-  std::deque<AlphaSurface> alpha;   ///< of the surfaces that have a filter; they stay where they are
+  std::deque<AlphaSurface> alpha;  ///< of the surfaces that have a filter; they stay where they are
   mutable std::atomic<std::uint64_t> refused{0};
 
   ~Impl() {

@@ -8,7 +8,8 @@ float media_transmittance(const Media& media, const Ray& ray, const WayBits& bit
   const float size = length(ray.direction);
   if (!(size > 0)) return 1;
   const Vec3 unit = ray.direction / size;
-  return estimate_transmittance(media, ray.origin + ray.direction * ray.t_min, unit, (ray.t_max - ray.t_min) * size, bits);
+  return estimate_transmittance(media, ray.origin + ray.direction * ray.t_min, unit, (ray.t_max - ray.t_min) * size,
+                                bits);
 }
 
 float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits) {
@@ -17,7 +18,8 @@ float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits) {
   return media ? media_transmittance(*media, ray, bits) : 1.0f;
 }
 
-bool collides(const Media& media, const Ray& ray, float end, const PathRandom& random, std::uint32_t bounce, MediumPoint& point) {
+bool collides(const Media& media, const Ray& ray, float end, const PathRandom& random, std::uint32_t bounce,
+              MediumPoint& point) {
   const float t = first_collision(media, ray.origin, ray.direction, end, WayBits{random, bounce, way_path});
   if (t == INFINITY) return false;
   point.position = ray.origin + ray.direction * t;
@@ -28,17 +30,18 @@ bool collides(const Media& media, const Ray& ray, float end, const PathRandom& r
   return true;
 }
 
-Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh, const WayBits& bits,
-                  std::uint64_t& shadow_rays) {
+Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh,
+                         const WayBits& bits, std::uint64_t& shadow_rays) {
   LightSample light;
   if (!lights.sample(point.position, {}, u, light)) return Rgb(0.0f);
-  // Seen along the path from the eye light goes backwards: out of the phase function's peak lies where the path would go on.
+  // Seen along the path from the eye light goes backwards: out of the phase function's peak lies where the path would
+  // go on.
   const float phase = pdf_hg(point.g, point.travel, light.wi);
   Rgb radiance = light.radiance * phase;
   if (weigh && !light.delta) radiance *= mis_power(light.pdf_solid_angle, phase);
   if (is_black(radiance)) return radiance;
   ++shadow_rays;
-  SurfacePoint from{};                       // nothing to keep off
+  SurfacePoint from{};  // nothing to keep off
   from.position = point.position;
   return radiance * transmittance(tracer, spawn_shadow_ray(from, light.position, light.position_offset), bits);
 }

@@ -1,9 +1,10 @@
-// lib/volume/flight.h -- free flight through media: tentative collisions against a majorant, drawn from numbers of their own.
+// lib/volume/flight.h -- free flight through media: tentative collisions against a majorant, drawn from numbers of
+// their own.
 //
-// A tentative collision happens as if the extinction were the majorant everywhere; it is real with probability extinction /
-// majorant, else nothing happens (null collisions; Woodcock et al. 1965). Step k of a way draws its numbers from one word of
-// bits that depends on the way and k alone. So under a frozen majorant the places that a photon looks at stay the same when
-// the medium changes, up to its first real collision.
+// A tentative collision happens as if the extinction were the majorant everywhere; it is real with probability
+// extinction / majorant, else nothing happens (null collisions; Woodcock et al. 1965). Step k of a way draws its
+// numbers from one word of bits that depends on the way and k alone. So under a frozen majorant the places that a
+// photon looks at stay the same when the medium changes, up to its first real collision.
 #pragma once
 
 #include <algorithm>
@@ -15,26 +16,28 @@
 
 namespace tempolux {
 
-/// Roulette after a collision lets a path go on with this probability at most, so that paths end in lossless smoke that no wall ends: after a
-/// million collisions in the mean. Not earlier: in lossless smoke of optical depth tau paths take up to tau^2 collisions, and what ends most
-/// of these leaves their light to a few that nobody sees. Nor is it dear: paths that enter a convex body evenly from all sides have a mean
-/// way of 4 V / S in it, whatever scatters them there (Blanco and Fournier 2003).
+/// Roulette after a collision lets a path go on with this probability at most, so that paths end in lossless smoke that
+/// no wall ends: after a million collisions in the mean. Not earlier: in lossless smoke of optical depth tau paths take
+/// up to tau^2 collisions, and what ends most of these leaves their light to a few that nobody sees. Nor is it dear:
+/// paths that enter a convex body evenly from all sides have a mean way of 4 V / S in it, whatever scatters them there
+/// (Blanco and Fournier 2003).
 inline constexpr float kLargestSurvivalInMedia = 0.999999f;
 
 /// What one step draws, of 64 random bits.
 struct FlightNumbers {
-  float depth;                               ///< majorant x length to the next tentative collision: exponential, mean 1
-  float accept;                              ///< in [0, 1): real where accept x majorant < extinction
+  float depth;   ///< majorant x length to the next tentative collision: exponential, mean 1
+  float accept;  ///< in [0, 1): real where accept x majorant < extinction
   explicit FlightNumbers(std::uint64_t bits)
-      : depth(-std::log1p(-std::min(float(std::uint32_t(bits >> 32)) * 0x1p-32f, kOneMinus))), accept(unit_float(std::uint32_t(bits))) {}
+      : depth(-std::log1p(-std::min(float(std::uint32_t(bits >> 32)) * 0x1p-32f, kOneMinus))),
+        accept(unit_float(std::uint32_t(bits))) {}
 
  private:
   static constexpr float kOneMinus = 0x1.fffffep-1f;
 };
 
 struct Tentative {
-  float distance;                            ///< m from the way's origin
-  float majorant;                            ///< 1/m, there
+  float distance;  ///< m from the way's origin
+  float majorant;  ///< 1/m, there
 };
 
 /// A way, from one tentative collision to the next.
@@ -82,9 +85,9 @@ float first_collision(const Media& media, Vec3 origin, Vec3 direction, float len
   }
 }
 
-/// Share of light left after the way, in [0, 1]: an estimate whose mean is exp(- optical depth). Product of the null collisions'
-/// probabilities (ratio tracking; Novak et al., "Residual ratio tracking", 2014); below a tenth by roulette, so that dense
-/// media do not cost more and more.
+/// Share of light left after the way, in [0, 1]: an estimate whose mean is exp(- optical depth). Product of the null
+/// collisions' probabilities (ratio tracking; Novak et al., "Residual ratio tracking", 2014); below a tenth by
+/// roulette, so that dense media do not cost more and more.
 template <class Bits>
 float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, float length, const Bits& bits) {
   constexpr float kRouletteBelow = 0.1f;

@@ -12,7 +12,8 @@ namespace tempolux {
 MajorantGrid::MajorantGrid(const Box3& box, const std::array<std::int32_t, 3>& counts) : box_(box), counts_(counts) {
   std::uint64_t cells = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (counts[a] < 1 || !(box.upper[int(a)] > box.lower[int(a)])) throw std::invalid_argument("majorants of an empty box");
+    if (counts[a] < 1 || !(box.upper[int(a)] > box.lower[int(a)]))
+      throw std::invalid_argument("majorants of an empty box");
     cells *= std::uint64_t(counts[a]);
     if (cells > kMostCells) throw std::invalid_argument("too many cells of majorants");
     cell_size_[int(a)] = (box.upper[int(a)] - box.lower[int(a)]) / float(counts[a]);
@@ -62,7 +63,8 @@ std::string MajorantGrid::hash() const {
 MajorantWalk::MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length)
     : grid_(&grid), origin_(origin), begin_(0), end_(length) {
   if (grid.empty()) return;
-  constexpr float kAlong = 1e-30f;           // of smaller components 1 / d is infinite, and 0 x infinity no number: no ray gets anywhere by them
+  constexpr float kAlong =
+      1e-30f;  // of smaller components 1 / d is infinite, and 0 x infinity no number: no ray gets anywhere by them
   for (int a = 0; a < 3; ++a) {
     if (std::abs(direction[a]) < kAlong) {
       if (!(origin[a] >= grid.box_.lower[a] && origin[a] <= grid.box_.upper[a])) return;
@@ -97,9 +99,10 @@ bool MajorantWalk::next(Piece& piece) {
   if (!inside_) return false;
   const std::size_t axis = leave_[0] <= leave_[1] ? (leave_[0] <= leave_[2] ? 0 : 2) : (leave_[1] <= leave_[2] ? 1 : 2);
   piece.begin = begin_;
-  piece.end = std::max(begin_, std::min(end_, leave_[axis]));   // rounding may put a plane before the entry
+  piece.end = std::max(begin_, std::min(end_, leave_[axis]));  // rounding may put a plane before the entry
   piece.majorant = grid_->values_[(std::size_t(cell_[0]) * std::size_t(grid_->counts_[1]) + std::size_t(cell_[1])) *
-                                      std::size_t(grid_->counts_[2]) + std::size_t(cell_[2])];
+                                      std::size_t(grid_->counts_[2]) +
+                                  std::size_t(cell_[2])];
   begin_ = piece.end;
   cell_[axis] += step_[axis];
   inside_ = leave_[axis] < end_ && cell_[axis] >= 0 && cell_[axis] < grid_->counts_[axis];

@@ -10,20 +10,20 @@
 
 namespace tempolux {
 
-/// Cells of equal size in a box of scene space, each with a majorant: an extinction [1/m] that no point of the cell exceeds.
-/// Frozen over a segment it makes each photon look at the same places in every frame.
+/// Cells of equal size in a box of scene space, each with a majorant: an extinction [1/m] that no point of the cell
+/// exceeds. Frozen over a segment it makes each photon look at the same places in every frame.
 class MajorantGrid {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 21;
 
-  MajorantGrid() = default;                  ///< of nothing
+  MajorantGrid() = default;  ///< of nothing
   /// Zeros. Counts are at least 1; throws std::invalid_argument for a box that is empty or more than kMostCells.
   MajorantGrid(const Box3& box, const std::array<std::int32_t, 3>& counts);
 
   bool empty() const { return values_.empty(); }
   const Box3& box() const { return box_; }
   const std::array<std::int32_t, 3>& counts() const { return counts_; }
-  const std::vector<float>& values() const { return values_; }   ///< z fastest
+  const std::vector<float>& values() const { return values_; }  ///< z fastest
   std::vector<float>& values() { return values_; }
   /// Majorant at a point; 0 outside.
   float at(Vec3 point) const {
@@ -52,14 +52,15 @@ class MajorantGrid {
   std::vector<float> values_;
 };
 
-/// The cells that a ray passes, one after the other: a digital differential analyser. Amanatides & Woo, Eurographics 1987.
+/// The cells that a ray passes, one after the other: a digital differential analyser. Amanatides & Woo, Eurographics
+/// 1987.
 ///
 /// Pieces join without gap or overlap, and reach from the box's entry to its exit or `length`, whichever is nearer.
 class MajorantWalk {
  public:
   struct Piece {
-    float begin, end;                        ///< m along the ray
-    float majorant;                          ///< 1/m
+    float begin, end;  ///< m along the ray
+    float majorant;    ///< 1/m
   };
   /// `direction` is unit; length may be infinite.
   MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length);
@@ -67,7 +68,7 @@ class MajorantWalk {
   bool next(Piece& piece);
 
  private:
-  float crossing(int axis) const;            ///< t at which the present cell is left along this axis
+  float crossing(int axis) const;  ///< t at which the present cell is left along this axis
   const MajorantGrid* grid_ = nullptr;
   Vec3 origin_, inverse_;
   std::array<std::int32_t, 3> cell_{}, step_{};

@@ -17,7 +17,8 @@ constexpr std::size_t kLongestLine = 1 << 16;
 
 std::string number(float value) {
   std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);   // shortest that reads back the same
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), value);  // shortest that reads back the same
   return {text.data(), end};
 }
 
@@ -70,7 +71,8 @@ class Lines {
 
 std::string majorants_text(const FrozenMajorants& majorants) {
   const MajorantGrid& grid = majorants.grid;
-  std::string text = std::string(kFirstLine) + "\nframes " + std::to_string(majorants.first_frame) + " " + std::to_string(majorants.last_frame) + "\n";
+  std::string text = std::string(kFirstLine) + "\nframes " + std::to_string(majorants.first_frame) + " " +
+                     std::to_string(majorants.last_frame) + "\n";
   if (grid.empty()) return text + "cells 0 0 0\n";
   text += "cells";
   for (const std::int32_t n : grid.counts()) text += " " + std::to_string(n);
@@ -80,7 +82,8 @@ std::string majorants_text(const FrozenMajorants& majorants) {
   }
   text += '\n';
   const auto along = std::size_t(grid.counts()[2]);
-  for (std::size_t i = 0; i < grid.values().size(); ++i) text += number(grid.values()[i]) + ((i + 1) % along == 0 ? '\n' : ' ');
+  for (std::size_t i = 0; i < grid.values().size(); ++i)
+    text += number(grid.values()[i]) + ((i + 1) % along == 0 ? '\n' : ' ');
   return text;
 }
 
@@ -98,8 +101,8 @@ FrozenMajorants load_majorants(const std::string& path) {
   const std::vector<float> lower = lines.values<float>("lower", 3), upper = lines.values<float>("upper", 3);
   std::uint64_t count = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (cells[a] < 1 || std::uint64_t(cells[a]) > MajorantGrid::kMostCells || !(std::abs(lower[a]) < 1e15f) || !(upper[a] < 1e15f) ||
-        !(upper[a] > lower[a]))
+    if (cells[a] < 1 || std::uint64_t(cells[a]) > MajorantGrid::kMostCells || !(std::abs(lower[a]) < 1e15f) ||
+        !(upper[a] < 1e15f) || !(upper[a] > lower[a]))
       lines.fail("a box or numbers of cells that cannot be");
     if ((count *= std::uint64_t(cells[a])) > MajorantGrid::kMostCells) lines.fail("more than 2^21 cells");
   }
@@ -122,7 +125,8 @@ FrozenMajorants load_majorants(const std::string& path) {
 
 MajorantGrid moved(const MajorantGrid& world, Vec3d origin) {
   if (world.empty() || origin == Vec3d{}) return world;
-  MajorantGrid scene({Vec3(Vec3d(world.box().lower) - origin), Vec3(Vec3d(world.box().upper) - origin)}, world.counts());
+  MajorantGrid scene({Vec3(Vec3d(world.box().lower) - origin), Vec3(Vec3d(world.box().upper) - origin)},
+                     world.counts());
   scene.values() = world.values();
   return scene;
 }

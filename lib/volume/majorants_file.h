@@ -10,7 +10,7 @@ namespace tempolux {
 /// Majorants of a segment and the frames for which they hold.
 struct FrozenMajorants {
   int first_frame = 0, last_frame = 0;
-  MajorantGrid grid;                         ///< world space
+  MajorantGrid grid;  ///< world space
 };
 
 /// Text of the file: the same numbers come back to the bit.

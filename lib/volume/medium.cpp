@@ -100,7 +100,7 @@ double Medium::optical_depth(Vec3 origin, Vec3 direction, double length) const {
     step[a] = 1 / std::abs(along[a]);
     next[a] = (plane - from[a]) / along[a];
   }
-  constexpr double kGauss = 0.21132486540518711775;   // (1 - 1/sqrt(3)) / 2
+  constexpr double kGauss = 0.21132486540518711775;  // (1 - 1/sqrt(3)) / 2
   double sum = 0;
   while (begin < end) {
     const int a = next.x <= next.y ? (next.x <= next.z ? 0 : 2) : (next.y <= next.z ? 1 : 2);
@@ -177,7 +177,7 @@ std::string Media::hash() const {
 }
 
 MajorantGrid majorant_cells(const Box3d& box, double finest_voxel) {
-  constexpr double kVoxels = 8;   // voxels along a cell: 16^3 cells on 128^3 voxels were fastest
+  constexpr double kVoxels = 8;  // voxels along a cell: 16^3 cells on 128^3 voxels were fastest
   const Box3 outer = outwards(box);
   const Vec3d size = Vec3d(outer.upper) - Vec3d(outer.lower);
   const double most = double(MajorantGrid::kMostCells);
@@ -197,7 +197,8 @@ void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants) {
   if (majorants.empty()) return;
   const auto [nx, ny, nz] = majorants.counts();
   // A point on the border of two cells may be taken for either by rounding: a hair's breadth of both.
-  const double hair = 1e-5 * double(max_component(majorants.box().upper - majorants.box().lower)) / std::max({nx, ny, nz});
+  const double hair =
+      1e-5 * double(max_component(majorants.box().upper - majorants.box().lower)) / std::max({nx, ny, nz});
   parallel_chunks(std::size_t(nx) * std::size_t(ny), 16, [&, ny = ny, nz = nz](std::size_t first, std::size_t last) {
     for (std::size_t column = first; column < last; ++column)
       for (std::int32_t z = 0; z < nz; ++z) {

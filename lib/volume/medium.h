@@ -16,9 +16,9 @@ namespace tempolux {
 
 /// What a density does to light.
 struct MediumOptions {
-  float sigma_t = 1;                         ///< extinction of density 1 [1/m], >= 0
-  Rgb albedo{1.0f};                          ///< share of the extinction that is scattered, each channel in [0, 1]
-  float g = 0;                               ///< mean cosine of scattering (Henyey and Greenstein), in (-1, 1)
+  float sigma_t = 1;  ///< extinction of density 1 [1/m], >= 0
+  Rgb albedo{1.0f};   ///< share of the extinction that is scattered, each channel in [0, 1]
+  float g = 0;        ///< mean cosine of scattering (Henyey and Greenstein), in (-1, 1)
 };
 
 /// One medium: a density placed in scene space.
@@ -31,8 +31,9 @@ class Medium {
   float extinction(Vec3 point) const { return grid_->at(to_index(point)) * options_.sigma_t; }
   /// Greatest extinction in a box of scene space, or more where the grid lies askew.
   float largest_extinction(const Box3d& box) const;
-  /// Integral of the extinction over the way from `origin` by `length` m along the unit `direction`: exact for the trilinear
-  /// density up to rounding, as a cubic along each voxel has its integral from two points (Gauss and Legendre).
+  /// Integral of the extinction over the way from `origin` by `length` m along the unit `direction`: exact for the
+  /// trilinear density up to rounding, as a cubic along each voxel has its integral from two points (Gauss and
+  /// Legendre).
   double optical_depth(Vec3 origin, Vec3 direction, double length) const;
 
   const MediumOptions& options() const { return options_; }
@@ -51,7 +52,7 @@ class Medium {
  private:
   std::shared_ptr<const VoxelGrid> grid_;
   Affine scene_from_index_, index_from_scene_;
-  std::array<Vec3, 3> row_{};                ///< of index_from_scene, rounded
+  std::array<Vec3, 3> row_{};  ///< of index_from_scene, rounded
   Vec3 offset_;
   MediumOptions options_;
   Box3d bounds_;
@@ -62,7 +63,8 @@ class Media {
  public:
   /// Majorants of these media alone.
   explicit Media(std::vector<Medium> media);
-  /// `frozen`: majorants over a segment (frozen_majorants). Throws std::invalid_argument unless they hold for these media.
+  /// `frozen`: majorants over a segment (frozen_majorants). Throws std::invalid_argument unless they hold for these
+  /// media.
   Media(std::vector<Medium> media, MajorantGrid frozen);
 
   bool empty() const { return majorants_.empty(); }
@@ -90,10 +92,11 @@ class Media {
   MajorantGrid majorants_;
 };
 
-/// Cells for the majorants of media: box around them all, cells of eight voxels of the finest, at most kMostCells of them.
+/// Cells for the majorants of media: box around them all, cells of eight voxels of the finest, at most kMostCells of
+/// them.
 MajorantGrid majorant_cells(const Box3d& box, double finest_voxel);
-/// Adds to each cell the greatest extinction that these media have in it together (sum of their maxima), if that is more than
-/// it holds.
+/// Adds to each cell the greatest extinction that these media have in it together (sum of their maxima), if that is
+/// more than it holds.
 void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants);
 
 }  // namespace tempolux

@@ -1,6 +1,7 @@
 // lib/volume/phase.h -- which way light goes on after a collision: Henyey and Greenstein's phase function.
 //
-// Forms of docs/methods/formulas.md: everything in 1 - cos, nothing divided by g, so that forward peaks and g = 0 keep their digits.
+// Forms of docs/methods/formulas.md: everything in 1 - cos, nothing divided by g, so that forward peaks and g = 0 keep
+// their digits.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +12,10 @@
 
 namespace tempolux {
 
-inline constexpr float kLargestG = 1 - 1e-6f;   ///< |g| is taken as this at most
+inline constexpr float kLargestG = 1 - 1e-6f;  ///< |g| is taken as this at most
 
-/// 1 - cos of the angle between the directions of flight before and after, of density pdf_hg; xi in [0, 1], 1 goes straight on.
+/// 1 - cos of the angle between the directions of flight before and after, of density pdf_hg; xi in [0, 1], 1 goes
+/// straight on.
 inline float sample_hg_one_minus_cos(float g, float xi) {
   const float a = std::min(std::abs(g), kLargestG), one_minus_a = 1 - a;
   const float below = one_minus_a + 2 * a * xi;
@@ -21,8 +23,8 @@ inline float sample_hg_one_minus_cos(float g, float xi) {
   return std::clamp(g < 0 ? 2 - value : value, 0.0f, 2.0f);
 }
 
-/// Density per solid angle [1/sr] of going on at 1 - cos = one_minus_cos; the same as the phase function, its integral over the
-/// sphere is 1. |1 - cos| is best found as |a - b|^2 / 2 of the two unit directions of flight.
+/// Density per solid angle [1/sr] of going on at 1 - cos = one_minus_cos; the same as the phase function, its integral
+/// over the sphere is 1. |1 - cos| is best found as |a - b|^2 / 2 of the two unit directions of flight.
 inline float pdf_hg(float g, float one_minus_cos) {
   const float a = std::min(std::abs(g), kLargestG), one_minus_a = 1 - a;
   const float m = g < 0 ? 2 - one_minus_cos : one_minus_cos;

@@ -15,12 +15,13 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kMemory = 400u << 20;        ///< OpenVDB and its libraries take 150 MB of address space
-constexpr std::uint64_t kExpansion = 64;             ///< bytes in memory for one in the file: twice that of constant blocks in zip
-constexpr std::uint64_t kSlowest = 10u << 20;        ///< bytes of the file read in a second, at least
-constexpr std::size_t kMostTogether = 16;            ///< files read by one process: its start is then 3 ms a file
-constexpr std::uint64_t kMostAhead = 16u << 20;      ///< bytes of files read by one process; in memory up to kExpansion times as many
-constexpr std::int32_t kFarStep = 1 << 16;           ///< voxels: within half of it float32 resolves places to 1/256 of a voxel
+constexpr std::uint64_t kMemory = 400u << 20;  ///< OpenVDB and its libraries take 150 MB of address space
+constexpr std::uint64_t kExpansion = 64;  ///< bytes in memory for one in the file: twice that of constant blocks in zip
+constexpr std::uint64_t kSlowest = 10u << 20;  ///< bytes of the file read in a second, at least
+constexpr std::size_t kMostTogether = 16;      ///< files read by one process: its start is then 3 ms a file
+constexpr std::uint64_t kMostAhead =
+    16u << 20;  ///< bytes of files read by one process; in memory up to kExpansion times as many
+constexpr std::int32_t kFarStep = 1 << 16;  ///< voxels: within half of it float32 resolves places to 1/256 of a voxel
 
 std::uint64_t size_of(const std::string& path) {
   struct stat status {};
@@ -46,8 +47,9 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
-/// Voxels far from index 0 get numbers near it, and the transform what that moves them by: float32 does not resolve places between voxels from
-/// 2^24 on. By whole multiples of kFarStep, so that the numbers of a sequence stay the same while its smoke moves on.
+/// Voxels far from index 0 get numbers near it, and the transform what that moves them by: float32 does not resolve
+/// places between voxels from 2^24 on. By whole multiples of kFarStep, so that the numbers of a sequence stay the same
+/// while its smoke moves on.
 void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   if (blocks.empty()) return;
   GridIndex low = blocks.front().origin;
@@ -55,9 +57,9 @@ void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
     for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], block.origin[a]);
   Vec3d moved{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t steps = (std::int64_t(low[a]) + kFarStep / 2) >> 16;   // to the nearest
+    const std::int64_t steps = (std::int64_t(low[a]) + kFarStep / 2) >> 16;  // to the nearest
     moved[int(a)] = double(steps * kFarStep);
-    for (VoxelBlock& block : blocks)   // those beyond 32 bits stay beyond what VoxelGrid takes
+    for (VoxelBlock& block : blocks)  // those beyond 32 bits stay beyond what VoxelGrid takes
       block.origin[a] = std::int32_t(std::min<std::int64_t>(block.origin[a] - steps * kFarStep, INT32_MAX - 7));
   }
   world_from_index.translation = world_from_index.point(moved);
@@ -113,9 +115,7 @@ VdbVolume read_vdb(const std::string& path, const std::string& grid, std::uint64
   try {
     Printed printed(path, result.output);
     return parse(printed, path, true);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(path + ": " + error.what());
-  }
+  } catch (const std::invalid_argument& error) { throw InputError(path + ": " + error.what()); }
 }
 
 VdbVolume VdbSeries::read(const VdbName& name, std::uint64_t max_memory) {
@@ -130,7 +130,7 @@ VdbVolume VdbSeries::read(const VdbName& name, std::uint64_t max_memory) {
 void VdbSeries::read_together(std::size_t first, std::uint64_t max_memory) {
   std::uint64_t bytes = 0, largest = 0;
   std::size_t last = first;
-  for (struct stat status {}; last < names_.size() && last - first < kMostTogether && !ahead_[last]; ++last) {
+  for (struct stat status{}; last < names_.size() && last - first < kMostTogether && !ahead_[last]; ++last) {
     if (::stat(names_[last].path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) break;
     if (bytes + std::uint64_t(status.st_size) > kMostAhead) break;
     bytes += std::uint64_t(status.st_size);
@@ -145,8 +145,7 @@ void VdbSeries::read_together(std::size_t first, std::uint64_t max_memory) {
     for (std::size_t i = first; i < last; ++i) volumes.push_back(parse(printed, names_[i].path, i + 1 == last));
     std::ranges::move(volumes, ahead_.begin() + std::ptrdiff_t(first));
   } catch (const InputError&) {
-  } catch (const std::invalid_argument&) {
-  }
+  } catch (const std::invalid_argument&) {}
 }
 
 }  // namespace tempolux

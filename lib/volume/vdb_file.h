@@ -14,26 +14,27 @@
 namespace tempolux {
 
 struct VdbVolume {
-  std::string grid;                          ///< its name in the file
-  std::shared_ptr<const VoxelGrid> voxels;   ///< may be empty: smoke that has not begun
-  Affine world_from_index;                   ///< m
+  std::string grid;                         ///< its name in the file
+  std::shared_ptr<const VoxelGrid> voxels;  ///< may be empty: smoke that has not begun
+  Affine world_from_index;                  ///< m
 };
 
-/// Reads a grid of a .vdb file: `grid` by its name ("NAME:1" is the second of that name); if empty, the grid `density`, else the
-/// only grid of floats or doubles. OpenVDB does it in a process of its own (tempolux-vdb) of limited memory and time, so that a
-/// hostile file ends in a message. `max_memory` bytes for that process; 0: 400 MB and 64 times the file.
+/// Reads a grid of a .vdb file: `grid` by its name ("NAME:1" is the second of that name); if empty, the grid `density`,
+/// else the only grid of floats or doubles. OpenVDB does it in a process of its own (tempolux-vdb) of limited memory
+/// and time, so that a hostile file ends in a message. `max_memory` bytes for that process; 0: 400 MB and 64 times the
+/// file.
 ///
-/// Throws InputError "FILE: what; remedy" for what cannot be read, is no density (level set, points, vectors), has NaN, infinity or
-/// negative values, something other than 0 outside, or a transform that is not affine.
+/// Throws InputError "FILE: what; remedy" for what cannot be read, is no density (level set, points, vectors), has NaN,
+/// infinity or negative values, something other than 0 outside, or a transform that is not affine.
 VdbVolume read_vdb(const std::string& path, const std::string& grid, std::uint64_t max_memory);
 
 struct VdbName {
-  std::string path, grid;                    ///< as for read_vdb
+  std::string path, grid;  ///< as for read_vdb
   bool operator==(const VdbName&) const = default;
 };
 
-/// The volumes of a range of frames. What comes next is read together with what is asked for, by one process: loading OpenVDB takes
-/// 40 ms, more than reading a small file.
+/// The volumes of a range of frames. What comes next is read together with what is asked for, by one process: loading
+/// OpenVDB takes 40 ms, more than reading a small file.
 class VdbSeries {
  public:
   VdbSeries() = default;
@@ -45,7 +46,7 @@ class VdbSeries {
  private:
   void read_together(std::size_t first, std::uint64_t max_memory);
   std::vector<VdbName> names_;
-  std::vector<std::optional<VdbVolume>> ahead_;   ///< by name: read and not asked for yet
+  std::vector<std::optional<VdbVolume>> ahead_;  ///< by name: read and not asked for yet
 };
 
 }  // namespace tempolux

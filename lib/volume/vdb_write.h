@@ -13,14 +13,14 @@ namespace tempolux {
 
 /// A box of voxels, z fastest; values stand for the voxels' centres.
 struct ColourGrid {
-  std::string name;                          ///< of the grid in the file
+  std::string name;  ///< of the grid in the file
   std::array<std::int32_t, 3> counts{};
-  Vec3d lower, voxel;                        ///< m, world space: corner of the box, size of a voxel
+  Vec3d lower, voxel;  ///< m, world space: corner of the box, size of a voxel
   std::vector<Rgb> values;
 };
 
-/// The file, made by tempolux-vdb: one grid of vectors of three floats; voxels that are black are left out. Throws InputError if there is no
-/// such program, ResourceError if it fails.
+/// The file, made by tempolux-vdb: one grid of vectors of three floats; voxels that are black are left out. Throws
+/// InputError if there is no such program, ResourceError if it fails.
 std::vector<unsigned char> vdb_file_of(const ColourGrid& grid);
 
 }  // namespace tempolux

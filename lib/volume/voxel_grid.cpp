@@ -11,8 +11,9 @@
 namespace tempolux {
 namespace {
 
-constexpr std::int32_t kFarthest = 1 << 28;   ///< an origin beyond: sums of places stay whole in 32 bits
-constexpr const char* kTooFar = "its voxels lie too far apart; save its parts as grids of their own and give each as a volume";
+constexpr std::int32_t kFarthest = 1 << 28;  ///< an origin beyond: sums of places stay whole in 32 bits
+constexpr const char* kTooFar =
+    "its voxels lie too far apart; save its parts as grids of their own and give each as a volume";
 
 std::size_t leaf_offset(int x, int y, int z) { return std::size_t(64 * x + 8 * y + z); }
 
@@ -22,7 +23,8 @@ BlocksByPlace by_place(const std::vector<VoxelBlock>& blocks) {
   BlocksByPlace sorted;
   for (const VoxelBlock& block : blocks) {
     for (const std::int32_t o : block.origin)
-      if (o % VoxelGrid::kBlock != 0) throw std::invalid_argument("a block at " + std::to_string(o) + ", not a multiple of 8");
+      if (o % VoxelGrid::kBlock != 0)
+        throw std::invalid_argument("a block at " + std::to_string(o) + ", not a multiple of 8");
       else if (o < -kFarthest || o > kFarthest) throw std::invalid_argument(kTooFar);
     float greatest = 0;
     for (const float v : block.values) {
@@ -60,15 +62,17 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
   for (std::size_t a = 0; a < 3; ++a) upper_[a] = last[a] + kBlock - 1;
   std::uint64_t count = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    first_block_[a] = first[a] / kBlock - 1;   // the one before it reads its first layer
+    first_block_[a] = first[a] / kBlock - 1;  // the one before it reads its first layer
     block_count_[a] = last[a] / kBlock - first_block_[a] + 1;
     count *= std::uint64_t(block_count_[a]);
     if (count > kMostBlocks) throw std::invalid_argument(kTooFar);
   }
   table_.assign(count, kNoBrick);
   const auto entry = [&](const GridIndex& b) -> std::uint32_t& {
-    return table_[(std::size_t(b[0] - first_block_[0]) * std::size_t(block_count_[1]) + std::size_t(b[1] - first_block_[1])) *
-                      std::size_t(block_count_[2]) + std::size_t(b[2] - first_block_[2])];
+    return table_[(std::size_t(b[0] - first_block_[0]) * std::size_t(block_count_[1]) +
+                   std::size_t(b[1] - first_block_[1])) *
+                      std::size_t(block_count_[2]) +
+                  std::size_t(b[2] - first_block_[2])];
   };
   std::uint32_t bricks = 0;
   const auto fill = [&](const GridIndex& origin, const GridIndex& from, const VoxelBlock& block) {
@@ -115,8 +119,10 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
 }
 
 std::uint32_t VoxelGrid::brick(std::int32_t x, std::int32_t y, std::int32_t z) const {
-  const auto bx = std::uint32_t(x - first_block_[0]), by = std::uint32_t(y - first_block_[1]), bz = std::uint32_t(z - first_block_[2]);
-  if (bx >= std::uint32_t(block_count_[0]) || by >= std::uint32_t(block_count_[1]) || bz >= std::uint32_t(block_count_[2]))
+  const auto bx = std::uint32_t(x - first_block_[0]), by = std::uint32_t(y - first_block_[1]),
+             bz = std::uint32_t(z - first_block_[2]);
+  if (bx >= std::uint32_t(block_count_[0]) || by >= std::uint32_t(block_count_[1]) ||
+      bz >= std::uint32_t(block_count_[2]))
     return kNoBrick;
   return table_[(std::size_t(bx) * std::size_t(block_count_[1]) + by) * std::size_t(block_count_[2]) + bz];
 }
@@ -124,7 +130,8 @@ std::uint32_t VoxelGrid::brick(std::int32_t x, std::int32_t y, std::int32_t z) c
 float VoxelGrid::voxel(const GridIndex& at) const {
   const std::uint32_t number = brick(at[0] >> 3, at[1] >> 3, at[2] >> 3);
   if (number == kNoBrick) return 0;
-  return bricks_[std::size_t(number) * kBrickSize + std::size_t(((at[0] & 7) * kBrick + (at[1] & 7)) * kBrick + (at[2] & 7))];
+  return bricks_[std::size_t(number) * kBrickSize +
+                 std::size_t(((at[0] & 7) * kBrick + (at[1] & 7)) * kBrick + (at[2] & 7))];
 }
 
 float VoxelGrid::at(Vec3 place) const {
@@ -134,8 +141,8 @@ float VoxelGrid::at(Vec3 place) const {
   const auto ix = std::int32_t(x), iy = std::int32_t(y), iz = std::int32_t(z);
   const std::uint32_t number = brick(ix >> 3, iy >> 3, iz >> 3);
   if (number == kNoBrick) return 0;
-  const float* const v =
-      bricks_.data() + std::size_t(number) * kBrickSize + std::size_t(((ix & 7) * kBrick + (iy & 7)) * kBrick + (iz & 7));
+  const float* const v = bricks_.data() + std::size_t(number) * kBrickSize +
+                         std::size_t(((ix & 7) * kBrick + (iy & 7)) * kBrick + (iz & 7));
   const float fx = place.x - x, fy = place.y - y, fz = place.z - z;
   const auto along_z = [&](int offset) { return v[offset] + fz * (v[offset + 1] - v[offset]); };
   const auto along_y = [&](int offset) {
@@ -172,6 +179,8 @@ float VoxelGrid::largest(const Box3d& box) const {
   return greatest;
 }
 
-std::size_t VoxelGrid::byte_count() const { return table_.size() * sizeof(std::uint32_t) + bricks_.size() * sizeof(float); }
+std::size_t VoxelGrid::byte_count() const {
+  return table_.size() * sizeof(std::uint32_t) + bricks_.size() * sizeof(float);
+}
 
 }  // namespace tempolux

@@ -16,15 +16,15 @@ using GridIndex = std::array<std::int32_t, 3>;
 
 /// 8^3 voxels as OpenVDB's leaves have them: the value of voxel origin + (x, y, z) is values[64 x + 8 y + z].
 struct VoxelBlock {
-  GridIndex origin{};                        ///< multiples of 8
+  GridIndex origin{};  ///< multiples of 8
   std::array<float, 512> values{};
 };
 
-/// Values >= 0 at integer places of index space, 0 at all that no block holds. Between the places trilinear, as OpenVDB's
-/// BoxSampler and Cycles read them: at half-way between two voxels the mean of both.
+/// Values >= 0 at integer places of index space, 0 at all that no block holds. Between the places trilinear, as
+/// OpenVDB's BoxSampler and Cycles read them: at half-way between two voxels the mean of both.
 ///
-/// Blocks with nothing but zeros cost four bytes. Each other block keeps a copy of its neighbours' first layer (9^3 values), so
-/// that the eight values of a look-up lie in one array.
+/// Blocks with nothing but zeros cost four bytes. Each other block keeps a copy of its neighbours' first layer (9^3
+/// values), so that the eight values of a look-up lie in one array.
 class VoxelGrid {
  public:
   static constexpr int kBlock = 8;
@@ -32,8 +32,9 @@ class VoxelGrid {
   static constexpr std::uint64_t kMostBlocks = std::uint64_t(1) << 26;
 
   VoxelGrid() = default;
-  /// Blocks in any order, each origin once. Throws std::invalid_argument for an origin that is no multiple of 8 or beyond
-  /// 2^28, a value that is not finite or below 0, two blocks at one place, more than kMostBlocks in the box around them.
+  /// Blocks in any order, each origin once. Throws std::invalid_argument for an origin that is no multiple of 8 or
+  /// beyond 2^28, a value that is not finite or below 0, two blocks at one place, more than kMostBlocks in the box
+  /// around them.
   explicit VoxelGrid(const std::vector<VoxelBlock>& blocks);
 
   bool empty() const { return bricks_.empty(); }
@@ -61,8 +62,8 @@ class VoxelGrid {
   std::uint32_t brick(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
   GridIndex first_block_{}, block_count_{};
-  std::vector<std::uint32_t> table_;         ///< by block, z fastest
-  std::vector<float> bricks_;                ///< kBrickSize for each, z fastest
+  std::vector<std::uint32_t> table_;  ///< by block, z fastest
+  std::vector<float> bricks_;         ///< kBrickSize for each, z fastest
   GridIndex lower_{1, 1, 1}, upper_{0, 0, 0};
   Box3d support_;
   float largest_ = 0;

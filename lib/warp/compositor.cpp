@@ -6,7 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// a += w (b - c), over a stride, which is a multiple of 8. Sums are written so: equal colours give their bits, whatever the weights.
+/// a += w (b - c), over a stride, which is a multiple of 8. Sums are written so: equal colours give their bits,
+/// whatever the weights.
 void add_difference(float* a, float w, const float* b, const float* c, std::size_t stride) {
   for (std::size_t i = 0; i < stride; i += 8)
     for (std::size_t j = 0; j < 8; ++j) a[i + j] += w * (b[i + j] - c[i + j]);
@@ -77,7 +78,8 @@ bool Compositor::take_what_stands(std::size_t p, ComposedPixel& pixel) const {
 }
 
 /// Weights of the keys that show point i; false: none does.
-bool Compositor::weigh(const LookedUp& points, std::size_t i, ComposedPixel& pixel, std::array<float, 2>& weight) const {
+bool Compositor::weigh(const LookedUp& points, std::size_t i, ComposedPixel& pixel,
+                       std::array<float, 2>& weight) const {
   bool sharp = false, any = false;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     weight[k] = 0;
@@ -110,14 +112,16 @@ void Compositor::centre(std::size_t p, const LookedUp& points, std::size_t i, Co
   const std::size_t first = weight[0] > 0 ? 0 : 1;
   std::copy_n(pixel.of_key[first].begin(), stride_, pixel.colour.begin());
   if (weight[0] > 0 && weight[1] > 0)
-    add_difference(pixel.colour.data(), weight[1] / (weight[0] + weight[1]), pixel.of_key[1].data(), pixel.of_key[0].data(), stride_);
+    add_difference(pixel.colour.data(), weight[1] / (weight[0] + weight[1]), pixel.of_key[1].data(),
+                   pixel.of_key[0].data(), stride_);
 }
 
 void Compositor::mean(std::size_t p, const LookedUp& points, ComposedPixel& pixel) const {
   start(pixel);
   if (take_what_stands(p, pixel)) return;
   pixel.resampled = true;
-  for (float* sums : {pixel.colour.data(), pixel.square.data(), pixel.of_key[0].data(), pixel.of_key[1].data()}) std::fill_n(sums, stride_, 0.0f);
+  for (float* sums : {pixel.colour.data(), pixel.square.data(), pixel.of_key[0].data(), pixel.of_key[1].data()})
+    std::fill_n(sums, stride_, 0.0f);
   alignas(32) std::array<std::array<float, kMostChannels>, 2> here;
   for (std::size_t i = 0; i < points.wanted.count; ++i) {
     std::array<float, 2> weight{};
@@ -128,7 +132,8 @@ void Compositor::mean(std::size_t p, const LookedUp& points, ComposedPixel& pixe
       add(here[k].data(), pixel.of_key[k].data());
     }
     const std::size_t first = weight[0] > 0 ? 0 : 1;
-    if (weight[0] > 0 && weight[1] > 0) add_difference(here[0].data(), weight[1] / (weight[0] + weight[1]), here[1].data(), here[0].data(), stride_);
+    if (weight[0] > 0 && weight[1] > 0)
+      add_difference(here[0].data(), weight[1] / (weight[0] + weight[1]), here[1].data(), here[0].data(), stride_);
     add(here[first].data(), pixel.colour.data());
     for (std::size_t c = 0; c < stride_; ++c) pixel.square[c] += here[first][c] * here[first][c];
   }

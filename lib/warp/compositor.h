@@ -11,18 +11,18 @@ namespace tempolux {
 
 /// What the keys give for one pixel.
 struct ComposedPixel {
-  alignas(32) std::array<float, kMostChannels> colour;                    ///< composed
-  alignas(32) std::array<std::array<float, kMostChannels>, 2> of_key;     ///< by each key alone
-  alignas(32) std::array<float, kMostChannels> square;                    ///< of several positions: mean square of what they show
-  std::array<int, 2> parts{};                                 ///< how many positions it has given
+  alignas(32) std::array<float, kMostChannels> colour;                 ///< composed
+  alignas(32) std::array<std::array<float, kMostChannels>, 2> of_key;  ///< by each key alone
+  alignas(32) std::array<float, kMostChannels> square;  ///< of several positions: mean square of what they show
+  std::array<int, 2> parts{};                           ///< how many positions it has given
   std::array<LookUp, 2> failed{LookUp::found, LookUp::found};
-  bool missing = false;                                       ///< a position that no key gives
+  bool missing = false;  ///< a position that no key gives
   bool undersampled = false, resampled = false;
 };
 
 /// Points of the target, looked up in all keys.
 struct LookedUp {
-  WantedPoints wanted;                   ///< count, at, face: the caller's
+  WantedPoints wanted;  ///< count, at, face: the caller's
   std::array<FoundPoints, 2> found;
 };
 

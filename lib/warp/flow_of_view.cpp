@@ -19,8 +19,8 @@ class Neighbour {
     of_object_.resize(motions_.count(), to_there);
     for (std::uint32_t object = 0; object < of_object_.size(); ++object)
       if (motions_.of(object).kind == ObjectMotion::Kind::moved)
-        of_object_[object] =
-            there.camera->camera_from_world() * (motions_.of(object).other_from_here * here.camera().world_from_camera());
+        of_object_[object] = there.camera->camera_from_world() *
+                             (motions_.of(object).other_from_here * here.camera().world_from_camera());
     still_ = to_there;
     match_surfaces();
   }
@@ -31,12 +31,9 @@ class Neighbour {
     if (object == kNoObject) return still_.direction(at);
     switch (motions_.of(object).kind) {
       case ObjectMotion::Kind::still:
-      case ObjectMotion::Kind::moved:
-        return of_object_[object].point(at);
-      case ObjectMotion::Kind::absent:
-        return std::nullopt;
-      case ObjectMotion::Kind::deforming:
-        break;
+      case ObjectMotion::Kind::moved: return of_object_[object].point(at);
+      case ObjectMotion::Kind::absent: return std::nullopt;
+      case ObjectMotion::Kind::deforming: break;
     }
     const Hit& hit = here_.hits()[pixel];
     const Surface* surface = surfaces_[hit.surface];
@@ -59,7 +56,8 @@ class Neighbour {
     for (const Surface& surface : here_.frame().surfaces) {
       const auto& others = by_node[surface.node];
       const std::size_t r = rank[surface.node]++;
-      const bool fits = r < others.size() && others[r]->primitive->triangles.size() == surface.primitive->triangles.size();
+      const bool fits =
+          r < others.size() && others[r]->primitive->triangles.size() == surface.primitive->triangles.size();
       surfaces_.push_back(fits ? others[r] : nullptr);
     }
   }
@@ -74,7 +72,7 @@ class Neighbour {
 
 struct Followed {
   Vec2 flow;
-  Vec3d there;            ///< in the neighbour's camera space
+  Vec3d there;  ///< in the neighbour's camera space
   bool known = false;
 };
 
@@ -104,9 +102,9 @@ PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const N
       const RasterPoint centre{double(p % std::size_t(seen.width)) + 0.5, double(p / std::size_t(seen.width)) + 0.5};
       const bool nothing = !(seen.depth[p] < INFINITY);
       if (nothing && view.camera().orthographic()) continue;
-      const Vec3d at = nothing ? view.camera().direction(centre) : view.camera().unproject(centre, double(seen.depth[p]));
-      const Followed f = follow(later, p, at, nothing, centre),
-                     b = follow(earlier, p, at, nothing, centre);
+      const Vec3d at =
+          nothing ? view.camera().direction(centre) : view.camera().unproject(centre, double(seen.depth[p]));
+      const Followed f = follow(later, p, at, nothing, centre), b = follow(earlier, p, at, nothing, centre);
       flow.forward[p] = f.flow;
       flow.backward[p] = b.flow;
       flow.valid[p] = std::uint32_t(f.known) * forward_known + std::uint32_t(b.known) * backward_known;

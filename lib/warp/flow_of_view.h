@@ -13,8 +13,9 @@ struct NeighbourView {
   const FrameCamera* camera = nullptr;
 };
 
-/// Flow as formats/flow/flow.md has it. Points of rigid objects follow the object's transform in double precision, those of
-/// deforming ones their triangle's corners; what is infinitely far away turns with the camera. fps: frames per second.
+/// Flow as formats/flow/flow.md has it. Points of rigid objects follow the object's transform in double precision,
+/// those of deforming ones their triangle's corners; what is infinitely far away turns with the camera. fps: frames per
+/// second.
 PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const NeighbourView& previous, double fps);
 
 /// Degrees per second of a point seen in directions a and b (camera space) one frame apart.

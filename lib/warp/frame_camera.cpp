@@ -57,7 +57,9 @@ FrameCamera::FrameCamera(const std::array<double, 16>& world_to_camera, const st
   if (!(std::abs(det) > 0) || !(depth > 0) || !std::isfinite(det) || !std::isfinite(depth))
     throw std::invalid_argument("worldToNDC cannot be undone");
   pixel_width_ = depth / std::sqrt(std::abs(det));
-  const auto small = [&](double& value, double of) { if (std::abs(value) < 1e-6 * std::abs(of)) value = 0; };
+  const auto small = [&](double& value, double of) {
+    if (std::abs(value) < 1e-6 * std::abs(of)) value = 0;
+  };
   small(w_.x, w_.z);
   small(w_.y, w_.z);
   small(x_.y, x_.x);
@@ -81,8 +83,9 @@ FrameCamera camera_of(const Image& image, const std::string& name) {
   const auto matrix = [&](const char* attribute) -> const std::array<double, 16>& {
     const auto found = image.matrices.find(attribute);
     if (found == image.matrices.end())
-      throw InputError(name + ": attribute " + attribute +
-                       " is missing: where its pixels are in space is not known; write the frame with it, a 4x4 matrix");
+      throw InputError(
+          name + ": attribute " + attribute +
+          " is missing: where its pixels are in space is not known; write the frame with it, a 4x4 matrix");
     return found->second;
   };
   try {

@@ -14,15 +14,16 @@ namespace tempolux {
 
 /// Where a point is in a picture.
 struct RasterPoint {
-  double x = 0, y = 0;   ///< pixels, y down; pixel centres at +0.5
+  double x = 0, y = 0;  ///< pixels, y down; pixel centres at +0.5
 };
 
 /// A camera with a picture size. Camera space is that of the EXR attribute worldToCamera: +x right, +y up, +z into the
-/// picture, so z is the channel Z. The projection may be any that maps lines to lines: perspective, orthographic, shifted.
+/// picture, so z is the channel Z. The projection may be any that maps lines to lines: perspective, orthographic,
+/// shifted.
 class FrameCamera {
  public:
-  /// From worldToCamera and worldToNDC as formats/frames/frames.md has them. Throws std::invalid_argument if either cannot be
-  /// undone.
+  /// From worldToCamera and worldToNDC as formats/frames/frames.md has them. Throws std::invalid_argument if either
+  /// cannot be undone.
   FrameCamera(const std::array<double, 16>& world_to_camera, const std::array<double, 16>& world_to_ndc, int width,
               int height);
 
@@ -61,8 +62,8 @@ class FrameCamera {
 
   /// Depth does not shrink what is seen.
   bool orthographic() const { return w_.z == 0; }
-  /// Area of surface that a pixel shows, m^2 up to a factor of this picture alone: point and normal in camera space. With
-  /// d the distance, c the cosine to the normal and g the angle to the axis it is d^2 cos^3 g / c = z^3 / |n . p|.
+  /// Area of surface that a pixel shows, m^2 up to a factor of this picture alone: point and normal in camera space.
+  /// With d the distance, c the cosine to the normal and g the angle to the axis it is d^2 cos^3 g / c = z^3 / |n . p|.
   double area_of_pixel(Vec3d point, Vec3d normal) const {
     const double area = pixel_width_ * pixel_width_;
     if (orthographic()) return area / std::max(std::abs(normal.z), 1e-3);
@@ -86,12 +87,12 @@ class FrameCamera {
   Vec3d x_, y_, w_;
   double x_shift_ = 0, y_shift_ = 0, w_shift_ = 0;
   double pixel_width_ = 0;
-  bool axes_apart_ = false;              ///< x and y of the raster come from x and y alone: no solving
+  bool axes_apart_ = false;  ///< x and y of the raster come from x and y alone: no solving
   double per_x_ = 0, per_y_ = 0;
 };
 
-/// The camera that a frame says it was seen by. Throws InputError, beginning with `name`, that says which attribute is missing
-/// or cannot be undone.
+/// The camera that a frame says it was seen by. Throws InputError, beginning with `name`, that says which attribute is
+/// missing or cannot be undone.
 FrameCamera camera_of(const Image& image, const std::string& name);
 
 }  // namespace tempolux

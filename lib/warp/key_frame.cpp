@@ -29,12 +29,12 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
     if (!channels.contains(needed))
       throw InputError(name + ": has no channel " + needed + "; a key is a picture: render it with RGBA");
   if (channels.size() > kMostChannels)
-    throw InputError(name + ": has " + std::to_string(channels.size()) + " channels of colour, at most " + std::to_string(kMostChannels) +
-                     " are warped; leave passes out");
+    throw InputError(name + ": has " + std::to_string(channels.size()) + " channels of colour, at most " +
+                     std::to_string(kMostChannels) + " are warped; leave passes out");
   for (const auto& [channel_name, channel] : channels) names_.push_back(channel_name);
   stride_ = (names_.size() + 7) / 8 * 8;
   colour_ = std::make_unique_for_overwrite<float[]>(image.pixel_count() * stride_);
-  constexpr std::size_t kTogether = 256;   // pixels whose colours stay in the first-level cache
+  constexpr std::size_t kTogether = 256;  // pixels whose colours stay in the first-level cache
   parallel_chunks(image.pixel_count(), 16 * kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t first = begin; first < end; first += kTogether) {
       const std::size_t last = std::min(first + kTogether, end);
@@ -62,7 +62,8 @@ void KeyFrame::look_at_pixels() {
   parallel_chunks(height - 1, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t y = first; y < last; ++y) {
       const std::uint8_t *upper = whole_.data() + y * width, *lower = upper + width;
-      for (std::size_t x = 0; x + 1 < width; ++x) four[y * width + x] = upper[x] & upper[x + 1] & lower[x] & lower[x + 1];
+      for (std::size_t x = 0; x + 1 < width; ++x)
+        four[y * width + x] = upper[x] & upper[x + 1] & lower[x] & lower[x + 1];
     }
   });
   for (std::size_t p = 0; p < whole_.size(); ++p) whole_[p] = std::uint8_t(whole_[p] | four[p] << 1);

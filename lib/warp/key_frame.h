@@ -12,13 +12,14 @@
 
 namespace tempolux {
 
-inline constexpr std::size_t kMostChannels = 64;   ///< of colour, in a key
+inline constexpr std::size_t kMostChannels = 64;  ///< of colour, in a key
 
 /// A key's colour and what it shows, laid out for look-ups.
 class KeyFrame {
  public:
-  /// The image's colour layers (RGBA and LAYER.R .G .B, but not albedo, which belongs to the surface, and variance, which an
-  /// interpolated value has not), depth and, if they are there, objects and normals. Throws InputError, beginning with `name`.
+  /// The image's colour layers (RGBA and LAYER.R .G .B, but not albedo, which belongs to the surface, and variance,
+  /// which an interpolated value has not), depth and, if they are there, objects and normals. Throws InputError,
+  /// beginning with `name`.
   KeyFrame(const Image& image, const std::string& name, const FrameCamera& camera);
 
   const std::string& name() const { return name_; }
@@ -43,7 +44,7 @@ class KeyFrame {
   std::string name_;
   FrameCamera camera_;
   SeenSurfaces seen_;
-  std::vector<std::uint8_t> whole_;      ///< 1: whole(), 2: four_whole()
+  std::vector<std::uint8_t> whole_;  ///< 1: whole(), 2: four_whole()
   std::vector<FacePoint> shown_;
   std::vector<std::string> names_;
   std::size_t stride_ = 0;

@@ -5,8 +5,8 @@
 namespace tempolux {
 namespace {
 
-/// Pixels from a pixel's centre within which a position is that pixel: interpolation could change it by less than a thousandth of
-/// its difference to its neighbour, and what stands keeps its bits.
+/// Pixels from a pixel's centre within which a position is that pixel: interpolation could change it by less than a
+/// thousandth of its difference to its neighbour, and what stands keeps its bits.
 constexpr double kSamePixel = 1e-3;
 
 }  // namespace
@@ -37,7 +37,8 @@ void WantedPoints::place(const FrameCamera& camera) {
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3d world(face[i].normal);
     const bool known = dot(world, world) > 0;
-    const Vec3d turned = turn.direction(world), normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
+    const Vec3d turned = turn.direction(world),
+                normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
     area[i] = camera.area_of_pixel({x[i], y[i], z[i]}, normal);
   }
 }
@@ -48,7 +49,8 @@ void KeyView::place(const WantedPoints& wanted, Places& places) const {
   for (std::size_t i = 0; i < wanted.count; ++i) {
     const Vec3d there = to_key.point({wanted.x[i], wanted.y[i], wanted.z[i]}), world(wanted.face[i].normal);
     const bool known = dot(world, world) > 0;
-    const Vec3d turned = turn.direction(world), normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
+    const Vec3d turned = turn.direction(world),
+                normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
     const RasterPoint raster = camera_.project_or_nan(there);
     places.x[i] = raster.x;
     places.y[i] = raster.y;
@@ -56,7 +58,8 @@ void KeyView::place(const WantedPoints& wanted, Places& places) const {
     places.facing[i] = known ? camera_.facing(there, normal) : 1;
     places.magnification[i] = camera_.area_of_pixel(there, normal) / wanted.area[i];
   }
-  for (std::size_t i = 0; i < wanted.count; ++i) places.face[i] = {float(z[i]), wanted.face[i].object, wanted.face[i].normal};
+  for (std::size_t i = 0; i < wanted.count; ++i)
+    places.face[i] = {float(z[i]), wanted.face[i].object, wanted.face[i].normal};
 }
 
 void KeyView::place_one(const WantedPoints& wanted, std::size_t i, Places& places) const {
@@ -70,7 +73,7 @@ void KeyView::place_one(const WantedPoints& wanted, std::size_t i, Places& place
   places.face[i] = {infinite ? INFINITY : float(there.z), point.object, point.normal};
   places.facing[i] = places.magnification[i] = 1;
   if (infinite) return;
-  Vec3d normal{0, 0, 1};   // in the key's camera space; if none is known, towards the camera
+  Vec3d normal{0, 0, 1};  // in the key's camera space; if none is known, towards the camera
   if (length2(point.normal) > 0) {
     if (moves && motions_.of(point.object).kind == ObjectMotion::Kind::moved)
       places.face[i].normal = Vec3(normalize(motions_.of(point.object).other_from_here.normal(Vec3d(point.normal))));
@@ -101,7 +104,9 @@ void KeyView::find(const WantedPoints& wanted, FoundPoints& found) const {
     found.magnification[i] = float(places.magnification[i]);
     const double x = places.x[i], y = places.y[i];
     if (!(x >= 0 && y >= 0 && x < seen.width && y < seen.height)) found.result[i] = LookUp::outside;
-    else found.result[i] = gather(x - 0.5, y - 0.5, places.face[i], depth_tolerance(pixel, float(places.facing[i])), found.taps[i]);
+    else
+      found.result[i] =
+          gather(x - 0.5, y - 0.5, places.face[i], depth_tolerance(pixel, float(places.facing[i])), found.taps[i]);
   }
 }
 
@@ -112,7 +117,7 @@ LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolera
   const int x0 = int(std::floor(cx)), y0 = int(std::floor(cy));
   const float fx = float(cx - x0), fy = float(cy - y0);
   const int nx = x0 + (fx >= 0.5f), ny = y0 + (fy >= 0.5f);
-  const bool inside = nx < width && ny < height;   // nx, ny >= 0 as the position lies in the picture
+  const bool inside = nx < width && ny < height;  // nx, ny >= 0 as the position lies in the picture
   const bool nearest_shows = inside && shows(index(nx, ny));
 
   if (nearest_shows && key_.whole(index(nx, ny))) {

@@ -13,10 +13,10 @@ namespace tempolux {
 /// What became of a look-up; of several keys' failures the last of this list says most.
 enum class LookUp : std::uint8_t {
   found,
-  outside,     ///< not within the key's picture, or behind it
-  hidden,      ///< within it, but the key shows something else there
-  deforming,   ///< of a surface that has another shape in the key
-  edge,        ///< the key shows it, but only in pixels that show other surfaces too
+  outside,    ///< not within the key's picture, or behind it
+  hidden,     ///< within it, but the key shows something else there
+  deforming,  ///< of a surface that has another shape in the key
+  edge,       ///< the key shows it, but only in pixels that show other surfaces too
 };
 
 /// Pixels of a key whose colours, so weighted, stand for a point. Weights sum to 1.
@@ -30,11 +30,11 @@ struct Taps {
 struct WantedPoints {
   static constexpr std::size_t kMost = 64;
   std::size_t count = 0;
-  std::array<RasterPoint, kMost> at;        ///< where in the target
-  std::array<FacePoint, kMost> face;        ///< what it shows there
-  std::array<double, kMost> x, y, z;        ///< the point in its camera's space; if it is infinitely far away, its direction
-  std::array<double, kMost> area;           ///< FrameCamera::area_of_pixel() there
-  bool infinite = false;                    ///< is any of them
+  std::array<RasterPoint, kMost> at;  ///< where in the target
+  std::array<FacePoint, kMost> face;  ///< what it shows there
+  std::array<double, kMost> x, y, z;  ///< the point in its camera's space; if it is infinitely far away, its direction
+  std::array<double, kMost> area;     ///< FrameCamera::area_of_pixel() there
+  bool infinite = false;              ///< is any of them
 
   /// Fills x, y, z, area and infinite from at and face, as `camera` sees them.
   void place(const FrameCamera& camera);
@@ -44,20 +44,22 @@ struct WantedPoints {
 struct FoundPoints {
   std::array<LookUp, WantedPoints::kMost> result;
   std::array<Taps, WantedPoints::kMost> taps;
-  std::array<float, WantedPoints::kMost> magnification;   ///< area of target pixels per pixel of the key (docs/methods/formulas.md)
+  std::array<float, WantedPoints::kMost>
+      magnification;  ///< area of target pixels per pixel of the key (docs/methods/formulas.md)
 };
 
 /// One key as a target camera at another frame makes use of it.
 class KeyView {
  public:
-  /// camera: the key's own, or more exactly than its attributes say. key_from_target: motions of objects from the target's frame
-  /// to the key's. All references outlive this.
-  KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target, const ObjectMotions& key_from_target);
+  /// camera: the key's own, or more exactly than its attributes say. key_from_target: motions of objects from the
+  /// target's frame to the key's. All references outlive this.
+  KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target,
+          const ObjectMotions& key_from_target);
 
   /// Colour for points of the target. Only
-  /// whole pixels that show the same face count. Between pixel centres colour is linear; where some of the four around are of no
-  /// use, the others share their weight; where all are, the nearest of the 16 around is taken. A position within kSamePixel of a centre is
-  /// that pixel.
+  /// whole pixels that show the same face count. Between pixel centres colour is linear; where some of the four around
+  /// are of no use, the others share their weight; where all are, the nearest of the 16 around is taken. A position
+  /// within kSamePixel of a centre is that pixel.
   void find(const WantedPoints& wanted, FoundPoints& found) const;
 
   /// Does the target see this pixel exactly as the key did: same camera, and the object where it was?
@@ -71,9 +73,9 @@ class KeyView {
  private:
   /// Where points are in the key, and what should be seen there.
   struct Places {
-    std::array<double, WantedPoints::kMost> x, y;           ///< raster; not a number: not in front of the camera
+    std::array<double, WantedPoints::kMost> x, y;  ///< raster; not a number: not in front of the camera
     std::array<double, WantedPoints::kMost> magnification, facing;
-    std::array<FacePoint, WantedPoints::kMost> face;        ///< in the key's world
+    std::array<FacePoint, WantedPoints::kMost> face;  ///< in the key's world
   };
   /// Looks up points that stand still and are not infinitely far away, all together.
   void place(const WantedPoints& wanted, Places& places) const;
@@ -86,8 +88,8 @@ class KeyView {
   const FrameCamera &camera_, &target_;
   const ObjectMotions& motions_;
   bool same_camera_;
-  Affine still_;                       ///< key camera from target camera, of what does not move
-  std::vector<Affine> moved_;          ///< the same by object, of those that do; empty: nothing moves
+  Affine still_;               ///< key camera from target camera, of what does not move
+  std::vector<Affine> moved_;  ///< the same by object, of those that do; empty: nothing moves
 };
 
 }  // namespace tempolux

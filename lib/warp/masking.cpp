@@ -8,10 +8,11 @@
 namespace tempolux {
 namespace {
 
-// Beyond which a difference is not noise: three, and half as much again as interpolated pixels share their neighbours' noise: linear
-// interpolation leaves each (2/3)^2 of the variance on the average, and the mean over all of them the whole.
+// Beyond which a difference is not noise: three, and half as much again as interpolated pixels share their neighbours'
+// noise: linear interpolation leaves each (2/3)^2 of the variance on the average, and the mean over all of them the
+// whole.
 constexpr double kStandardErrors = 3 * 1.5;
-constexpr int kReach = 2;               // pixels on each side over which light is averaged
+constexpr int kReach = 2;  // pixels on each side over which light is averaged
 
 std::array<int, 3> place_of(const std::vector<std::string>& names, const std::string& prefix) {
   std::array<int, 3> at{};
@@ -31,7 +32,11 @@ float luminance_at(const float* colour, const std::array<int, 3>& at) {
 
 Masking::Masking(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options,
                  const std::vector<std::string>& names)
-    : target_(target), keys_(keys), options_(options), rgb_(place_of(names, "")), specular_(place_of(names, "specular.")) {
+    : target_(target),
+      keys_(keys),
+      options_(options),
+      rgb_(place_of(names, "")),
+      specular_(place_of(names, "specular.")) {
   double sum = 0;
   std::size_t count = 0;
   for (const WarpKey& key : keys)
@@ -47,9 +52,12 @@ bool Masking::specular_matters(std::size_t pixel, const float* colour, const flo
   return luminance_at(colour, specular_) > float(options_.specular_share) * std::max(luminance_of(colour), dark_);
 }
 
-void Masking::mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error, std::vector<std::uint32_t>& why) const {
-  const auto dark = [](const std::vector<float>& plane) { return std::all_of(plane.begin(), plane.end(), [](float e) { return e == 0; }); };
-  if (std::all_of(error.begin(), error.end(), dark)) return;   // nothing shines: no viewer is asked
+void Masking::mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error,
+                              std::vector<std::uint32_t>& why) const {
+  const auto dark = [](const std::vector<float>& plane) {
+    return std::all_of(plane.begin(), plane.end(), [](float e) { return e == 0; });
+  };
+  if (std::all_of(error.begin(), error.end(), dark)) return;  // nothing shines: no viewer is asked
   GlossInDoubt doubt{{}, std::move(error), std::vector<std::uint8_t>(why.size())};
   for (std::size_t c = 0; c < 3; ++c) doubt.picture[c] = colour[std::size_t(rgb_[c])];
   for (std::size_t p = 0; p < why.size(); ++p) doubt.counted[p] = why[p] == 0;
@@ -75,11 +83,13 @@ Masking::Spread Masking::spread(const float* mean, const float* square) const {
 
 std::size_t Masking::edge_positions(Spread at, std::size_t count, Spread around) const {
   constexpr double kCentres = 9, kBeyond = 3;
-  const double allowed = options_.edge_share * double(std::max(luminance(Rgb(at.mean[0], at.mean[1], at.mean[2])), dark_));
+  const double allowed =
+      options_.edge_share * double(std::max(luminance(Rgb(at.mean[0], at.mean[1], at.mean[2])), dark_));
   double variance = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double mean = double(at.mean[c]);
-    const double off = std::max(0.0, double(around.square[c]) - 2 * mean * double(around.mean[c]) + mean * mean);   // of the centres
+    const double off =
+        std::max(0.0, double(around.square[c]) - 2 * mean * double(around.mean[c]) + mean * mean);  // of the centres
     variance = std::max({variance, double(at.square[c]) - mean * mean, off * kCentres / kBeyond / (2 * double(count))});
   }
   if (!(variance > 0)) return 1;
@@ -87,7 +97,8 @@ std::size_t Masking::edge_positions(Spread at, std::size_t count, Spread around)
   return n < 1e6 ? std::size_t(std::ceil(n)) : 1000000;
 }
 
-std::uint32_t Masking::of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const {
+std::uint32_t Masking::of_moved_pixel(std::size_t pixel, const float* colour, const float* first,
+                                      const float* second) const {
   std::uint32_t why = 0;
   if (target_.speed && double((*target_.speed)[pixel]) < options_.slow_deg_per_s) why |= formats::why_slow;
   if (specular_matters(pixel, colour, first, second)) why |= formats::why_specular;
@@ -98,7 +109,8 @@ bool Masking::light_may_differ() const {
   return std::any_of(keys_.begin(), keys_.end(), [](const WarpKey& key) { return key.light_may_differ; });
 }
 
-void Masking::mark_changed_light(const std::array<std::vector<float>, 2>& light, std::vector<std::uint32_t>& why) const {
+void Masking::mark_changed_light(const std::array<std::vector<float>, 2>& light,
+                                 std::vector<std::uint32_t>& why) const {
   const int width = target_.seen->width, height = target_.seen->height;
   const auto given = [&](std::size_t k, std::size_t p) { return k < keys_.size() && light[k][p] >= 0; };
   parallel_chunks(std::size_t(height), 16, [&](std::size_t first, std::size_t last) {
@@ -126,7 +138,8 @@ void Masking::mark_changed_light(const std::array<std::vector<float>, 2>& light,
           }
         const double mean = sum / n, variance = n > 1 ? std::max(0.0, (squares - sum * mean) / (n - 1)) : 0;
         const double least = options_.light_share * std::max(both / n, double(dark_));
-        if (std::abs(mean) > std::max(least, kStandardErrors * std::sqrt(variance / n))) why[p] |= formats::why_changed_light;
+        if (std::abs(mean) > std::max(least, kStandardErrors * std::sqrt(variance / n)))
+          why[p] |= formats::why_changed_light;
       }
   });
 }

@@ -56,7 +56,7 @@ ObjectMotion motion_of(const std::vector<const Surface*>& here, const std::vecto
       if (!moved_alike(*here[s], *other[s], scene_move)) return false;
     return true;
   };
-  if (all_moved_by(Affine{})) return {Kind::still, {}};   // a skin holds it where it is, wherever its node goes
+  if (all_moved_by(Affine{})) return {Kind::still, {}};  // a skin holds it where it is, wherever its node goes
   if (all_moved_by(move)) return {Kind::moved, move};
   return {Kind::deforming, {}};
 }

@@ -17,7 +17,7 @@ struct ObjectMotion {
     deforming,  ///< each point by its own way (morph targets, skins, or a transform that cannot be undone)
     absent,     ///< not there in the other frame
   } kind = Kind::still;
-  Affine other_from_here;   ///< world to world; the identity unless moved
+  Affine other_from_here;  ///< world to world; the identity unless moved
 };
 
 /// Motions of all objects between two frames of one scene, by id.object. Objects are moved by their nodes; a shape that
@@ -29,9 +29,7 @@ class ObjectMotions {
   ObjectMotions(const SceneFrame& here, const SceneFrame& other);
 
   /// An object that the scene does not have, and nothing (kNone), stand still.
-  const ObjectMotion& of(std::uint32_t object) const {
-    return object < motions_.size() ? motions_[object] : still_;
-  }
+  const ObjectMotion& of(std::uint32_t object) const { return object < motions_.size() ? motions_[object] : still_; }
   /// Objects from this number on are unknown.
   std::size_t count() const { return motions_.size(); }
   bool all_still() const { return all_still_; }

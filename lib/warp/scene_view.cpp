@@ -8,13 +8,12 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kTogether = 8;   // a packet of rays
+constexpr std::size_t kTogether = 8;  // a packet of rays
 
 }  // namespace
 
 SceneView::SceneView(const Tracer& tracer, const CameraView& view)
-    : tracer_(tracer), view_(view),
-      camera_(view.world_to_camera(), view.world_to_ndc(), view.width(), view.height()) {
+    : tracer_(tracer), view_(view), camera_(view.world_to_camera(), view.world_to_ndc(), view.width(), view.height()) {
   const std::size_t pixels = std::size_t(view.width()) * std::size_t(view.height());
   seen_ = {view.width(), view.height(), std::vector<float>(pixels), std::vector<std::uint32_t>(pixels),
            std::vector<Vec3>(pixels)};
@@ -41,7 +40,7 @@ FacePoint SceneView::point_of(const Hit& hit, const Ray& ray) const {
   if (hit.surface == kNone) return {INFINITY, kNoObject, {}};
   SurfacePoint point = tracer_.surface_point(hit);
   const RayCone cone = view_.cone();
-  const SurfaceMaterial material(tracer_.frame(), point, cone.width + cone.spread * hit.t);   // bends the normal
+  const SurfaceMaterial material(tracer_.frame(), point, cone.width + cone.spread * hit.t);  // bends the normal
   const Vec3 normal = dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal;
   return {float(view_.depth(point.position)), point.object, normal};
 }

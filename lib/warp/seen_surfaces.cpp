@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNothingDepth = 1e10f;   // what Blender writes where nothing is
+constexpr float kNothingDepth = 1e10f;  // what Blender writes where nothing is
 
 FacePoint point_at(const SeenSurfaces& seen, std::size_t p) {
   return {seen.depth[p], seen.object_at(p), seen.normal_at(p)};
@@ -25,13 +25,14 @@ float facing(const FrameCamera& camera, Vec3 normal, double x, double y) {
 }
 
 std::string pixel_of(const std::string& name, const std::string& channel, std::size_t p, int width) {
-  return name + ": channel " + channel + ": pixel (" + std::to_string(p % std::size_t(width)) + ", " + std::to_string(p / std::size_t(width)) + "): ";
+  return name + ": channel " + channel + ": pixel (" + std::to_string(p % std::size_t(width)) + ", " +
+         std::to_string(p / std::size_t(width)) + "): ";
 }
 
 /// N of a pixel with length 1, or 0: not known. Other programs filter normals, and write any length.
 Vec3 unit_normal(Vec3 n) {
   const float length2_of = length2(n);
-  if (std::abs(length2_of - 1) < 1e-3f) return n;   // ours: its bits
+  if (std::abs(length2_of - 1) < 1e-3f) return n;  // ours: its bits
   const Vec3d wide(n);
   const double size = length(wide);
   return size > 0 ? Vec3(wide / size) : Vec3{};
@@ -55,7 +56,9 @@ std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCame
       for (std::size_t x = 0; x < width; ++x, ++p) {
         const FacePoint here = point_at(seen, p);
         // The larger tolerance of the two: the same answer from either side.
-        const auto differs = [&](std::size_t q) { return !same_face(here, point_at(seen, q), std::max(tolerance[p], tolerance[q])); };
+        const auto differs = [&](std::size_t q) {
+          return !same_face(here, point_at(seen, q), std::max(tolerance[p], tolerance[q]));
+        };
         std::uint8_t bits = 0;
         if (x + 1 < width && differs(p + 1)) bits |= 1;
         if (y + 1 < height) {
@@ -71,7 +74,9 @@ std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCame
     for (std::size_t y = first, p = first * width; y < last; ++y)
       for (std::size_t x = 0; x < width; ++x, ++p) {
         bool end = ends[p] != 0 || (x > 0 && (ends[p - 1] & 1));
-        if (y > 0) end |= (ends[p - width] & 4) || (x > 0 && (ends[p - width - 1] & 8)) || (x + 1 < width && (ends[p - width + 1] & 2));
+        if (y > 0)
+          end |= (ends[p - width] & 4) || (x > 0 && (ends[p - width - 1] & 8)) ||
+                 (x + 1 < width && (ends[p - width + 1] & 2));
         whole[p] = !end;
       }
   });
@@ -87,7 +92,8 @@ SeenSurfaces seen_in(const Image& image, const std::string& name) {
     float& z = seen.depth[p];
     if (z >= kNothingDepth) z = INFINITY;
     else if (!(z > 0))
-      throw InputError(pixel_of(name, "Z", p, image.width) + "depth is not above 0; Z is the distance along the view axis, +inf where nothing is seen");
+      throw InputError(pixel_of(name, "Z", p, image.width) +
+                       "depth is not above 0; Z is the distance along the view axis, +inf where nothing is seen");
   }
   if (const Channel* id = image.find("id.object"); id && !id->ids.empty()) seen.object = id->ids;
   const std::array<const Channel*, 3> n{image.find("N.X"), image.find("N.Y"), image.find("N.Z")};
@@ -97,7 +103,8 @@ SeenSurfaces seen_in(const Image& image, const std::string& name) {
   for (std::size_t p = 0; p < seen.normal.size(); ++p) {
     for (const Channel* component : n)
       if (!std::isfinite(component->values[p]))
-        throw InputError(pixel_of(name, component->name, p, image.width) + "not finite; a normal that is not known is 0");
+        throw InputError(pixel_of(name, component->name, p, image.width) +
+                         "not finite; a normal that is not known is 0");
     seen.normal[p] = unit_normal({n[0]->values[p], n[1]->values[p], n[2]->values[p]});
   }
   return seen;

@@ -6,9 +6,9 @@
 namespace tempolux {
 namespace {
 
-constexpr double kDrift = 0.15;         // degrees/s: an eye that rests still moves so fast over the picture
-constexpr double kUsefulBand = 0.9;     // of the display's highest frequency
-constexpr double kFastest = 80;         // degrees/s: beyond, eyes do not follow and see hardly anything
+constexpr double kDrift = 0.15;      // degrees/s: an eye that rests still moves so fast over the picture
+constexpr double kUsefulBand = 0.9;  // of the display's highest frequency
+constexpr double kFastest = 80;      // degrees/s: beyond, eyes do not follow and see hardly anything
 
 double sensitivity(double frequency, double speed) {
   constexpr double c0 = 1.14, c1 = 0.67, c2 = 1.7;
@@ -31,7 +31,7 @@ double highest_visible_frequency(double retinal_speed) {
 
 double slow_speed(double pixels_per_degree) {
   const double band = kUsefulBand * pixels_per_degree / 2;
-  double low = kDrift, high = kFastest;   // of an eye that does not follow, speed over the retina is that of the pattern
+  double low = kDrift, high = kFastest;  // of an eye that does not follow, speed over the retina is that of the pattern
   if (highest_visible_frequency(low) <= band) return kDrift;
   if (highest_visible_frequency(high) > band) return kFastest;
   for (int i = 0; i < 60; ++i) {

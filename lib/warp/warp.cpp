@@ -11,7 +11,8 @@
 namespace tempolux {
 namespace {
 
-/// Positions within a pixel that an edge is composed from: at first kParts, at most kMostParts where its surfaces differ much.
+/// Positions within a pixel that an edge is composed from: at first kParts, at most kMostParts where its surfaces
+/// differ much.
 constexpr std::size_t kParts = 8, kMostParts = 64;
 
 /// The first n points, n a power of two, of n rows and n columns, each met once (Hammersley's points), n = 8 to 64.
@@ -20,7 +21,7 @@ std::span<const RasterPoint> part_positions(std::size_t n) {
     std::array<std::array<RasterPoint, kMostParts>, 4> sets{};
     for (std::size_t set = 0, count = kParts; set < sets.size(); ++set, count *= 2)
       for (std::size_t i = 0; i < count; ++i) {
-        std::size_t mirrored = 0;   // the bits of i from the last to the first
+        std::size_t mirrored = 0;  // the bits of i from the last to the first
         for (std::size_t bit = 1; bit < count; bit *= 2) mirrored = 2 * mirrored + ((i & bit) != 0);
         sets[set][i] = {(double(i) + 0.5) / double(count), (double(mirrored) + 0.5) / double(count)};
       }
@@ -33,14 +34,10 @@ std::span<const RasterPoint> part_positions(std::size_t n) {
 
 std::uint32_t why_missing(const ComposedPixel& pixel) {
   switch (std::max(pixel.failed[0], pixel.failed[1])) {
-    case LookUp::edge:
-      return formats::why_edge;
-    case LookUp::deforming:
-      return formats::why_deforming;
-    case LookUp::hidden:
-      return formats::why_occlusion;
-    default:
-      return formats::why_border;
+    case LookUp::edge: return formats::why_edge;
+    case LookUp::deforming: return formats::why_deforming;
+    case LookUp::hidden: return formats::why_occlusion;
+    default: return formats::why_border;
   }
 }
 
@@ -96,13 +93,24 @@ struct Strip {
 class Warping {
  public:
   Warping(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options, WarpedFrame& frame)
-      : target_(target), keys_(keys), options_(options), frame_(frame), width_(std::size_t(target.seen->width)),
-        height_(std::size_t(target.seen->height)), whole_(whole_pixels(*target.seen, *target.camera)), compositor_(target, keys, options),
-        layers_(frame.names), masking_(target, keys, options, frame.names), edge_(target.seen->pixel_count()), centres_(target.seen->pixel_count()) {
-    summed_ = std::all_of(keys.begin(), keys.end(), [&](const WarpKey& k) { return layers_.complete_in(k.view->key()); });
+      : target_(target),
+        keys_(keys),
+        options_(options),
+        frame_(frame),
+        width_(std::size_t(target.seen->width)),
+        height_(std::size_t(target.seen->height)),
+        whole_(whole_pixels(*target.seen, *target.camera)),
+        compositor_(target, keys, options),
+        layers_(frame.names),
+        masking_(target, keys, options, frame.names),
+        edge_(target.seen->pixel_count()),
+        centres_(target.seen->pixel_count()) {
+    summed_ =
+        std::all_of(keys.begin(), keys.end(), [&](const WarpKey& k) { return layers_.complete_in(k.view->key()); });
     for (auto& plane : gloss_)
       if (masking_.judges_gloss()) plane.resize(target.seen->pixel_count());
-    for (std::size_t k = 0; k < keys.size() && masking_.light_may_differ(); ++k) light_[k].resize(target.seen->pixel_count());
+    for (std::size_t k = 0; k < keys.size() && masking_.light_may_differ(); ++k)
+      light_[k].resize(target.seen->pixel_count());
   }
 
   void run() {
@@ -110,7 +118,8 @@ class Warping {
       LookedUp points;
       ComposedPixel pixel{};
       Strip strip;
-      for (std::size_t p = first; p < last; p += WantedPoints::kMost) centres(p, std::min(p + WantedPoints::kMost, last), points, pixel, strip);
+      for (std::size_t p = first; p < last; p += WantedPoints::kMost)
+        centres(p, std::min(p + WantedPoints::kMost, last), points, pixel, strip);
     });
     if (target_.look)
       parallel_chunks(centres_.size(), 4096, [&](std::size_t first, std::size_t last) {
@@ -155,7 +164,8 @@ class Warping {
     do {
       const std::span<const RasterPoint> positions = part_positions(std::min(wanted, kMostParts));
       points.wanted.count = count = positions.size();
-      for (std::size_t i = 0; i < count; ++i) points.wanted.at[i] = {double(x) + positions[i].x, double(y) + positions[i].y};
+      for (std::size_t i = 0; i < count; ++i)
+        points.wanted.at[i] = {double(x) + positions[i].x, double(y) + positions[i].y};
       target_.look(std::span(points.wanted.at).first(count), points.wanted.face.data());
       compositor_.look_up(points);
       compositor_.mean(p, points, pixel);
@@ -165,7 +175,8 @@ class Warping {
     judge(p, pixel, int(count), wanted <= count);
     for (std::size_t c = 0; c < frame_.names.size(); ++c) {
       frame_.colour[c][p] = pixel.colour[c];
-      for (std::size_t k = 0; k < keys_.size() && options_.separate; ++k) frame_.candidates[k][c][p] = pixel.of_key[k][c];
+      for (std::size_t k = 0; k < keys_.size() && options_.separate; ++k)
+        frame_.candidates[k][c][p] = pixel.of_key[k][c];
     }
   }
 
@@ -187,8 +198,8 @@ class Warping {
     return spread;
   }
 
-  /// Is it to be traced, and why? count: of positions; known: enough of them. Layers are summed, and a key that does not give the whole pixel
-  /// is taken to give what was composed.
+  /// Is it to be traced, and why? count: of positions; known: enough of them. Layers are summed, and a key that does
+  /// not give the whole pixel is taken to give what was composed.
   void judge(std::size_t p, ComposedPixel& pixel, int count, bool known) {
     if (summed_) layers_.set(pixel.colour.data());
     std::array<const float*, 2> given{};
@@ -197,7 +208,8 @@ class Warping {
     std::uint32_t why = 0;
     if (pixel.missing) why |= why_missing(pixel);
     if (pixel.undersampled) why |= formats::why_undersampled;
-    if (pixel.resampled && !pixel.missing && !whole_[p] && (!known || !masking_.edge_agrees(given[0], given[1]))) why |= formats::why_edge;
+    if (pixel.resampled && !pixel.missing && !whole_[p] && (!known || !masking_.edge_agrees(given[0], given[1])))
+      why |= formats::why_edge;
     if (pixel.resampled) why |= masking_.of_moved_pixel(p, pixel.colour.data(), given[0], given[1]);
     frame_.why[p] = why;
     if (masking_.judges_gloss() && pixel.resampled && given[0] && given[1]) {
@@ -221,10 +233,10 @@ class Warping {
   LayerSum layers_;
   Masking masking_;
   bool summed_ = false;
-  std::vector<std::uint8_t> edge_;              ///< 1: composed of several positions
-  std::vector<std::array<float, 3>> centres_;   ///< R, G, B of what each pixel's centre shows
-  std::array<std::vector<float>, 3> gloss_;     ///< GlossInDoubt::error
-  std::array<std::vector<float>, 2> light_;     ///< by key, see Masking::mark_changed_light
+  std::vector<std::uint8_t> edge_;             ///< 1: composed of several positions
+  std::vector<std::array<float, 3>> centres_;  ///< R, G, B of what each pixel's centre shows
+  std::array<std::vector<float>, 3> gloss_;    ///< GlossInDoubt::error
+  std::array<std::vector<float>, 2> light_;    ///< by key, see Masking::mark_changed_light
 };
 
 }  // namespace

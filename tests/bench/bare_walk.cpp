@@ -34,14 +34,14 @@ struct Emitter {
   Vec3 a, b, c, normal;
   Rgb radiance{0.0f};
   bool two_sided = false;
-  double cumulative = 0;   ///< share of the flux of this and all before
+  double cumulative = 0;  ///< share of the flux of this and all before
 };
 
 struct Walk {
   RTCScene tree = nullptr;
   std::vector<Emitter> emitters;
-  std::vector<Rgb> albedo;   ///< by geometry
-  float offset = 0;          ///< m, off surfaces
+  std::vector<Rgb> albedo;  ///< by geometry
+  float offset = 0;         ///< m, off surfaces
 };
 
 /// xoroshiro64*: 32 random bits in a few cycles.
@@ -69,8 +69,8 @@ Walk make_walk(const SceneFrame& frame, RTCDevice device, bool robust) {
   for (const Surface& surface : frame.surfaces) {
     const Material& material = frame.materials[surface.material];
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.primitive->positions.size()));
+    auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                         sizeof(Vec3), surface.primitive->positions.size()));
     for (std::uint32_t v = 0; v < surface.primitive->positions.size(); ++v) p[v] = surface.position(v);
     const auto& triangles = surface.primitive->triangles;
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
@@ -82,7 +82,7 @@ Walk make_walk(const SceneFrame& frame, RTCDevice device, bool robust) {
     if (!material.emissive()) continue;
     for (const auto& t : triangles) {
       Emitter e{surface.position(t[0]), surface.position(t[1]), surface.position(t[2]), {},
-                material.emission, material.double_sided};
+                material.emission,      material.double_sided};
       const Vec3 n = cross(e.b - e.a, e.c - e.a);
       e.normal = normalize(surface.flipped ? -n : n);
       flux += double(length(n)) * double(max_component(e.radiance)) * (e.two_sided ? 2 : 1);
@@ -98,7 +98,7 @@ Walk make_walk(const SceneFrame& frame, RTCDevice device, bool robust) {
 
 struct Counts {
   std::uint64_t rays = 0, hits = 0;
-  double distance = 0;   ///< so that no ray can be left out
+  double distance = 0;  ///< so that no ray can be left out
 };
 
 void start(const Walk& walk, Generator& random, RTCRay& ray, Rgb& flux) {
@@ -110,8 +110,12 @@ void start(const Walk& walk, Generator& random, RTCRay& ray, Rgb& flux) {
   const Vec3 normal = e.two_sided && random.next() < 0.5f ? -e.normal : e.normal;
   const Vec3 origin = e.a * (1 - at.x - at.y) + e.b * at.x + e.c * at.y + normal * walk.offset;
   const Vec3 travel = Frame(normal).to_world(sample_hemisphere_cos({random.next(), random.next()}));
-  ray.org_x = origin.x; ray.org_y = origin.y; ray.org_z = origin.z;
-  ray.dir_x = travel.x; ray.dir_y = travel.y; ray.dir_z = travel.z;
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = travel.x;
+  ray.dir_y = travel.y;
+  ray.dir_z = travel.z;
   flux = e.radiance;
 }
 
@@ -141,8 +145,12 @@ void follow(const Walk& walk, Generator& random, Counts& counts) {
     if (dot(normal, travel) > 0) normal = -normal;
     const Vec3 origin = Vec3{ray.org_x, ray.org_y, ray.org_z} + travel * ray.tfar + normal * walk.offset;
     const Vec3 out = Frame(normal).to_world(sample_hemisphere_cos({random.next(), random.next()}));
-    ray.org_x = origin.x; ray.org_y = origin.y; ray.org_z = origin.z;
-    ray.dir_x = out.x; ray.dir_y = out.y; ray.dir_z = out.z;
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = out.x;
+    ray.dir_y = out.y;
+    ray.dir_z = out.z;
   }
 }
 
@@ -156,8 +164,7 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void run(const std::string& scene_file, int frame_number, std::uint64_t photons, unsigned threads,
-         bool robust) {
+void run(const std::string& scene_file, int frame_number, std::uint64_t photons, unsigned threads, bool robust) {
   const Scene scene = load_gltf(scene_file);
   const TimeOptions time;
   const SceneFrame frame = scene_at_frame(scene, segment_of(scene, frame_number, time), frame_number, time);

@@ -1,9 +1,9 @@
 // Gather rays with their look-ups against bare rtcIntersect1: how much of the time of final gathering is Embree's.
 //
-// The bare side traces the same rays from the records; and for each hit that FinalGather finds too near to read a point,
-// as it does, one more ray from there and, as often as it traces one, a shadow ray (rtcOccluded1). "bare_over_gather" compares the whole,
-// "first_over_gather" leaves those further rays out of the bare side alone. Rays that ask whether a point can be
-// reached count as look-up. The sides alternate; medians. JSON on stdout.
+// The bare side traces the same rays from the records; and for each hit that FinalGather finds too near to read a
+// point, as it does, one more ray from there and, as often as it traces one, a shadow ray (rtcOccluded1).
+// "bare_over_gather" compares the whole, "first_over_gather" leaves those further rays out of the bare side alone. Rays
+// that ask whether a point can be reached count as look-up. The sides alternate; medians. JSON on stdout.
 //
 //     gather_rays SCENE.glb [--frame F] [--photons N] [--records N] [--rays N]
 #include <embree3/rtcore.h>
@@ -66,8 +66,8 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
   for (const Surface& surface : frame.surfaces) {
     const auto& triangles = surface.primitive->triangles;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.primitive->positions.size()));
+    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                sizeof(Vec3), surface.primitive->positions.size()));
     for (std::uint32_t v = 0; v < surface.primitive->positions.size(); ++v) vertices[v] = surface.position(v);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                                sizeof triangles[0], triangles.size());
@@ -130,8 +130,8 @@ double time_bare_shadow(RTCScene tree, const std::vector<Ray>& rays, double& dis
   return cpu_seconds() - start;
 }
 
-/// What follows at near hits: cosine rays from the hits of every n-th ray, and shadow rays from some of these. Shares are
-/// those of all rays.
+/// What follows at near hits: cosine rays from the hits of every n-th ray, and shadow rays from some of these. Shares
+/// are those of all rays.
 struct FurtherRays {
   std::vector<Ray> cosine, shadow;
 
@@ -142,8 +142,8 @@ struct FurtherRays {
       Hit hit;
       if (!tracer.intersect(rays[i], hit)) continue;
       const SurfacePoint point = tracer.surface_point(hit);
-      const Vec3 normal = dot(point.normal_geometric, rays[i].direction) > 0 ? -point.normal_geometric
-                                                                            : point.normal_geometric;
+      const Vec3 normal =
+          dot(point.normal_geometric, rays[i].direction) > 0 ? -point.normal_geometric : point.normal_geometric;
       const PathRandom random(2, i);
       cosine.push_back(spawn_ray(point, Frame(normal).to_world(sample_hemisphere_cos(random.get2(0, Purpose::test)))));
       LightSample light;
@@ -154,8 +154,7 @@ struct FurtherRays {
   }
 };
 
-double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, GatherCounts& counts,
-                   double& sum) {
+double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, GatherCounts& counts, double& sum) {
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = mix64(i);
   const std::size_t each = gather.cell_order().size();
@@ -164,7 +163,7 @@ double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, Gath
   const double start = cpu_seconds();
   for (std::size_t first = 0; first < rays.size(); first += each) {
     gather.incoming()(std::span(rays).subspan(first, each), std::span(keys).subspan(first, each), radiance, distance,
-                    counts);
+                      counts);
     for (const Rgb& l : radiance) sum += double(l.g);
   }
   return cpu_seconds() - start;
@@ -221,10 +220,11 @@ void run(const Options& options) {
   std::printf(
       "{\"rays\": %zu, \"points\": %zu, \"photons\": %zu, \"estimate_points_cpu_s\": %.4f, \"bare_cpu_s\": %.4f, "
       "\"bare_first_cpu_s\": %.4f, \"gather_cpu_s\": %.4f, \"gather_again_cpu_s\": %.4f, \"bare_over_gather\": %.3f, "
-      "\"first_over_gather\": %.3f, \"rays_per_gather_ray\": %.3f, \"shadow_rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f}\n",
+      "\"first_over_gather\": %.3f, \"rays_per_gather_ray\": %.3f, \"shadow_rays_per_gather_ray\": %.3f, "
+      "\"mean_distance_m\": %.3f}\n",
       rays.size(), points.size(), photons.size(), estimate, median(bare), median(bare_first), median(filling),
-      median(with_lookup), median(ratio), median(ratio_first), per_ray, double(further.shadow.size()) / double(rays.size()),
-      distance / double(5 * rays.size()));
+      median(with_lookup), median(ratio), median(ratio_first), per_ray,
+      double(further.shadow.size()) / double(rays.size()), distance / double(5 * rays.size()));
   rtcReleaseScene(tree);
   rtcReleaseDevice(device);
 }
@@ -236,16 +236,11 @@ int main(int argc, char** argv) {
   tempolux::Options options;
   for (int i = 1; i < argc; ++i) {
     const bool valued = i + 1 < argc;
-    if (valued && !std::strcmp(argv[i], "--frame"))
-      options.frame = std::atoi(argv[++i]);
-    else if (valued && !std::strcmp(argv[i], "--photons"))
-      options.photons = std::strtoull(argv[++i], nullptr, 10);
-    else if (valued && !std::strcmp(argv[i], "--records"))
-      options.records = std::max(1, std::atoi(argv[++i]));
-    else if (valued && !std::strcmp(argv[i], "--rays"))
-      options.rays = std::max(1, std::atoi(argv[++i]));
-    else
-      options.scene = argv[i];
+    if (valued && !std::strcmp(argv[i], "--frame")) options.frame = std::atoi(argv[++i]);
+    else if (valued && !std::strcmp(argv[i], "--photons")) options.photons = std::strtoull(argv[++i], nullptr, 10);
+    else if (valued && !std::strcmp(argv[i], "--records")) options.records = std::max(1, std::atoi(argv[++i]));
+    else if (valued && !std::strcmp(argv[i], "--rays")) options.rays = std::max(1, std::atoi(argv[++i]));
+    else options.scene = argv[i];
   }
   try {
     tempolux::run(options);

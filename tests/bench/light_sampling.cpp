@@ -79,8 +79,8 @@ void measure(const char* name, const LightScene& scene, bool last) {
                                                   scene.frame.surfaces[0].positions[0], {0, 0, -1}));
     best_pdf = std::min(best_pdf, seconds_since(start) / kCount);
   }
-  std::printf("  {\"lights\": \"%s\", \"slots\": %zu, \"build_ms\": %.2f, \"sample_ns\": %.1f, ", name,
-              lights.count(), build * 1e3, best * 1e9);
+  std::printf("  {\"lights\": \"%s\", \"slots\": %zu, \"build_ms\": %.2f, \"sample_ns\": %.1f, ", name, lights.count(),
+              build * 1e3, best * 1e9);
   if (best_pdf < 1) std::printf("\"pdf_ns\": %.1f, ", best_pdf * 1e9);
   std::printf("\"mean_irradiance\": %.6g}%s\n", sum / kCount / 5, last ? "" : ",");
 }
@@ -94,7 +94,6 @@ int main() {
   measure("one bulb", bulbs(1), false);
   measure("four bulbs", bulbs(4), false);
   measure("ceiling lamp", ceiling_lamp(), false);
-  for (const int count : {1, 4, 100, 1000, 10000, 100000})
-    measure("small triangles", ring(count), count == 100000);
+  for (const int count : {1, 4, 100, 1000, 10000, 100000}) measure("small triangles", ring(count), count == 100000);
   std::printf("]\n");
 }

@@ -83,10 +83,13 @@ struct Cloud {
   const std::vector<SurfacePoint>& points;
   std::size_t kdtree_get_point_count() const { return points.size(); }
   float kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i].position[int(axis)]; }
-  template <class Box> bool kdtree_get_bbox(Box&) const { return false; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
 };
-using Nanoflann = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3,
-                                                      std::uint32_t>;
+using Nanoflann =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::uint32_t>;
 
 /// nanoflann's own bounded search needs its own result set: this is its KNNResultSet with a first bound.
 struct BoundedResult : nanoflann::KNNResultSet<float, std::uint32_t> {
@@ -97,12 +100,12 @@ struct BoundedResult : nanoflann::KNNResultSet<float, std::uint32_t> {
 
 struct Contender {
   std::string name;
-  std::function<float(Vec3)> search;   // returns something that depends on the result
+  std::function<float(Vec3)> search;  // returns something that depends on the result
   std::vector<double> seconds{};
 };
 
-void run(const char* title, std::vector<Contender> contenders, const std::vector<SurfacePoint>& queries,
-         int rounds, bool last) {
+void run(const char* title, std::vector<Contender> contenders, const std::vector<SurfacePoint>& queries, int rounds,
+         bool last) {
   std::vector<double> sums(contenders.size());
   for (int round = 0; round < rounds; ++round)
     for (std::size_t c = 0; c < contenders.size(); ++c) {
@@ -123,8 +126,7 @@ void run(const char* title, std::vector<Contender> contenders, const std::vector
   for (std::size_t i = 2; i < contenders.size(); ++i) {
     std::vector<double> ratio;
     for (std::size_t r = 0; r < contenders[i].seconds.size(); ++r)
-      ratio.push_back(std::min(contenders[0].seconds[r], contenders[1].seconds[r]) /
-                      contenders[i].seconds[r]);
+      ratio.push_back(std::min(contenders[0].seconds[r], contenders[1].seconds[r]) / contenders[i].seconds[r]);
     std::printf("\"%s_ratio\": %.2f, ", contenders[i].name.c_str(), median(ratio));
   }
   std::printf("\"sum\": %.6g}%s\n", sums[0], last ? "" : ",");
@@ -145,7 +147,9 @@ std::pair<double, double> build_times(Build build, int rounds) {  // CPU s, wall
 class Benchmark {
  public:
   Benchmark(std::size_t photon_count, std::size_t query_count, int rounds)
-      : rounds_(rounds), points_(surface_points(photon_count, 1)), queries_(surface_points(query_count, 2)),
+      : rounds_(rounds),
+        points_(surface_points(photon_count, 1)),
+        queries_(surface_points(query_count, 2)),
         flann10_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(10)),
         flann32_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(32)) {
     for (const SurfacePoint& p : points_) {
@@ -156,8 +160,7 @@ class Benchmark {
   }
 
   void run_all() {
-    std::printf("{\n  \"photons\": %zu, \"queries\": %zu, \"rounds\": %d,\n", points_.size(), queries_.size(),
-                rounds_);
+    std::printf("{\n  \"photons\": %zu, \"queries\": %zu, \"rounds\": %d,\n", points_.size(), queries_.size(), rounds_);
     builds();
     index_ = PhotonIndex(photons_);
     bound_ = bound_of(50);
@@ -184,9 +187,10 @@ class Benchmark {
     const auto flann10 = build_times([&] { flann10_.buildIndex(); }, rounds_);
     const auto flann32 = build_times([&] { flann32_.buildIndex(); }, rounds_);
     const auto ours = build_times([&] { PhotonIndex{photons_}; }, rounds_);
-    std::printf("  \"build\": {\"nanoflann10_cpu_s\": %.4f, \"nanoflann32_cpu_s\": %.4f, "
-                "\"ours_cpu_s\": %.4f, \"ours_wall_s\": %.4f},\n",
-                flann10.first, flann32.first, ours.first, ours.second);
+    std::printf(
+        "  \"build\": {\"nanoflann10_cpu_s\": %.4f, \"nanoflann32_cpu_s\": %.4f, "
+        "\"ours_cpu_s\": %.4f, \"ours_wall_s\": %.4f},\n",
+        flann10.first, flann32.first, ours.first, ours.second);
   }
 
   float flann_nearest(const Nanoflann& tree, Vec3 p, std::size_t k, float bound2) {
@@ -224,12 +228,14 @@ class Benchmark {
     const auto flann = [this](const Nanoflann& tree, Vec3 p) {
       return flann_nearest(tree, p, 50, std::numeric_limits<float>::max());
     };
-    run("k50_random_order", {{"nanoflann10", [=, this](Vec3 p) { return flann(flann10_, p); }},
-                             {"nanoflann32", [=, this](Vec3 p) { return flann(flann32_, p); }},
-                             {"sets", [this](Vec3 p) {
-                                index_.find_nearest({.point = p}, 50, list_);
-                                return list_.distance2()[list_.farthest()];
-                              }}},
+    run("k50_random_order",
+        {{"nanoflann10", [=, this](Vec3 p) { return flann(flann10_, p); }},
+         {"nanoflann32", [=, this](Vec3 p) { return flann(flann32_, p); }},
+         {"sets",
+          [this](Vec3 p) {
+            index_.find_nearest({.point = p}, 50, list_);
+            return list_.distance2()[list_.farthest()];
+          }}},
         queries, rounds_, false);
   }
 
@@ -240,12 +246,14 @@ class Benchmark {
       params.sorted = false;
       return float(tree.radiusSearch(&p.x, bound_ * bound_, matches_, params));
     };
-    run("within", {{"nanoflann10", [=, this](Vec3 p) { return flann(flann10_, p); }},
-                   {"nanoflann32", [=, this](Vec3 p) { return flann(flann32_, p); }},
-                   {"ours", [this](Vec3 p) {
-                      index_.find_within({.point = p, .max_radius = bound_}, list_);
-                      return float(list_.count());
-                    }}},
+    run("within",
+        {{"nanoflann10", [=, this](Vec3 p) { return flann(flann10_, p); }},
+         {"nanoflann32", [=, this](Vec3 p) { return flann(flann32_, p); }},
+         {"ours",
+          [this](Vec3 p) {
+            index_.find_within({.point = p, .max_radius = bound_}, list_);
+            return float(list_.count());
+          }}},
         queries_, rounds_, false);
   }
 

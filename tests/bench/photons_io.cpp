@@ -43,8 +43,7 @@ double median(std::vector<double> values) {
 /// A sink that writes to a new file.
 class OutputFile {
  public:
-  explicit OutputFile(const std::string& path)
-      : file_(::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644)) {}
+  explicit OutputFile(const std::string& path) : file_(::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644)) {}
   ~OutputFile() { ::close(file_); }
   void write(const void* data, std::size_t size) {
     if (::write(file_, data, size) != ssize_t(size)) std::perror("write"), std::exit(3);
@@ -57,9 +56,7 @@ class OutputFile {
 std::vector<PhotonBlock> make_blocks(std::size_t count, std::size_t size) {
   std::vector<PhotonBlock> blocks((count + size - 1) / size);
   std::uint32_t state = 1;
-  const auto uniform = [&state] {
-    return float((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f;
-  };
+  const auto uniform = [&state] { return float((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f; };
   for (PhotonBlock& block : blocks) {
     block.photons.resize(std::min(size, count - std::size_t(&block - blocks.data()) * size));
     for (Photon& p : block.photons) {
@@ -134,8 +131,8 @@ int main(int argc, char** argv) {
   std::printf("{\"photons\": %zu, \"block\": %zu,\n", count, block);
   std::printf(" \"write_gb_per_s\": %.3f, \"raw_write_gb_per_s\": %.3f, \"write_ratio\": %.3f,\n",
               1e-9 * bytes / written, 1e-9 * bytes / raw_written, raw_written / written);
-  std::printf(" \"read_gb_per_s\": %.3f, \"raw_read_gb_per_s\": %.3f, \"read_ratio\": %.3f,\n",
-              1e-9 * bytes / loaded, 1e-9 * bytes / raw_loaded, raw_loaded / loaded);
+  std::printf(" \"read_gb_per_s\": %.3f, \"raw_read_gb_per_s\": %.3f, \"read_ratio\": %.3f,\n", 1e-9 * bytes / loaded,
+              1e-9 * bytes / raw_loaded, raw_loaded / loaded);
   std::printf(" \"crc_folded_gb_per_s\": %.2f, \"crc_tables_gb_per_s\": %.2f}\n",
               crc32_has_folding() ? crc_gb_per_s(crc32_folded) : 0.0, crc_gb_per_s(crc32_tables));
 }

@@ -1,9 +1,10 @@
-// tests/bench/replace_photons.cpp -- what it costs to replace photons in the sums of a volume, by how many the volume holds.
+// tests/bench/replace_photons.cpp -- what it costs to replace photons in the sums of a volume, by how many the volume
+// holds.
 //
 //     replace_photons [--replaced 30000]
 //
-// CPU seconds of one thread for taking so many photons away and adding as many, sides alternating, median of 9; totals of 300k to 30M
-// photons spread over 2 million cells. It should not depend on the total.
+// CPU seconds of one thread for taking so many photons away and adding as many, sides alternating, median of 9; totals
+// of 300k to 30M photons spread over 2 million cells. It should not depend on the total.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -38,7 +39,8 @@ Deposit deposit(std::uint64_t i) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t replaced = argc > 2 && std::strcmp(argv[1], "--replaced") == 0 ? std::size_t(std::atoll(argv[2])) : 30000;
+  const std::size_t replaced =
+      argc > 2 && std::strcmp(argv[1], "--replaced") == 0 ? std::size_t(std::atoll(argv[2])) : 30000;
   MajorantGrid majorants({{0, 0, 0}, {1, 1, 1}}, {16, 16, 16});
   for (float& value : majorants.values()) value = 1;
   const std::vector<std::uint64_t> totals{300'000, 1'000'000, 3'000'000, 30'000'000};
@@ -62,7 +64,7 @@ int main(int argc, char** argv) {
       for (const Deposit& d : old) volumes[v].add(d.at, d.worth, -1);
       for (const Deposit& d : fresh) volumes[v].add(d.at, d.worth);
       seconds[v].push_back(cpu_seconds() - start);
-      std::swap(old, fresh);                 // back again in the next round; for all volumes alike after two
+      std::swap(old, fresh);  // back again in the next round; for all volumes alike after two
       for (const Deposit& d : old) volumes[v].add(d.at, d.worth, -1);
       for (const Deposit& d : fresh) volumes[v].add(d.at, d.worth);
       std::swap(old, fresh);

@@ -30,16 +30,13 @@ TEST(Frames, AreReadAsWritten) {
   EXPECT_EQ(parse_frames("0-10x100"), Frames({0}));
 }
 
-TEST(Frames, KeepTheirOrderAndDropDuplicates) {
-  EXPECT_EQ(parse_frames("5,1-3,2,5-6"), Frames({5, 1, 2, 3, 6}));
-}
+TEST(Frames, KeepTheirOrderAndDropDuplicates) { EXPECT_EQ(parse_frames("5,1-3,2,5-6"), Frames({5, 1, 2, 3, 6})); }
 
 TEST(Frames, MalformedRangesAreInputErrors) {
   for (const char* text :
-       {"",     ",",     "1,",         ",1",         "a",           "1-",          "1--",
-        "1-2x", "1-2x0", "1-2x-1",     "1-2z3",      "1x2",         "1.5",         " 1",
-        "1 ",   "+1",    "1-2-3",      "0-5y1",      "99999999999", "0-200000000", "0-99999999",
-        "1-2,", "\xff",  "2147483647", "-2147483648"})
+       {"",           ",",    "1,",   ",1",         "a",          "1-", "1--",   "1-2x",  "1-2x0",       "1-2x-1",
+        "1-2z3",      "1x2",  "1.5",  " 1",         "1 ",         "+1", "1-2-3", "0-5y1", "99999999999", "0-200000000",
+        "0-99999999", "1-2,", "\xff", "2147483647", "-2147483648"})
     EXPECT_THROW(parse_frames(text), InputError) << "'" << text << "'";
 }
 
@@ -88,8 +85,7 @@ TEST(FrameNames, AnyOtherPerCentSignIsAnInputError) {
 }
 
 TEST(FrameNames, KnowWhetherTheyHaveAPattern) {
-  for (const char* text : {"#", "f.####.exr", "%d", "f%04d", "%%%d"})
-    EXPECT_TRUE(has_frame_pattern(text)) << text;
+  for (const char* text : {"#", "f.####.exr", "%d", "f%04d", "%%%d"}) EXPECT_TRUE(has_frame_pattern(text)) << text;
   for (const char* text : {"", "f.exr", "%%", "%%d", "100%%"}) EXPECT_FALSE(has_frame_pattern(text)) << text;
 }
 
@@ -151,8 +147,7 @@ TEST(Bytes, AreBinary) {
   EXPECT_EQ(parse_bytes("300MiB"), 314572800u);
   EXPECT_EQ(parse_bytes("1.5GiB"), 1610612736u);
   EXPECT_EQ(parse_bytes("1TiB"), 1ull << 40);
-  for (const char* text :
-       {"", "KiB", "1iB", "1Ki", "1KiBB", "-1K", "1.0001K", "8388608TiB", "16777217TiB", "1PiB"})
+  for (const char* text : {"", "KiB", "1iB", "1Ki", "1KiBB", "-1K", "1.0001K", "8388608TiB", "16777217TiB", "1PiB"})
     EXPECT_THROW(parse_bytes(text), InputError) << "'" << text << "'";
 }
 
@@ -163,8 +158,8 @@ TEST(Sizes, AreWidthTimesHeight) {
   EXPECT_EQ(height, 360);
   parse_size("1x65536", width, height);
   EXPECT_EQ(height, 65536);
-  for (const char* text : {"", "x", "640", "640x", "x360", "0x1", "1x0", "-1x1", "65537x1", "640x360x2",
-                           "640X360", "6 40x1", "640x360 ", "99999999999x1"})
+  for (const char* text : {"", "x", "640", "640x", "x360", "0x1", "1x0", "-1x1", "65537x1", "640x360x2", "640X360",
+                           "6 40x1", "640x360 ", "99999999999x1"})
     EXPECT_THROW(parse_size(text, width, height), InputError) << "'" << text << "'";
   EXPECT_EQ(height, 65536) << "an error leaves the values alone";
 }
@@ -184,15 +179,12 @@ TEST(AllParsers, TakeAnyBytes) {
     const PathRandom random(3, trial);
     std::string text;
     const std::uint64_t length = random.bits(0, Purpose::test) % 9;
-    for (std::uint32_t i = 1; i <= length; ++i)
-      text += letters[random.bits(i, Purpose::test) % letters.size()];
+    for (std::uint32_t i = 1; i <= length; ++i) text += letters[random.bits(i, Purpose::test) % letters.size()];
     int width = 0, height = 0;
     const auto answers = [&](auto&& parse) {
       try {
         parse();
-      } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()), "");
-      }
+      } catch (const InputError& error) { EXPECT_NE(std::string(error.what()), ""); }
     };
     answers([&] { EXPECT_LE(parse_frames(text).size(), 1000000u); });
     answers([&] {

@@ -47,9 +47,7 @@ int main(int argc, char** argv) {
   unsigned pause_us = 0;
   tool.app().add_option("scene", scene, "a name; not opened")->required();
   tool.app().add_option("--work", work, "write, or how to fail")->capture_default_str();
-  tool.app()
-      .add_option("--pause", pause_us, "microseconds to sleep before each 64 KiB")
-      ->capture_default_str();
+  tool.app().add_option("--pause", pause_us, "microseconds to sleep before each 64 KiB")->capture_default_str();
   tool.output_option(output, "the file to write")->required();
   tool.output_option(second, "another file to write", "--second");
   tool.bytes_option("--bytes", bytes, "size of the files");

@@ -21,8 +21,7 @@ std::uint32_t crc32_by_bits(const unsigned char* p, std::size_t size) {
 std::vector<unsigned char> bytes_of(std::size_t size) {
   std::vector<unsigned char> bytes(size);
   std::uint32_t state = 1;
-  for (unsigned char& byte : bytes)
-    byte = static_cast<unsigned char>((state = state * 1664525u + 1013904223u) >> 24);
+  for (unsigned char& byte : bytes) byte = static_cast<unsigned char>((state = state * 1664525u + 1013904223u) >> 24);
   return bytes;
 }
 

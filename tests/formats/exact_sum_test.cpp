@@ -18,8 +18,7 @@ double sum_of(const std::vector<float>& values) {
 
 TEST(ExactSum, OfNothingAndOfOneIsThatValue) {
   EXPECT_EQ(sum_of({}), 0.0);
-  for (float value :
-       {0.0f, -0.0f, 1.0f, -1.0f, 0.1f, 1e-45f, -1e-45f, 1.17549435e-38f, 1e38f, -3.4028235e38f})
+  for (float value : {0.0f, -0.0f, 1.0f, -1.0f, 0.1f, 1e-45f, -1e-45f, 1.17549435e-38f, 1e38f, -3.4028235e38f})
     EXPECT_EQ(sum_of({value}), double(value)) << value;
   for (int e = -149; e < 128; ++e) EXPECT_EQ(sum_of({std::ldexp(1.0f, e)}), std::ldexp(1.0, e)) << e;
 }
@@ -55,7 +54,7 @@ TEST(ExactSum, HasNoOrderAndJoins) {
 
 // 10^8 times 2^-40 is 9e-5 beside 2^20, where float32 adds nothing of it and float64 rounds each term.
 TEST(ExactSum, OfHundredMillionTinyTermsBesideALargeOneIsExact) {
-  volatile float tiny = 0x1p-40f;   // volatile: else the compiler multiplies
+  volatile float tiny = 0x1p-40f;  // volatile: else the compiler multiplies
   ExactSum sum;
   sum.add(0x1p20f);
   for (int i = 0; i < 100000000; ++i) sum.add(tiny);

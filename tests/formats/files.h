@@ -32,9 +32,7 @@ class Folder {
   std::string path_;
 };
 
-inline void save(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
+inline void save(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 inline std::string load(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -51,8 +49,7 @@ inline std::string worked_example(const std::string& path) {
     if (!here || line.rfind("    ", 0) != 0) continue;
     std::istringstream digits(line.substr(4, line.find("  ", 4) - 4));
     for (std::string word; digits >> word;)
-      for (std::size_t i = 0; i + 1 < word.size(); i += 2)
-        bytes += char(std::stoi(word.substr(i, 2), nullptr, 16));
+      for (std::size_t i = 0; i + 1 < word.size(); i += 2) bytes += char(std::stoi(word.substr(i, 2), nullptr, 16));
   }
   return bytes;
 }
@@ -68,9 +65,7 @@ inline std::string fault_of(const Folder& folder, const std::string& bytes, cons
   try {
     read(path);
     return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  } catch (const InputError& error) { return error.what(); }
 }
 
 inline void expect_every_truncation_refused(const std::string& whole, const Read& read) {
@@ -99,9 +94,7 @@ inline int expect_files(const std::string& folder, bool good, const Read& read) 
     std::string fault;
     try {
       read(entry.path());
-    } catch (const InputError& error) {
-      fault = error.what();
-    }
+    } catch (const InputError& error) { fault = error.what(); }
     EXPECT_EQ(fault.empty(), good) << entry.path() << ": " << fault;
     const std::string name = entry.path().filename();
     const auto has = [](const std::string& text, const char* part) { return text.find(part) != text.npos; };

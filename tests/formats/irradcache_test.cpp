@@ -16,12 +16,10 @@ using namespace testing;
 constexpr std::uint32_t kAllColumns = column_influence | column_update | column_clearance;
 const std::string kPage = "../formats/irradcache/irradcache.md", kFiles = "formats/irradcache/";
 
-std::string bytes_of(const IrradcacheHeader& header,
-                     const std::vector<std::vector<IrradianceCacheRecord>>& parts) {
+std::string bytes_of(const IrradcacheHeader& header, const std::vector<std::vector<IrradianceCacheRecord>>& parts) {
   std::string bytes;
   IrradcacheWriter writer(
-      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
-      header);
+      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, header);
   for (const auto& part : parts) writer.write(part);
   writer.finish();
   return bytes;
@@ -47,8 +45,7 @@ IrradianceCacheRecord record(std::uint32_t i, std::uint32_t columns = 0) {
   if (columns & column_clearance) r.clearance_reach = x + 1, r.clearance = {std::uint8_t(i), 0, 255};
   return r;
 }
-std::vector<IrradianceCacheRecord> records(std::uint32_t count, std::uint32_t columns = 0,
-                                           std::uint32_t first = 0) {
+std::vector<IrradianceCacheRecord> records(std::uint32_t count, std::uint32_t columns = 0, std::uint32_t first = 0) {
   std::vector<IrradianceCacheRecord> all;
   for (std::uint32_t i = first; i < first + count; ++i) all.push_back(record(i, columns));
   return all;
@@ -166,22 +163,17 @@ TEST(Irradcache, APipeCanBeRead) {
 }
 
 TEST(Irradcache, EveryTruncationIsAnError) {
-  expect_every_truncation_refused(
-      bytes_of(rich_header(), {records(2, kAllColumns), records(1, kAllColumns, 2)}), read);
+  expect_every_truncation_refused(bytes_of(rich_header(), {records(2, kAllColumns), records(1, kAllColumns, 2)}), read);
 }
 
 TEST(Irradcache, EveryFlippedBitIsAnError) {
-  expect_every_flipped_bit_refused(
-      bytes_of(rich_header(), {records(2, kAllColumns), records(1, kAllColumns, 2)}), read);
+  expect_every_flipped_bit_refused(bytes_of(rich_header(), {records(2, kAllColumns), records(1, kAllColumns, 2)}),
+                                   read);
 }
 
-TEST(Irradcache, AcceptsEveryFileOfTheFolderAccept) {
-  EXPECT_GE(expect_files(kFiles + "accept", true, read), 15);
-}
+TEST(Irradcache, AcceptsEveryFileOfTheFolderAccept) { EXPECT_GE(expect_files(kFiles + "accept", true, read), 15); }
 
-TEST(Irradcache, RefusesEveryFileOfTheFolderRefuse) {
-  EXPECT_GE(expect_files(kFiles + "refuse", false, read), 70);
-}
+TEST(Irradcache, RefusesEveryFileOfTheFolderRefuse) { EXPECT_GE(expect_files(kFiles + "refuse", false, read), 70); }
 
 // 65536 records of 120 bytes.
 TEST(Irradcache, CountsAreComparedWithTheBytesLeft) {
@@ -230,8 +222,8 @@ TEST(Irradcache, DigestIsOfTheDataAlone) {
   EXPECT_NE(bare, whole);
   other.columns = kAllColumns;
   std::vector<IrradianceCacheRecord> zeros = records(5);
-  for (auto& r : zeros) r.clearance_reach = 1;   // which cannot be 0
-  EXPECT_NE(digest(other, {zeros}), bare);       // a column of zeros is more than no column
+  for (auto& r : zeros) r.clearance_reach = 1;  // which cannot be 0
+  EXPECT_NE(digest(other, {zeros}), bare);      // a column of zeros is more than no column
   const auto changed = [&](const std::function<void(IrradianceCacheRecord&)>& change) {
     std::vector<IrradianceCacheRecord> all = records(5, kAllColumns);
     change(all[4]);

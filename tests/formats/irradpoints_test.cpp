@@ -15,12 +15,10 @@ using namespace testing;
 
 const std::string kPage = "../formats/irradpoints/irradpoints.md", kFiles = "formats/irradpoints/";
 
-std::string bytes_of(const IrradpointsHeader& header,
-                     const std::vector<std::vector<IrradiancePointRecord>>& parts) {
+std::string bytes_of(const IrradpointsHeader& header, const std::vector<std::vector<IrradiancePointRecord>>& parts) {
   std::string bytes;
   IrradpointsWriter writer(
-      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
-      header);
+      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, header);
   for (const auto& part : parts) writer.write(part);
   writer.finish();
   return bytes;
@@ -72,8 +70,7 @@ TEST(Irradpoints, WorkedExampleOfThePageIsWhatTheWriterWrites) {
   IrradiancePointRecord a, b;
   a = {{1, 2, 3},   encode_normal({0, 1, 0}), 7, SurfaceSet::static_set, 0, 0.125f, {0.5f, 0.25f, 0.125f}, {},
        {2, 1, 0.5f}};
-  b = {{-1, 0, 0.5f},        encode_normal({-1, 0, 0}), 8, SurfaceSet::dynamic_set, 0, 0, {}, {},
-       {0.25f, 0.25f, 0.25f}};
+  b = {{-1, 0, 0.5f}, encode_normal({-1, 0, 0}), 8, SurfaceSet::dynamic_set, 0, 0, {}, {}, {0.25f, 0.25f, 0.25f}};
   const std::string bytes = bytes_of(header, {{a, b}});
   EXPECT_EQ(bytes, worked_example(kPage));
   EXPECT_EQ(bytes, load(kFiles + "accept/worked-example.irradpoints"));
@@ -143,13 +140,9 @@ TEST(Irradpoints, EveryFlippedBitIsAnError) {
   expect_every_flipped_bit_refused(bytes_of(header_of_two_kinds(), {points(2), points(1, 2)}), read);
 }
 
-TEST(Irradpoints, AcceptsEveryFileOfTheFolderAccept) {
-  EXPECT_GE(expect_files(kFiles + "accept", true, read), 12);
-}
+TEST(Irradpoints, AcceptsEveryFileOfTheFolderAccept) { EXPECT_GE(expect_files(kFiles + "accept", true, read), 12); }
 
-TEST(Irradpoints, RefusesEveryFileOfTheFolderRefuse) {
-  EXPECT_GE(expect_files(kFiles + "refuse", false, read), 60);
-}
+TEST(Irradpoints, RefusesEveryFileOfTheFolderRefuse) { EXPECT_GE(expect_files(kFiles + "refuse", false, read), 60); }
 
 // 65536 points of 24 bytes and two kinds of 12.
 TEST(Irradpoints, CountsAreComparedWithTheBytesLeft) {
@@ -164,8 +157,7 @@ TEST(Irradpoints, MessagesNameOffsetOfTheRecord) {
   const std::string bytes = load(kFiles + "refuse/position-nan.irradpoints");
   const std::size_t offset = bytes.find("IRPT", 16) + 12;
   EXPECT_NE(fault_of(folder, bytes, read)
-                .find("x.file: byte " + std::to_string(offset) +
-                      ": point 0 of the block: position is not finite; "),
+                .find("x.file: byte " + std::to_string(offset) + ": point 0 of the block: position is not finite; "),
             std::string::npos)
       << fault_of(folder, bytes, read);
 }
@@ -183,8 +175,7 @@ TEST(Irradpoints, TotalsAreExactForAnyOrderAndCut) {
   for (const auto& parts : std::vector<std::vector<std::vector<IrradiancePointRecord>>>{
            {{of(large), of(small), of(small)}}, {{of(small)}, {of(large)}, {of(small)}}}) {
     save(folder / "a", bytes_of(header_of_two_kinds(), parts));
-    EXPECT_EQ(load_irradpoints(folder / "a").totals.direct,
-              (std::array<double, 3>{0x1p60 + 0x1p8, 0, 0x1p60 + 0x1p8}));
+    EXPECT_EQ(load_irradpoints(folder / "a").totals.direct, (std::array<double, 3>{0x1p60 + 0x1p8, 0, 0x1p60 + 0x1p8}));
   }
 }
 

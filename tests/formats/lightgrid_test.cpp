@@ -43,7 +43,8 @@ LightgridFile rich() {
 
 std::string bytes_of(const LightgridFile& file) {
   std::string bytes;
-  write_lightgrid([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, file);
+  write_lightgrid([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                  file);
   return bytes;
 }
 

@@ -70,7 +70,8 @@ MeshirradFile rich() {
 
 std::string bytes_of(const MeshirradFile& file) {
   std::string bytes;
-  write_meshirrad([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, file);
+  write_meshirrad([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                  file);
   return bytes;
 }
 
@@ -124,15 +125,15 @@ TEST(Meshirrad, CountsAndWindowsAreVersion1_1) {
   EXPECT_NE(digest_of(file), digest_of(example()));
 }
 
-/// Each cell holds its centre; a place lies in the cell whose centre is nearest in the sheared lattice: checked by brute force on paper for
-/// n = 2: cells 0 (corner 0), 1 (middle, on its tip), 2 (corner 1), 3 (corner 2).
+/// Each cell holds its centre; a place lies in the cell whose centre is nearest in the sheared lattice: checked by
+/// brute force on paper for n = 2: cells 0 (corner 0), 1 (middle, on its tip), 2 (corner 1), 3 (corner 2).
 TEST(Meshirrad, CellsPartTheTriangle) {
   EXPECT_EQ(mesh_cell(2, 0.1f, 0.1f), 0u);
   EXPECT_EQ(mesh_cell(2, 0.4f, 0.4f), 1u);
   EXPECT_EQ(mesh_cell(2, 0.8f, 0.1f), 2u);
   EXPECT_EQ(mesh_cell(2, 0.1f, 0.8f), 3u);
   for (const std::uint32_t n : {1u, 2u, 3u, 17u, 1024u})
-    for (std::uint32_t c = 0; c < n * n; c += n > 100 ? 997 : 1) {
+    for (std::uint32_t c = 0; c<n * n; c += n> 100 ? 997 : 1) {
       const auto [u, v] = mesh_cell_centre(n, c);
       EXPECT_GE(std::min(u, v), 0);
       EXPECT_LE(u + v, 1);
@@ -140,8 +141,7 @@ TEST(Meshirrad, CellsPartTheTriangle) {
     }
   // Rounding may leave u + v a little above 1, and corners are of the last cells: no cell beyond the triangle.
   for (const std::uint32_t n : {1u, 5u, 1024u})
-    for (const float u : {0.0f, 0.25f, 1.0f, 1.0000001f, -1e-7f})
-      EXPECT_LT(mesh_cell(n, u, 1.0000001f - u), n * n);
+    for (const float u : {0.0f, 0.25f, 1.0f, 1.0000001f, -1e-7f}) EXPECT_LT(mesh_cell(n, u, 1.0000001f - u), n * n);
 }
 
 TEST(Meshirrad, EveryTruncationAndFlippedBitIsAnError) {

@@ -26,8 +26,8 @@ TEST(Normals, WorkedValuesOfTheConventions) {
 }
 
 TEST(Normals, AxesAreExact) {
-  for (Normal axis : {Normal{1, 0, 0}, Normal{-1, 0, 0}, Normal{0, 1, 0}, Normal{0, -1, 0}, Normal{0, 0, 1},
-                      Normal{0, 0, -1}})
+  for (Normal axis :
+       {Normal{1, 0, 0}, Normal{-1, 0, 0}, Normal{0, 1, 0}, Normal{0, -1, 0}, Normal{0, 0, 1}, Normal{0, 0, -1}})
     for (int c = 0; c < 3; ++c) EXPECT_EQ(decode_normal(encode_normal(axis))[c], axis[c]);
 }
 
@@ -35,7 +35,7 @@ TEST(Normals, AxesAreExact) {
 // and the octahedron comes as near as 1/sqrt(3) to its centre: 1.53e-5 * 2.449 * 1.732 = 6.5e-5 rad.
 TEST(Normals, AreOffByAtMostHalfAStep) {
   double worst = 0;
-  for (int i = 0; i < 200000; ++i) {   // a spiral over the sphere
+  for (int i = 0; i < 200000; ++i) {  // a spiral over the sphere
     const double z = 1 - 2 * (i + 0.5) / 200000, phi = 2.399963229728653 * i, r = std::sqrt(1 - z * z);
     const Normal n{float(r * std::cos(phi)), float(r * std::sin(phi)), float(z)};
     const Normal back = decode_normal(encode_normal(n));

@@ -32,7 +32,8 @@ PathsHeader header() {
 
 std::string bytes_of(const PathsHeader& h, const std::vector<std::vector<TouchedPath>>& calls) {
   std::string bytes;
-  PathsWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, h);
+  PathsWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                     h);
   for (const auto& paths : calls) writer.write(paths);
   writer.finish();
   return bytes;

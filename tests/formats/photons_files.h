@@ -12,7 +12,7 @@ namespace tempolux::formats::testing {
 /// All photons of a map, with the columns and the digest.
 struct Contents {
   PhotonHeader header;
-  std::vector<PhotonBlock> groups;   ///< one block per group that has photons
+  std::vector<PhotonBlock> groups;  ///< one block per group that has photons
   PhotonTotals totals;
   std::vector<GroupFlux> ledger;
   std::string digest;
@@ -29,8 +29,7 @@ inline Contents read_all(const std::string& path) {
   Contents all{reader.header(), {}, {}, {}, {}};
   PhotonBlock block;
   while (reader.read_block(block)) {
-    if (all.groups.empty() || all.groups.back().group != block.group)
-      all.groups.push_back({block.group, {}, {}, {}});
+    if (all.groups.empty() || all.groups.back().group != block.group) all.groups.push_back({block.group, {}, {}, {}});
     PhotonBlock& group = all.groups.back();
     group.photons.insert(group.photons.end(), block.photons.begin(), block.photons.end());
     group.directions.insert(group.directions.end(), block.directions.begin(), block.directions.end());
@@ -45,9 +44,8 @@ inline Contents read_all(const std::string& path) {
 inline std::string bytes_of(const PhotonHeader& header, const std::vector<PhotonBlock>& blocks,
                             const PhotonTotals& totals = {}, const std::vector<GroupFlux>& ledger = {}) {
   std::string bytes;
-  PhotonWriter writer(
-      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
-      header);
+  PhotonWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                      header);
   for (const PhotonBlock& block : blocks) writer.write(block);
   writer.finish(totals, ledger);
   return bytes;
@@ -66,8 +64,7 @@ inline Photon photon(std::uint32_t i) {
 }
 
 /// `count` photons of a group, with columns.
-inline PhotonBlock block_of(std::uint32_t group, std::uint32_t count, std::uint32_t columns,
-                            std::uint32_t first = 0) {
+inline PhotonBlock block_of(std::uint32_t group, std::uint32_t count, std::uint32_t columns, std::uint32_t first = 0) {
   PhotonBlock block;
   block.group = group;
   for (std::uint32_t i = first; i < first + count; ++i) {

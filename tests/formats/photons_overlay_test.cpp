@@ -22,8 +22,7 @@ class Overlay : public ::testing::Test {
   std::string base_path = folder / "base.photons", path = folder / "overlay.photons";
   PhotonBlock g0 = block_of(0, 5, columns), g1 = block_of(1, 6, columns), g2 = block_of(2, 7, columns),
               g4 = block_of(4, 8, columns);
-  PhotonBlock new1 = block_of(1, 9, columns, 50), new3 = block_of(3, 2, columns),
-              new5 = block_of(5, 1, columns);
+  PhotonBlock new1 = block_of(1, 9, columns, 50), new3 = block_of(3, 2, columns), new5 = block_of(5, 1, columns);
   PhotonBlock none2{2, {}, {}, {}};
   std::vector<GroupFlux> new_ledger = ledger_of({1, 2, 3, 5}, 7);
 
@@ -97,9 +96,8 @@ TEST(PhotonsDigest, DoesNotDependOnBlocksHeaderOrTotals) {
   constexpr std::uint32_t columns = column_direction | column_albedo;
   const PhotonHeader plain = header_of(3, columns);
   const std::string expected = digest_of(plain, {block_of(1, 100, columns), block_of(2, 5, columns)});
-  EXPECT_EQ(
-      digest_of(plain, {block_of(1, 30, columns), block_of(1, 70, columns, 30), block_of(2, 5, columns)}),
-      expected);
+  EXPECT_EQ(digest_of(plain, {block_of(1, 30, columns), block_of(1, 70, columns, 30), block_of(2, 5, columns)}),
+            expected);
   PhotonHeader other = plain;
   other.history = "1.0 somebody\n";
   other.identity = {"g", "m", "a", "l", "v", 3, 4};
@@ -123,7 +121,7 @@ TEST(PhotonsDigest, DependsOnEverythingElse) {
   auto swapped = blocks;
   std::swap(swapped[0].photons[0], swapped[0].photons[1]);
   EXPECT_NE(digest_of(header_of(2), swapped), digest);
-  auto regrouped = blocks;   // the same photons in the same order, the border between groups elsewhere
+  auto regrouped = blocks;  // the same photons in the same order, the border between groups elsewhere
   regrouped[0].photons.push_back(regrouped[1].photons.front());
   regrouped[1].photons.erase(regrouped[1].photons.begin());
   EXPECT_NE(digest_of(header_of(2), regrouped), digest);

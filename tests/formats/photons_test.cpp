@@ -40,9 +40,7 @@ std::string rich_bytes() {
 void read(const std::string& path) { read_all(path); }
 
 /// What reading says about these bytes; "" if they are good.
-std::string fault_of(const Folder& folder, const std::string& bytes) {
-  return testing::fault_of(folder, bytes, read);
-}
+std::string fault_of(const Folder& folder, const std::string& bytes) { return testing::fault_of(folder, bytes, read); }
 
 // If this fails the format has changed. That takes a new version number in photons.md, not a new example.
 TEST(Photons, WorkedExampleOfThePageIsWhatTheWriterWrites) {
@@ -57,8 +55,7 @@ TEST(Photons, WorkedExampleOfThePageIsWhatTheWriterWrites) {
                      .last_frame = 23};
   header.emitted_count = 4;
   PhotonBlock block;
-  block.photons.push_back(
-      {{1, 2, 3}, {0.5f, 0.25f, 0.125f}, encode_normal({0, 1, 0}), 7, PathKind::caustic, 2});
+  block.photons.push_back({{1, 2, 3}, {0.5f, 0.25f, 0.125f}, encode_normal({0, 1, 0}), 7, PathKind::caustic, 2});
   PhotonTotals totals;
   totals.emitted_flux = {1, 1, 1};
   totals.escaped_flux = totals.absorbed_flux = {0.5, 0.5, 0.5};
@@ -116,9 +113,8 @@ TEST(Photons, ManyPhotonsAreCutIntoBlocksAndComeBackInOrder) {
 
 TEST(Photons, BlocksEncodedElsewhereGiveTheSameFile) {
   std::string bytes;
-  PhotonWriter writer(
-      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
-      rich_header());
+  PhotonWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                      rich_header());
   for (const PhotonBlock& block :
        {block_of(0, 2, kAllColumns), block_of(0, 1, kAllColumns, 2), block_of(2, 2, kAllColumns)})
     writer.write_encoded(encode_block(block, kAllColumns), block);
@@ -136,13 +132,9 @@ TEST(Photons, APipeCanBeRead) {
   EXPECT_EQ(map.photons.size(), 100000u);
 }
 
-TEST(Photons, EveryTruncationIsAnError) {
-  expect_every_truncation_refused(rich_bytes(), read);
-}
+TEST(Photons, EveryTruncationIsAnError) { expect_every_truncation_refused(rich_bytes(), read); }
 
-TEST(Photons, EveryFlippedBitIsAnError) {
-  expect_every_flipped_bit_refused(rich_bytes(), read);
-}
+TEST(Photons, EveryFlippedBitIsAnError) { expect_every_flipped_bit_refused(rich_bytes(), read); }
 
 TEST(Photons, MessagesNameFileOffsetReasonAndRemedy) {
   Folder folder;
@@ -199,7 +191,7 @@ TEST(Photons, AcceptsEveryFileOfTheFolderAccept) {
 TEST(Photons, RefusesEveryFileOfTheFolderRefuse) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kFiles + "refuse")) {
-    if (entry.path().filename() == "overlay-base.photons") continue;   // good: the others lie upon it
+    if (entry.path().filename() == "overlay-base.photons") continue;  // good: the others lie upon it
     EXPECT_THROW(read_all(entry.path()), InputError) << entry.path();
     ++count;
   }
@@ -261,14 +253,13 @@ TEST(Photons, FilesForTheSecondReader) {
   if (!name) GTEST_SKIP() << "only for read_photons_test.sh";
   const std::string folder = std::string(name) + "/";
   save(folder + "rich.photons", rich_bytes());
-  save(folder + "plain.photons",
-       bytes_of({}, {block_of(0, 70000, 0)}, {0, {}, {0.1, 0.2, 0.3}, {0, 1e-30, 0.7}, {}}));
+  save(folder + "plain.photons", bytes_of({}, {block_of(0, 70000, 0)}, {0, {}, {0.1, 0.2, 0.3}, {0, 1e-30, 0.7}, {}}));
   PhotonHeader dynamic;
   dynamic.map = "dynamic";
   PhotonBlock block = block_of(0, 1000, 0);
   for (Photon& p : block.photons) p.flux[p.bounce % 3] *= -1e6f;
   dynamic.identity = {"g1", "m1", "a1", "l1", "v1", 0, 0};
-  dynamic.identity.emission = "e1";   // version 1.1
+  dynamic.identity.emission = "e1";  // version 1.1
   save(folder + "dynamic.photons", bytes_of(dynamic, {block}));
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

@@ -17,7 +17,8 @@ const std::string kPage = "../formats/radsamples/radsamples.md", kFiles = "forma
 
 std::string bytes_of(const RadsamplesFile& file) {
   std::string bytes;
-  write_radsamples([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, file);
+  write_radsamples([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                   file);
   return bytes;
 }
 void read(const std::string& path) { load_radsamples(path); }
@@ -71,7 +72,9 @@ RadsamplesFile many(std::uint32_t count) {
     r.narrows_from = i;
     file.records.push_back(r);
     for (std::uint32_t c = 0; c < 12; ++c) {
-      file.samples.push_back({{std::uint8_t(i), std::uint8_t(c), 3, 130}, std::uint16_t(0x0400 + i % 1000), std::uint16_t((1 + c) | sample_valid)});
+      file.samples.push_back({{std::uint8_t(i), std::uint8_t(c), 3, 130},
+                              std::uint16_t(0x0400 + i % 1000),
+                              std::uint16_t((1 + c) | sample_valid)});
       file.anchors.push_back(0xffffffff);
     }
   }
@@ -98,10 +101,11 @@ TEST(Radsamples, WorkedExampleReadsAsThePageSays) {
   EXPECT_NE(load(kPage).find("digest is " + digest_of(file)), std::string::npos) << digest_of(file);
 }
 
-// 8 bytes a sample, 4 its anchor, 200 a record, 12 a block's head: the size to expect, header + 8 N #E, and the rest as said.
+// 8 bytes a sample, 4 its anchor, 200 a record, 12 a block's head: the size to expect, header + 8 N #E, and the rest as
+// said.
 TEST(Radsamples, ManyComeBackAndTakeTheRoomThePageSays) {
   Folder folder;
-  const RadsamplesFile file = many(6000);   // 72000 samples: two blocks
+  const RadsamplesFile file = many(6000);  // 72000 samples: two blocks
   const std::string bytes = bytes_of(file);
   EXPECT_EQ(bytes.size() - bytes_of(many(0)).size(), 6000u * (200 + 12 * 12) + 3 * 12);
   save(folder / "a", bytes);
@@ -160,7 +164,8 @@ TEST(Radsamples, AWriterTakesAllRecordsAndNoMore) {
   const std::vector<RadianceSample> samples = std::exchange(head.samples, {});
   const std::vector<std::uint32_t> anchors = std::exchange(head.anchors, {});
   std::string bytes;
-  RadsamplesWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, head);
+  RadsamplesWriter writer(
+      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, head);
   const std::span s(samples), twelve = s.first(12);
   const std::span<const std::uint32_t> a(anchors);
   EXPECT_THROW(writer.write(s.first(11), a.first(11)), std::invalid_argument);
@@ -188,18 +193,19 @@ TEST(Radsamples, SamplesOfTheLowPartSaySo) {
   overlay.kept_from = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   save(folder / "a", bytes_of(overlay));
   EXPECT_THROW(load_radsamples(folder / "a"), InputError);
-  overlay.header.high_hash = "78";   // of another frame
+  overlay.header.high_hash = "78";  // of another frame
   save(folder / "a", bytes_of(overlay));
   EXPECT_EQ(load_radsamples(folder / "a").samples, file.samples);
 }
 
-/// An overlay of many(12) whose odd records are the base's, in another order, with fields of their own; even ones have other samples.
+/// An overlay of many(12) whose odd records are the base's, in another order, with fields of their own; even ones have
+/// other samples.
 RadsamplesFile overlay_of_many(const std::string& base) {
   RadsamplesFile file = many(12);
   file.header.base_name = base;
   file.header.base_digest = digest_of(many(12));
   for (std::uint32_t i = 0; i < 12; ++i) {
-    file.kept_from.push_back(i % 2 ? 12 - i : 0);   // of number 11 - i
+    file.kept_from.push_back(i % 2 ? 12 - i : 0);  // of number 11 - i
     file.records[i].radius = 2;
     for (std::size_t c = 12 * i; c < 12 * i + 12; ++c) {
       if (i % 2) file.samples[c] = many(12).samples[12 * (11 - i) + c % 12];
@@ -209,7 +215,8 @@ RadsamplesFile overlay_of_many(const std::string& base) {
   return file;
 }
 
-// Six records of twelve keep 12 samples of 12 bytes each in the base; the keys of the base's name and digest come on top.
+// Six records of twelve keep 12 samples of 12 bytes each in the base; the keys of the base's name and digest come on
+// top.
 TEST(Radsamples, AnOverlayWithItsBaseIsTheFileWrittenWhole) {
   Folder folder;
   const RadsamplesFile file = overlay_of_many("base.radsamples");
@@ -235,9 +242,7 @@ TEST(Radsamples, AnOverlayTakesNoOtherBase) {
     save(folder / "a", bytes_of(overlay_of_many("base.radsamples")));
     try {
       load_radsamples(folder / "a");
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    } catch (const InputError& error) { return error.what(); }
     return "";
   };
   const auto has = [](const std::string& fault, const char* words) { return fault.find(words) != fault.npos; };
@@ -252,12 +257,13 @@ TEST(Radsamples, AnOverlayTakesNoOtherBase) {
   EXPECT_TRUE(has(fault_with(overlay_of_many("base.radsamples")), "overlay itself"));
   RadsamplesFile file = overlay_of_many("base.radsamples");
   save(folder / "base.radsamples", bytes_of(many(12)));
-  file.kept_from[1] = 13;   // the base has twelve
+  file.kept_from[1] = 13;  // the base has twelve
   save(folder / "a", bytes_of(file));
   EXPECT_THROW(load_radsamples(folder / "a"), InputError);
 }
 
-// Mantissas are 128 to 255 of the largest channel: reading back is off by less than 2^-7 of it; what a file holds comes back for any u.
+// Mantissas are 128 to 255 of the largest channel: reading back is off by less than 2^-7 of it; what a file holds comes
+// back for any u.
 TEST(RadianceSample, RgbeComesBackWithinAStepFromEndToEnd) {
   for (float exponent = -117; exponent < 126; exponent += 0.37f) {
     const std::array<float, 3> radiance{std::exp2(exponent), std::exp2(exponent - 1.3f), std::exp2(exponent - 6.9f)};
@@ -270,17 +276,20 @@ TEST(RadianceSample, RgbeComesBackWithinAStepFromEndToEnd) {
   }
 }
 
-// The mean of floor(x + u) over u in [0, 1) is x; over 16 even steps of u within 1/32, a mantissa's step being at most 2^-7 of the
-// largest channel. Rounded down, a value would lose half a step, and one that grows by a thousandth a frame would stay for good.
+// The mean of floor(x + u) over u in [0, 1) is x; over 16 even steps of u within 1/32, a mantissa's step being at most
+// 2^-7 of the largest channel. Rounded down, a value would lose half a step, and one that grows by a thousandth a frame
+// would stay for good.
 TEST(RadianceSample, RgbeIsRightInTheMean) {
   const auto step = [](int i) { return (float(i % 16) + 0.5f) / 16; };
-  for (const std::array<float, 3>& radiance : {std::array{0.7003f, 0.3f, 0.0011f}, std::array{255.7f, 1.0f, 1e-3f}, std::array{1e-30f, 1e-31f, 0.0f}}) {
+  for (const std::array<float, 3>& radiance :
+       {std::array{0.7003f, 0.3f, 0.0011f}, std::array{255.7f, 1.0f, 1e-3f}, std::array{1e-30f, 1e-31f, 0.0f}}) {
     std::array<double, 3> mean{};
     for (int i = 0; i < 4096; ++i) {
       const auto back = decode_rgbe(encode_rgbe(radiance, {step(i), step(i / 16), step(i / 256)}));
       for (std::size_t c = 0; c < 3; ++c) mean[c] += double(back[c]) / 4096;
     }
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], double(radiance[c]), double(radiance[0]) * 0x1p-12) << radiance[0];
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(mean[c], double(radiance[c]), double(radiance[0]) * 0x1p-12) << radiance[0];
   }
 }
 
@@ -297,7 +306,7 @@ TEST(RadianceSample, WhatIsNoRadianceIsDarkOrTheLargest) {
 TEST(RadianceSample, HalvesComeBackAndStayInTheirRange) {
   for (float x = 0x1p-14f; x < 65504; x *= 1.0137f) EXPECT_LE(std::abs(decode_half(encode_half(x)) - x), x * 0x1p-11f);
   EXPECT_EQ(encode_half(1), 0x3c00);
-  EXPECT_EQ(encode_half(1 + 0x1p-11f), 0x3c00);       // half way: to the even one
+  EXPECT_EQ(encode_half(1 + 0x1p-11f), 0x3c00);  // half way: to the even one
   EXPECT_EQ(encode_half(1 + 3 * 0x1p-11f), 0x3c02);
   EXPECT_EQ(encode_half(1e-9f), 0x0400);
   EXPECT_EQ(encode_half(1e9f), 0x7bff);
@@ -315,7 +324,8 @@ TEST(Radsamples, FilesForTheSecondReader) {
     for (const RadianceSample& s : file.samples) radiance += double(decode_rgbe(s.rgbe)[1]), ages += age_of(s);
     std::ofstream expected(std::string(folder) + "/" + name + ".expected");
     expected.precision(17);
-    expected << file.point_light.size() << ' ' << file.records.size() << ' ' << file.samples.size() << ' ' << radiance << ' ' << ages << '\n';
+    expected << file.point_light.size() << ' ' << file.records.size() << ' ' << file.samples.size() << ' ' << radiance
+             << ' ' << ages << '\n';
   };
   give("example.radsamples", example());
   give("many.radsamples", many(6000));

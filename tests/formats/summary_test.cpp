@@ -18,9 +18,7 @@ class PhotonFile {
     PhotonHeader header;
     header.origin = {100, 0, 0};
     PhotonWriter writer(
-        [&](const void* data, std::size_t size) {
-          file.write(static_cast<const char*>(data), std::streamsize(size));
-        },
+        [&](const void* data, std::size_t size) { file.write(static_cast<const char*>(data), std::streamsize(size)); },
         header);
     for (const Photon& photon : photons) writer.write(PhotonBlock{0, {photon}, {}, {}});  // a block for each
     writer.finish({});

@@ -33,11 +33,18 @@ TEST(View, RefusesWhatIsNone) {
   const std::string first = "tempolux view 1.0\n", good = "0 0 0 1 1\n";
   std::string many = first;
   for (std::size_t i = 0; i <= kMaxViewSpheres; ++i) many += good;
-  for (const auto& [text, line] :
-       {std::pair<std::string, const char*>{"", "line 1"}, {"tempolux view 2.0\n", "line 1"}, {first + "\n", "line 2"},
-        {first + good + "0 0 0 1\n", "line 3"}, {first + "0 0 0 1 1 1\n", "line 2"}, {first + "0 0 nan 1 1\n", "line 2"},
-        {first + "inf 0 0 1 1\n", "line 2"}, {first + "0 0 0 0 1\n", "line 2"}, {first + "0 0 0 1 -1\n", "line 2"},
-        {first + "0 0 0 1e31 1\n", "line 2"}, {first + "0 0 0 one 1\n", "line 2"}, {many, "line 34"}}) {
+  for (const auto& [text, line] : {std::pair<std::string, const char*>{"", "line 1"},
+                                   {"tempolux view 2.0\n", "line 1"},
+                                   {first + "\n", "line 2"},
+                                   {first + good + "0 0 0 1\n", "line 3"},
+                                   {first + "0 0 0 1 1 1\n", "line 2"},
+                                   {first + "0 0 nan 1 1\n", "line 2"},
+                                   {first + "inf 0 0 1 1\n", "line 2"},
+                                   {first + "0 0 0 0 1\n", "line 2"},
+                                   {first + "0 0 0 1 -1\n", "line 2"},
+                                   {first + "0 0 0 1e31 1\n", "line 2"},
+                                   {first + "0 0 0 one 1\n", "line 2"},
+                                   {many, "line 34"}}) {
     try {
       parse_view(text, "view");
       ADD_FAILURE() << "accepted: " << text;

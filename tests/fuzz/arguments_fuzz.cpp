@@ -11,8 +11,7 @@ template <class Parse>
 void parse_or_refuse(Parse parse) {
   try {
     parse();
-  } catch (const InputError&) {
-  }
+  } catch (const InputError&) {}
 }
 
 /// A range of 10^6 frames takes 0.1 s: a limit that is tested elsewhere, not to be tried again and again.

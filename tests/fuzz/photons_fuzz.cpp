@@ -9,8 +9,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::expect_read_or_refused(path, [&] {
     formats::PhotonReader reader(path);
     formats::PhotonBlock block;
-    while (reader.read_block(block)) {
-    }
+    while (reader.read_block(block)) {}
     reader.digest();
   });
   return 0;

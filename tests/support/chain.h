@@ -13,7 +13,7 @@ namespace tempolux::test {
 
 struct Traced {
   std::vector<formats::Photon> photons;
-  double stored_indirect = 0;   ///< W, green
+  double stored_indirect = 0;  ///< W, green
 };
 
 inline Traced trace(const Tracer& tracer, const Lights& lights, std::uint64_t count) {
@@ -43,22 +43,29 @@ struct Chain {
   RecordStore store;
 
   Chain(HandMadeScene& scene, std::uint64_t photons, std::uint32_t point_count, int rays, int light_samples = 4)
-      : frame(scene.frame()), table(build_emission_table({&frame, 1})), tracer(frame), lights(frame, table),
-        traced(trace(tracer, lights, photons)), point_options(counted(point_count, light_samples)), placed(estimated()),
+      : frame(scene.frame()),
+        table(build_emission_table({&frame, 1})),
+        tracer(frame),
+        lights(frame, table),
+        traced(trace(tracer, lights, photons)),
+        point_options(counted(point_count, light_samples)),
+        placed(estimated()),
         lookup(placed.points, placed.spacing, point_clearance(tracer)),
-        gather(tracer, lights, lookup, with_rays(rays)), store() {}
+        gather(tracer, lights, lookup, with_rays(rays)),
+        store() {}
 
   /// Records for a picture whose pixel i sees `at(i)`, seen from the side of the normal given.
   template <class At>
   void place(int width, int height, float footprint, const At& at) {
     GatherCounts counts;
     const PixelView views = pixel_by_pixel([&](float x, float y, const PathRandom*) -> std::optional<SeenPoint> {
-      const std::optional<std::pair<SurfacePoint, Vec3>> seen = at(std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x));
+      const std::optional<std::pair<SurfacePoint, Vec3>> seen =
+          at(std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x));
       if (!seen) return std::nullopt;
       return SeenPoint{seen->first, seen->second, footprint, false};
     });
     place_records(gather, views, width, height, {}, store, counts);
-    EXPECT_LT(counts.unanswered, counts.rays / 20);   // next to walls and where surfaces bend
+    EXPECT_LT(counts.unanswered, counts.rays / 20);  // next to walls and where surfaces bend
   }
   /// The surface under `position`, met from h above it.
   std::optional<std::pair<SurfacePoint, Vec3>> surface_at(Vec3 position, Vec3 normal, float h) const {

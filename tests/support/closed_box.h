@@ -17,7 +17,7 @@ inline const char* name_of(Shape shape) {
 
 struct ClosedBox {
   HandMadeScene scene;
-  Rgb flux;                       ///< F, W
+  Rgb flux;  ///< F, W
   EmissionTable table;
 
   ClosedBox(Shape shape, float rho, Rgb intensity = Rgb(1.0f, 2.0f, 0.5f)) : flux(intensity * (4 * kPi)) {

@@ -49,7 +49,9 @@ inline void moves(Image& image, float u, float v) {
 }
 
 /// Half the difference of the halves of a layer; where the frame says so its noise is known.
-inline void tell_noise(Image& image, const std::string& layer, const OfPixel& noise) { grey(image, layer + ".noise", noise); }
+inline void tell_noise(Image& image, const std::string& layer, const OfPixel& noise) {
+  grey(image, layer + ".noise", noise);
+}
 
 /// The frame in the middle, filtered; flow is that of the frames themselves.
 inline Image filtered(const std::vector<Image>& frames, const FilterOptions& options = {}) {

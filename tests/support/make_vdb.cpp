@@ -1,10 +1,12 @@
 // make-vdb -- write an OpenVDB file from plain voxels, for tests and for scenes made by scripts.
 //
-//     make-vdb OUT.vdb NX NY NZ VOXEL X Y Z [NAME [fog|level-set|unknown [BACKGROUND [float|half|double|vector|tiles [FIRST [M]]]]]]  < VALUES
+//     make-vdb OUT.vdb NX NY NZ VOXEL X Y Z [NAME [fog|level-set|unknown [BACKGROUND [float|half|double|vector|tiles
+//     [FIRST [M]]]]]]  < VALUES
 //
-// VALUES: NX NY NZ numbers of float32, z fastest. The first voxel has its centre at (X, Y, Z) in metres, voxels are VOXEL m apart. Zeros are
-// left out. An existing file gets the grid as one more. tiles: even blocks are kept as one value. FIRST: x, y and z of the first voxel in
-// index space (0). M: three rows of three numbers, metres along each axis of the world for a step along each of index space, instead of VOXEL.
+// VALUES: NX NY NZ numbers of float32, z fastest. The first voxel has its centre at (X, Y, Z) in metres, voxels are
+// VOXEL m apart. Zeros are left out. An existing file gets the grid as one more. tiles: even blocks are kept as one
+// value. FIRST: x, y and z of the first voxel in index space (0). M: three rows of three numbers, metres along each
+// axis of the world for a step along each of index space, instead of VOXEL.
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -18,7 +20,8 @@
 namespace {
 
 template <class Grid>
-typename Grid::Ptr make(const std::vector<float>& values, const std::array<int, 3>& size, typename Grid::ValueType background, int first) {
+typename Grid::Ptr make(const std::vector<float>& values, const std::array<int, 3>& size,
+                        typename Grid::ValueType background, int first) {
   auto grid = Grid::create(background);
   auto accessor = grid->getAccessor();
   std::size_t i = 0;
@@ -32,9 +35,13 @@ typename Grid::Ptr make(const std::vector<float>& values, const std::array<int, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 9) return std::fprintf(stderr, "make-vdb OUT NX NY NZ VOXEL X Y Z [NAME [CLASS [BACKGROUND [TYPE [FIRST [M]]]]]] < VALUES\n"), 2;
+  if (argc < 9)
+    return std::fprintf(stderr,
+                        "make-vdb OUT NX NY NZ VOXEL X Y Z [NAME [CLASS [BACKGROUND [TYPE [FIRST [M]]]]]] < VALUES\n"),
+           2;
   const std::array<int, 3> size{std::atoi(argv[2]), std::atoi(argv[3]), std::atoi(argv[4])};
-  const std::string name = argc > 9 ? argv[9] : "density", kind = argc > 10 ? argv[10] : "fog", type = argc > 12 ? argv[12] : "float";
+  const std::string name = argc > 9 ? argv[9] : "density", kind = argc > 10 ? argv[10] : "fog",
+                    type = argc > 12 ? argv[12] : "float";
   const double voxel = std::atof(argv[5]), background = argc > 11 ? std::atof(argv[11]) : 0;
   const int first = argc > 13 ? std::atoi(argv[13]) : 0;
   const std::size_t count = std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);
@@ -48,9 +55,11 @@ int main(int argc, char** argv) {
   else grid = make<openvdb::FloatGrid>(values, size, float(background), first);
   grid->setSaveFloatAsHalf(type == "half");
   grid->setName(name);
-  grid->setGridClass(kind == "fog" ? openvdb::GRID_FOG_VOLUME : kind == "level-set" ? openvdb::GRID_LEVEL_SET : openvdb::GRID_UNKNOWN);
+  grid->setGridClass(kind == "fog"         ? openvdb::GRID_FOG_VOLUME
+                     : kind == "level-set" ? openvdb::GRID_LEVEL_SET
+                                           : openvdb::GRID_UNKNOWN);
   if (type == "tiles") grid->pruneGrid();
-  openvdb::Mat4d place = openvdb::Mat4d::identity();   // of row vectors
+  openvdb::Mat4d place = openvdb::Mat4d::identity();  // of row vectors
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) place(c, r) = argc > 22 ? std::atof(argv[14 + 3 * r + c]) : r == c ? voxel : 0;
   const openvdb::Vec3d moved = place.transform3x3(openvdb::Vec3d(first));

@@ -22,7 +22,8 @@ std::string first(const std::vector<unsigned char>& bytes, std::size_t count) {
 
 }  // namespace
 
-std::string draco_bytes(const std::vector<std::uint32_t>& indices, const std::vector<DracoAttribute>& attributes, int bits) {
+std::string draco_bytes(const std::vector<std::uint32_t>& indices, const std::vector<DracoAttribute>& attributes,
+                        int bits) {
   draco::Mesh mesh;
   const auto points = std::uint32_t(attributes.front().values.size() / std::size_t(attributes.front().components));
   mesh.set_num_points(points);
@@ -40,7 +41,8 @@ std::string draco_bytes(const std::vector<std::uint32_t>& indices, const std::ve
     mesh.AddFace({draco::PointIndex(indices[i]), draco::PointIndex(indices[i + 1]), draco::PointIndex(indices[i + 2])});
   draco::Encoder encoder;
   encoder.SetEncodingMethod(bits == 0 ? draco::MESH_SEQUENTIAL_ENCODING : draco::MESH_EDGEBREAKER_ENCODING);
-  for (const DracoAttribute& source : attributes) encoder.SetAttributeQuantization(type_of(source.kind), bits == 0 ? -1 : bits);
+  for (const DracoAttribute& source : attributes)
+    encoder.SetAttributeQuantization(type_of(source.kind), bits == 0 ? -1 : bits);
   draco::EncoderBuffer buffer;
   const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
   if (!status.ok()) throw std::runtime_error(status.error_msg_string());
@@ -50,7 +52,8 @@ std::string draco_bytes(const std::vector<std::uint32_t>& indices, const std::ve
 std::string meshopt_attributes(const std::string& elements, std::size_t size) {
   meshopt_encodeVertexVersion(0);
   std::vector<unsigned char> bytes(meshopt_encodeVertexBufferBound(elements.size() / size, size));
-  return first(bytes, meshopt_encodeVertexBuffer(bytes.data(), bytes.size(), elements.data(), elements.size() / size, size));
+  return first(bytes,
+               meshopt_encodeVertexBuffer(bytes.data(), bytes.size(), elements.data(), elements.size() / size, size));
 }
 
 std::string meshopt_indices(const std::vector<std::uint32_t>& indices) {

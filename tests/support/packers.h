@@ -14,9 +14,10 @@ struct DracoAttribute {
   std::vector<float> values;
 };
 
-/// A triangle mesh packed by Draco; attribute i has the id i. `bits` 0: nothing is quantised and vertices and triangles keep
-/// their order (sequential method); else Draco's usual method (edge breaker), which changes the order.
-std::string draco_bytes(const std::vector<std::uint32_t>& indices, const std::vector<DracoAttribute>& attributes, int bits = 0);
+/// A triangle mesh packed by Draco; attribute i has the id i. `bits` 0: nothing is quantised and vertices and triangles
+/// keep their order (sequential method); else Draco's usual method (edge breaker), which changes the order.
+std::string draco_bytes(const std::vector<std::uint32_t>& indices, const std::vector<DracoAttribute>& attributes,
+                        int bits = 0);
 
 /// Elements of `size` bytes in meshopt's mode ATTRIBUTES.
 std::string meshopt_attributes(const std::string& elements, std::size_t size);

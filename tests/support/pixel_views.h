@@ -5,7 +5,8 @@
 
 namespace tempolux::test {
 
-/// seen(x, y, random): what raster position (x, y) sees, an optional SeenPoint; random: null, or what the way is drawn from.
+/// seen(x, y, random): what raster position (x, y) sees, an optional SeenPoint; random: null, or what the way is drawn
+/// from.
 template <class Seen>
 PixelView pixel_by_pixel(Seen seen) {
   return [seen](const Look& look) { return seen(look.x, look.y, look.random ? &*look.random : nullptr); };

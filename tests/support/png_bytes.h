@@ -33,7 +33,7 @@ inline std::string png_bytes(int width, int height, int channels, const std::vec
     rows += '\0';
     rows.append(reinterpret_cast<const char*>(pixels.data()) + y * row, row);
   }
-  std::uint32_t a = 1, b = 0;   // Adler-32
+  std::uint32_t a = 1, b = 0;  // Adler-32
   for (const char c : rows) {
     a = (a + std::uint8_t(c)) % 65521;
     b = (b + a) % 65521;
@@ -41,7 +41,7 @@ inline std::string png_bytes(int width, int height, int channels, const std::vec
   const std::uint32_t n = std::uint32_t(rows.size());
   const std::string stored = std::string("\x78\x01\x01", 3) + char(n & 255) + char(n >> 8 & 255) + char(~n & 255) +
                              char(~n >> 8 & 255) + rows + big(b << 16 | a);
-  const char types[] = {0, 0, 4, 2, 6};   // by channels
+  const char types[] = {0, 0, 4, 2, 6};  // by channels
   return "\x89PNG\r\n\x1a\n" +
          chunk("IHDR", big(std::uint32_t(width)) + big(std::uint32_t(height)) + '\x08' + types[channels] +
                            std::string(3, '\0')) +

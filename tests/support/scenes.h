@@ -42,15 +42,28 @@ class HandMadeScene {
     const Vec3 l = lower, u = upper;
     const std::vector<Vec3> p{{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z},
                               {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}};
-    add(p, {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {0, 5, 1}, {0, 4, 5},
-            {3, 2, 6}, {3, 6, 7}, {0, 3, 7}, {0, 7, 4}, {1, 6, 2}, {1, 5, 6}}, material);
+    add(p,
+        {{0, 1, 2},
+         {0, 2, 3},
+         {4, 6, 5},
+         {4, 7, 6},
+         {0, 5, 1},
+         {0, 4, 5},
+         {3, 2, 6},
+         {3, 6, 7},
+         {0, 3, 7},
+         {0, 7, 4},
+         {1, 6, 2},
+         {1, 5, 6}},
+        material);
   }
   /// A sphere of subdivided octahedron faces, fronts inwards.
   void add_hollow_sphere(Vec3 centre, float radius, int subdivisions, const Material& material) {
     add_sphere(centre, radius, subdivisions, material, true, false);
   }
   /// The same, fronts inwards or outwards, shaded flat or smoothly.
-  void add_sphere(Vec3 centre, float radius, int subdivisions, const Material& material, bool inwards, bool smooth, bool moving = false) {
+  void add_sphere(Vec3 centre, float radius, int subdivisions, const Material& material, bool inwards, bool smooth,
+                  bool moving = false) {
     std::vector<Vec3> p;
     std::vector<std::array<std::uint32_t, 3>> t;
     for (int face = 0; face < 8; ++face) {
@@ -65,7 +78,8 @@ class HandMadeScene {
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < n - i; ++j) {
           const auto put = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-            if (mirrored == inwards) t.push_back({a, b, c}); else t.push_back({a, c, b});
+            if (mirrored == inwards) t.push_back({a, b, c});
+            else t.push_back({a, c, b});
           };
           put(corner(i, j), corner(i + 1, j), corner(i, j + 1));
           if (j < n - i - 1) put(corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
@@ -124,7 +138,7 @@ struct AreaSampler {
     Vec3 a, b, c;
   };
   std::vector<Triangle> triangles;
-  std::vector<double> cumulative;   ///< m^2
+  std::vector<double> cumulative;  ///< m^2
 
   explicit AreaSampler(const SceneFrame& frame) {
     double sum = 0;

@@ -23,10 +23,8 @@ constexpr std::size_t kMaxFrames = 1'000'000;
 int take_frame(std::string_view& rest, std::string_view whole) {
   int value = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-  if (error == std::errc::invalid_argument)
-    bad(whole, "not a range of frames; write 12, 0-47, 0-47x2 or 1,5,9");
-  if (error != std::errc{} || value < -kFrameLimit || value > kFrameLimit)
-    bad(whole, "a frame number is beyond 10^8");
+  if (error == std::errc::invalid_argument) bad(whole, "not a range of frames; write 12, 0-47, 0-47x2 or 1,5,9");
+  if (error != std::errc{} || value < -kFrameLimit || value > kFrameLimit) bad(whole, "a frame number is beyond 10^8");
   rest.remove_prefix(std::size_t(end - rest.data()));
   return value;
 }

@@ -43,7 +43,8 @@ std::string head_of(const std::string& path) {
 
 std::string readable_name(const std::string& path) {
   struct stat info {};
-  if (path == "-" || (::stat(path.c_str(), &info) == 0 && (S_ISREG(info.st_mode) || S_ISDIR(info.st_mode)))) return path;
+  if (path == "-" || (::stat(path.c_str(), &info) == 0 && (S_ISREG(info.st_mode) || S_ISDIR(info.st_mode))))
+    return path;
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw InputError(path + ": cannot open: " + std::strerror(errno) + "; check the name");
   ::dup2(file, STDIN_FILENO);

@@ -11,16 +11,13 @@ namespace {
 std::string quoted(const std::string& word) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_.,:=+@%/#-").find(c) != std::string_view::npos ||
-           static_cast<unsigned char>(c) >= 0x80;
+           std::string_view("_.,:=+@%/#-").find(c) != std::string_view::npos || static_cast<unsigned char>(c) >= 0x80;
   };
   if (!word.empty() && std::ranges::all_of(word, plain)) return word;
   std::string text = "'";
   for (const char c : word) {
-    if (c == '\'')
-      text += "'\\''";
-    else
-      text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    if (c == '\'') text += "'\\''";
+    else text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
   }
   return text + "'";
 }
@@ -43,9 +40,7 @@ bool has_name(const CLI::Option& option, const std::string& name) {
   return std::ranges::find(option.get_lnames(), name) != option.get_lnames().end();
 }
 
-bool is_positional(const CLI::Option& option) {
-  return option.get_lnames().empty() && option.get_snames().empty();
-}
+bool is_positional(const CLI::Option& option) { return option.get_lnames().empty() && option.get_snames().empty(); }
 
 /// A file name in a make rule.
 std::string make_word(const std::string& name) {
@@ -64,7 +59,7 @@ std::string Tool::history_line(std::optional<int> frame) const {
   std::string line = "tempolux " TEMPOLUX_VERSION " " + state_->name;
   const auto add = [&](const CLI::Option& option) {
     for (const std::string& value : option.results()) {
-      const bool named = has_frame_pattern(value) || value.find("%%") != std::string::npos;   // "10%" is no name
+      const bool named = has_frame_pattern(value) || value.find("%%") != std::string::npos;  // "10%" is no name
       line += " " + quoted(without_folder(frame && named ? frame_name(value, *frame) : value));
     }
   };

@@ -110,7 +110,8 @@ std::string markdown(const std::string& text) {
     const std::size_t first = page.find_first_not_of('(');
     const std::string name = first == std::string::npos ? page : page.substr(first);
     const bool ours = name.starts_with("docs/") || name.starts_with("formats/") || name.starts_with("pipelines/");
-    if (ours && name.ends_with(".md")) out += page.substr(0, first) + "[" + name + "](../../" + name + ")" + word.substr(last + 1);
+    if (ours && name.ends_with(".md"))
+      out += page.substr(0, first) + "[" + name + "](../../" + name + ")" + word.substr(last + 1);
     else out += word;
     word.clear();
   };
@@ -177,14 +178,16 @@ std::string man_page(const CLI::App& app) {
 std::string markdown_page(const CLI::App& app) {
   const std::string name = app.get_name();
   const ManualText text = manual_text(name);
-  std::string page = "# " + name + "\n\n" + markdown(app.get_description()) + "\n\n    " + name + " [OPTIONS]" + positional_words(app) + "\n\n" +
-                     markdown(text.description) + "\n\n";
+  std::string page = "# " + name + "\n\n" + markdown(app.get_description()) + "\n\n    " + name + " [OPTIONS]" +
+                     positional_words(app) + "\n\n" + markdown(text.description) + "\n\n";
   if (*text.examples) {
     page += "## Examples\n";
     for (const std::string& line : lines_of(text.examples))
       page += line.starts_with("# ") ? "\n" + markdown(line.substr(2)) + "\n" : "\n    " + line + "\n";
   }
-  page += "\n## Options\n\nCounts take k, M and G (powers of 1000), sizes KiB, MiB and GiB.\n\n| option | what it does | default |\n|---|---|---|\n";
+  page +=
+      "\n## Options\n\nCounts take k, M and G (powers of 1000), sizes KiB, MiB and GiB.\n\n| option | what it does | "
+      "default |\n|---|---|---|\n";
   for (const bool positional : {true, false})
     for (const CLI::Option* option : options_of(app, positional)) page += markdown_entry(*option);
   if (*text.files) {
@@ -195,7 +198,8 @@ std::string markdown_page(const CLI::App& app) {
     page += "\nSee also:";
     std::istringstream words(text.see_also);
     for (std::string word; words >> word;) page += " [" + word + "](" + word + ".md)";
-    page += ". Exit codes: [tools/README.md](../../tools/README.md). This page is printed by `" + name + " --help-markdown`.\n";
+    page += ". Exit codes: [tools/README.md](../../tools/README.md). This page is printed by `" + name +
+            " --help-markdown`.\n";
   }
   return page;
 }
@@ -213,14 +217,15 @@ std::string bash_completion(const CLI::App& app) {
     const std::string words = words_of(*option);
     if (!words.empty())
       cases += "    " + pattern + ") COMPREPLY=($(compgen -W '" + words + "' -- \"$word\")); return ;;\n";
-    else if (takes_value(*option))
-      cases += "    " + pattern + ") return ;;\n";
+    else if (takes_value(*option)) cases += "    " + pattern + ") return ;;\n";
   }
   return "# bash completion for " + name + ", made by " + name + " --help-completion\n" + function +
          "() {\n  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n  COMPREPLY=()\n"
          "  case $before in\n" +
-         cases + "  esac\n  [[ $word == -* ]] && COMPREPLY=($(compgen -W '" + all + "' -- \"$word\"))\n  return 0\n}\n"
-         "complete -o default -F " + function + " " + name + "\n";
+         cases + "  esac\n  [[ $word == -* ]] && COMPREPLY=($(compgen -W '" + all +
+         "' -- \"$word\"))\n  return 0\n}\n"
+         "complete -o default -F " +
+         function + " " + name + "\n";
 }
 
 }  // namespace tempolux::tools

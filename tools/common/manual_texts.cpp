@@ -10,8 +10,10 @@ constexpr ManualText kTexts[] = {
      "which fact, which frames share their light, and what has changed since the last time: make includes its "
      "plan.mk.\n"
      "\n"
-     "State files are rewritten only when their content differs, so that moving the camera traces no photon again. Pilots of some "
-     "tenths of a second decide how indirect light is found (--indirect), and where something moves how far a frame's light follows "
+     "State files are rewritten only when their content differs, so that moving the camera traces no photon again. "
+     "Pilots of some "
+     "tenths of a second decide how indirect light is found (--indirect), and where something moves how far a frame's "
+     "light follows "
      "from that of what stands (--moving).",
      "plan/plan.mk: make variables (formats/plan/plan.md)\n"
      "plan/plan.json: the same for people and scripts\n"
@@ -24,8 +26,10 @@ constexpr ManualText kTexts[] = {
      "of "
      "path. All that leaves the lights is stored, absorbed or escaped, and the file's end says how much of each.\n"
      "\n"
-     "--map static traces the scene without what moves in the frame's segment, once for all its frames; --map dynamic then "
-     "traces what movers change at a frame, with sign, of the paths they touch alone. Static and dynamic map together are "
+     "--map static traces the scene without what moves in the frame's segment, once for all its frames; --map dynamic "
+     "then "
+     "traces what movers change at a frame, with sign, of the paths they touch alone. Static and dynamic map together "
+     "are "
      "the global one, photon by photon (docs/methods/dynamic.md).",
      ".photons: photons in blocks with checksums (formats/photons/photons.md)\n"
      ".paths: which paths movers can touch, and when (formats/paths/paths.md)",
@@ -38,16 +42,21 @@ constexpr ManualText kTexts[] = {
      "photon-trace room.glb --frame 0 --map static -o s.photons --paths s.paths\n"
      "photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons\n"
      "# Smoke: frame 0 anew, of each frame after it a tenth of the paths; 30k more for frame 12\n"
-     "photon-trace room.glb --frame 0 --kinds indirect,volume --majorants out/state/0000-*.majorants -o p.0000.photons\n"
-     "photon-trace room.glb --frames 1-23 --kinds indirect,volume --majorants out/state/0000-*.majorants --update p.####.photons --share 10% "
+     "photon-trace room.glb --frame 0 --kinds indirect,volume --majorants out/state/0000-*.majorants -o "
+     "p.0000.photons\n"
+     "photon-trace room.glb --frames 1-23 --kinds indirect,volume --majorants out/state/0000-*.majorants --update "
+     "p.####.photons --share 10% "
      "--strategy census -o p.####.photons\n"
-     "photon-trace room.glb --frame 12 --kinds indirect,volume --majorants out/state/0000-*.majorants --update p.0012.photons --refine 30k -o more.photons",
+     "photon-trace room.glb --frame 12 --kinds indirect,volume --majorants out/state/0000-*.majorants --update "
+     "p.0012.photons --refine 30k -o more.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
      "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "
      "brightness: cells of a grid keep so much light as --energy or --limit allows, and of every record there the same "
-     "share goes to the high part, which can then be sampled like lamps. Or by kind of path: --kind. Cells are added up "
-     "without rounding, so neither the order of the records nor blocks nor threads matter. Photons from a pipe are kept "
+     "share goes to the high part, which can then be sampled like lamps. Or by kind of path: --kind. Cells are added "
+     "up "
+     "without rounding, so neither the order of the records nor blocks nor threads matter. Photons from a pipe are "
+     "kept "
      "in a temporary file beside the low part, as they are read twice.",
      ".photons: read and written (formats/photons/photons.md)\n"
      ".irradpoints: read and written (formats/irradpoints/irradpoints.md)",
@@ -70,17 +79,24 @@ constexpr ManualText kTexts[] = {
      "irradcache-build records room.glb --frame 12 --points low.irradpoints --high high.irradpoints -o 12.irradcache",
      "photon-trace frame-render tempolux-info"},
     {"gather-temporal",
-     "Gathers indirect light in records whose samples of incoming radiance are kept from frame to frame. The first frame of a "
-     "segment is gathered as irradcache-build does it. In a later one a sample is traced again only where something moves in its way, or "
-     "where the light of the surface it met is another; some more get a new direction, drawn by age; all others take what the "
+     "Gathers indirect light in records whose samples of incoming radiance are kept from frame to frame. The first "
+     "frame of a "
+     "segment is gathered as irradcache-build does it. In a later one a sample is traced again only where something "
+     "moves in its way, or "
+     "where the light of the surface it met is another; some more get a new direction, drawn by age; all others take "
+     "what the "
      "irradiance points of the frame say. New records are placed where those kept do not reach.\n"
      "\n"
-     "A range of frames keeps the samples in memory and writes those of each frame; --resume goes on after the last one that is whole. Each frame alone, "
-     "with --previous, gives the same files. Points of all frames must be made with the same options: those on what stands have the "
+     "A range of frames keeps the samples in memory and writes those of each frame; --resume goes on after the last "
+     "one that is whole. Each frame alone, "
+     "with --previous, gives the same files. Points of all frames must be made with the same options: those on what "
+     "stands have the "
      "same places then.\n"
      "\n"
-     "gather-temporal density SCENE --photons FILE -o FILE makes light textures from the photons of many frames instead: each element of the surfaces takes "
-     "those of as many frames before and after as its light stands still (docs/methods/density.md). Its options: gather-temporal density --help.",
+     "gather-temporal density SCENE --photons FILE -o FILE makes light textures from the photons of many frames "
+     "instead: each element of the surfaces takes "
+     "those of as many frames before and after as its light stands still (docs/methods/density.md). Its options: "
+     "gather-temporal density --help.",
      ".irradpoints: light on all surfaces, read (formats/irradpoints/irradpoints.md)\n"
      ".radsamples: records with their samples (formats/radsamples/radsamples.md)\n"
      ".irradcache: the records of a frame (formats/irradcache/irradcache.md)\n"
@@ -88,8 +104,10 @@ constexpr ManualText kTexts[] = {
      "gather-temporal final room.glb --frames 0-23 --points p.####.irradpoints --size 640x360 -o s.####.radsamples "
      "--cache c.####.irradcache\n"
      "# One frame after the other, as make does.\n"
-     "gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 640x360 -o s.0000.radsamples --cache c.0000.irradcache\n"
-     "gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 640x360 --previous s.0000.radsamples -o s.0001.radsamples "
+     "gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 640x360 -o s.0000.radsamples --cache "
+     "c.0000.irradcache\n"
+     "gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 640x360 --previous s.0000.radsamples "
+     "-o s.0001.radsamples "
      "--cache c.0001.irradcache\n"
      "# From the photons of many frames: quick and quiet previews.\n"
      "photon-trace room.glb --frames 0-47 --photons 25k --seed-mode frame --kinds indirect -o p.####.photons\n"
@@ -99,16 +117,21 @@ constexpr ManualText kTexts[] = {
     {"frame-render",
      "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
      "cache or estimated from photons, caustics from photons; or everything is path traced, which is unbiased and "
-     "slow. What no file tells paths find: without photons they look for caustics, where a record is missing one ray of "
-     "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too. Light that one sample "
-     "alone claims for its pixel is spread over the pixels around, without a change of any layer's sum, but in path tracing.",
+     "slow. What no file tells paths find: without photons they look for caustics, where a record is missing one ray "
+     "of "
+     "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too. Light that "
+     "one sample "
+     "alone claims for its pixel is spread over the pixels around, without a change of any layer's sum, but in path "
+     "tracing.",
      "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
      "# Caustic light where something moves: of what stands, and what movers change.\n"
-     "frame-render room.glb --frame 12 --irradcache 12.irradcache --photons s.photons --dynamic d.0012.photons -o 12.exr\n"
+     "frame-render room.glb --frame 12 --irradcache 12.irradcache --photons s.photons --dynamic d.0012.photons -o "
+     "12.exr\n"
      "# From points alone: nothing to be placed for a camera, more noise.\n"
      "frame-render room.glb --frame 12 --size 640x360 --points 12.irradpoints -o 12.exr\n"
-     "# Which way light comes through windows: learned once for the cameras of a segment, read by its frames with --lights.\n"
+     "# Which way light comes through windows: learned once for the cameras of a segment, read by its frames with "
+     "--lights.\n"
      "frame-render room.glb --frames 0-23 --size 640x360 --learn-lights -o 0000.lightgrid\n"
      "# By paths, but for the light that mirrors and glass throw: photon-trace --kinds caustic.\n"
      "frame-render glass.glb --frame 12 --size 640x360 --photons 12.photons -o 12.exr\n"
@@ -116,31 +139,42 @@ constexpr ManualText kTexts[] = {
      "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",
      "irradcache-build aqm-compare tempolux-info"},
     {"ibr-warp",
-     "Makes a frame from one or two rendered key frames: each of its pixels looks up in the keys the surface point that it shows, and takes "
-     "their colour there, layer by layer. Pixels that the keys do not give, or not well enough, are named in a mask with the cause; "
-     "frame-render traces them over the warped frame. It also writes where each pixel goes to in the next frame and came from in the "
+     "Makes a frame from one or two rendered key frames: each of its pixels looks up in the keys the surface point "
+     "that it shows, and takes "
+     "their colour there, layer by layer. Pixels that the keys do not give, or not well enough, are named in a mask "
+     "with the cause; "
+     "frame-render traces them over the warped frame. It also writes where each pixel goes to in the next frame and "
+     "came from in the "
      "previous one.",
      "key .exr: frames with RGBA, Z, N, id and better with the layer specular (formats/frames/frames.md)\n"
      "flow .exr: pixel flow (formats/flow/flow.md)\n"
      "mask .exr: pixels to trace, with causes (formats/mask/mask.md)",
      "ibr-warp 8.exr 16.exr --scene room.glb --frame 12 -o 12.exr --mask why.exr --flow flow.exr\n"
      "# Trace what is missing.\n"
-     "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints --base 12.exr --mask why.exr -o "
+     "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints --base 12.exr "
+     "--mask why.exr -o "
      "12.exr\n"
      "# Frames of another renderer, with Z and the matrices of their cameras.\n"
      "ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr",
      "frame-render aqm-compare tempolux-info"},
     {"st-filter",
-     "Takes noise out of a frame of few samples: planes are fitted to the light around each pixel, in its own frame and in frames before and after "
-     "along the pixel flow. A pixel counts if it sees the same surface (id.object, Z, N); in large windows it counts as far as its value agrees. Two halves of the "
-     "light, LAYER plus and less LAYER.noise (frame-render --channels halves), say what each candidate errs by; where the samples err less they stay. Where albedo is "
-     "there light alone is filtered, not textures. Emission and specular are filtered by what mirrors and glass show (channels seen). With coverage edges are put "
+     "Takes noise out of a frame of few samples: planes are fitted to the light around each pixel, in its own frame "
+     "and in frames before and after "
+     "along the pixel flow. A pixel counts if it sees the same surface (id.object, Z, N); in large windows it counts "
+     "as far as its value agrees. Two halves of the "
+     "light, LAYER plus and less LAYER.noise (frame-render --channels halves), say what each candidate errs by; where "
+     "the samples err less they stay. Where albedo is "
+     "there light alone is filtered, not textures. Emission and specular are filtered by what mirrors and glass show "
+     "(channels seen). With coverage edges are put "
      "together from the surfaces that a pixel sees.\n"
      "\n"
-     "Frames of other programs get halves from their variance, or from what neighbours differ by where they have albedo; without either they stay as they are.\n"
+     "Frames of other programs get halves from their variance, or from what neighbours differ by where they have "
+     "albedo; without either they stay as they are.\n"
      "\n"
-     "st-filter mesh SCENE --photons FILE -o FILE makes light textures instead: photons are counted by small triangles of the surfaces and smoothed "
-     "along them; frame-render --meshirrad reads them (docs/methods/light_textures.md). Its options: st-filter mesh --help.",
+     "st-filter mesh SCENE --photons FILE -o FILE makes light textures instead: photons are counted by small triangles "
+     "of the surfaces and smoothed "
+     "along them; frame-render --meshirrad reads them (docs/methods/light_textures.md). Its options: st-filter mesh "
+     "--help.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
      "flow .exr: where pixels go and came from (formats/flow/flow.md)\n"
      ".meshirrad: written by st-filter mesh (formats/meshirrad/meshirrad.md)",
@@ -154,8 +188,10 @@ constexpr ManualText kTexts[] = {
      "frame-render room.glb --frame 12 --size 640x360 --meshirrad 12.meshirrad -o 12.exr",
      "frame-render aqm-compare tempolux-info"},
     {"volume-compose",
-     "Puts the smoke of a scene into a frame: photons in media (photon-trace --kinds ...,volume) are summed in cells and smoothed, "
-     "each pixel's rays march through the smoke to the surfaces of the scene, and lamps are sampled on the way. The base is a "
+     "Puts the smoke of a scene into a frame: photons in media (photon-trace --kinds ...,volume) are summed in cells "
+     "and smoothed, "
+     "each pixel's rays march through the smoke to the surfaces of the scene, and lamps are sampled on the way. The "
+     "base is a "
      "frame of the same scene, whose light frame-render has dimmed already, or any frame with a channel Z.",
      "frame .exr: read and written, with layer volume (formats/frames/frames.md)\n"
      ".photons: read (formats/photons/photons.md)\n"

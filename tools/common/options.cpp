@@ -18,15 +18,12 @@ namespace {
 
 /// An option that is text on the command line and a value after `parse`; errors name the option.
 CLI::Option* parsed_option(CLI::App& app, const std::string& names, const std::string& help,
-                           const std::string& shown_default,
-                           const std::function<void(const std::string&)>& parse) {
+                           const std::string& shown_default, const std::function<void(const std::string&)>& parse) {
   const std::string first = names.substr(0, names.find(','));
   const std::function<void(const std::string&)> named = [first, parse](const std::string& text) {
     try {
       parse(text);
-    } catch (const InputError& error) {
-      throw InputError(first + ": " + error.what());
-    }
+    } catch (const InputError& error) { throw InputError(first + ": " + error.what()); }
   };
   CLI::Option* option = app.add_option_function<std::string>(names, named, help);
   if (!shown_default.empty()) option->default_str(shown_default);
@@ -90,8 +87,7 @@ std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<H
 std::string version_text(const std::string& tool) {
   std::string libraries;
   dl_iterate_phdr(add_library, &libraries);
-  return tool +
-         " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__ "\nlibraries: CLI11-" CLI11_VERSION +
+  return tool + " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__ "\nlibraries: CLI11-" CLI11_VERSION +
          libraries + '\n';
 }
 
@@ -118,12 +114,11 @@ void Tool::environment_options() {
                               ->type_name("X")
                               ->capture_default_str()
                               ->check(number_between(0, 1e30));
-  CLI::Option* rotation =
-      app.add_option("--environment-rotation", common.environment_rotation_deg,
-                     "turns the map about +Y, from +Z towards +X, degrees")
-          ->type_name("DEG")
-          ->capture_default_str()
-          ->check(number_between(-1e6, 1e6));
+  CLI::Option* rotation = app.add_option("--environment-rotation", common.environment_rotation_deg,
+                                         "turns the map about +Y, from +Z towards +X, degrees")
+                              ->type_name("DEG")
+                              ->capture_default_str()
+                              ->check(number_between(-1e6, 1e6));
   app.parse_complete_callback([=] {
     needs_one(strength);
     needs_one(rotation);
@@ -133,9 +128,10 @@ void Tool::environment_options() {
 void Tool::volume_options() {
   CLI::App& app = state_->app;
   VolumeOptions& volume = state_->common.volume;
-  app.add_option("--volume", volume.files,
-                 "OpenVDB file, or a pattern as smoke.####.vdb: a medium, in metres of world space, instead of those the scene "
-                 "names; none: without any. Again for several")
+  app.add_option(
+         "--volume", volume.files,
+         "OpenVDB file, or a pattern as smoke.####.vdb: a medium, in metres of world space, instead of those the scene "
+         "names; none: without any. Again for several")
       ->type_name("FILE")
       ->allow_extra_args(false);
   app.add_option("--volume-grid", volume.grids,
@@ -162,7 +158,8 @@ void Tool::volume_options() {
       ->type_name("R,G,B")
       ->allow_extra_args(false);
   app.add_option("--majorants", volume.majorants,
-                 "state/majorants.FFFF of scene-plan: bounds of the media that hold for a whole segment, for maps that are updated")
+                 "state/majorants.FFFF of scene-plan: bounds of the media that hold for a whole segment, for maps that "
+                 "are updated")
       ->type_name("FILE");
   app.add_option("--phase-g", volume.phase_g, "mean cosine of scattering by Henyey and Greenstein: forward above 0 [0]")
       ->type_name("X")
@@ -182,7 +179,8 @@ void Tool::common_options(unsigned flags) {
                   [&common](const std::string& text) { common.frames = parse_frames(text); })
         ->type_name("FRAMES");
   if (flags & uses_camera)
-    app.add_option("--camera", common.camera, "name of the camera; auto: the first of the scene, or one that frames what it holds")
+    app.add_option("--camera", common.camera,
+                   "name of the camera; auto: the first of the scene, or one that frames what it holds")
         ->type_name("NAME")
         ->capture_default_str();
   if (flags & uses_seed) {
@@ -222,8 +220,7 @@ void Tool::common_options(unsigned flags) {
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
-    left_out(
-        app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
+    left_out(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
     left_out(app.add_option("--max-texture", common.max_texture, "refuse images of textures of more pixels on a side"))
         ->type_name("N")
         ->check(number_between(1, 65536))
@@ -233,8 +230,7 @@ void Tool::common_options(unsigned flags) {
         ->type_name("N")
         ->check(number_between(0, 65536))
         ->capture_default_str();
-    left_out(app.add_flag("--allow-outside", common.allow_outside,
-                          "follow file names that leave the scene's folder"));
+    left_out(app.add_flag("--allow-outside", common.allow_outside, "follow file names that leave the scene's folder"));
   }
   left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")
@@ -242,12 +238,12 @@ void Tool::common_options(unsigned flags) {
       ->envname("TEMPOLUX_THREADS")
       ->check(number_between(0, 4096));
   left_out(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
-  left_out(app.add_option("--stats", common.stats_file,
-                          "write seconds, counts and memory as JSON; -: standard output"))
+  left_out(app.add_option("--stats", common.stats_file, "write seconds, counts and memory as JSON; -: standard output"))
       ->type_name("FILE");
   left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
       ->type_name("FILE");
-  left_out(app.add_option("--said", common.said_file, "file of warnings that another tool has given, a line each: they are not repeated"))
+  left_out(app.add_option("--said", common.said_file,
+                          "file of warnings that another tool has given, a line each: they are not repeated"))
       ->type_name("FILE");
   left_out(app.add_flag("--no-clobber", common.no_clobber, "refuse to replace an output that exists"));
   left_out(app.add_flag("-q,--quiet", common.quiet, "no words but errors"));

@@ -29,7 +29,7 @@ namespace tempolux::tools {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr std::size_t kDirectBytes = std::size_t{1} << 14;   ///< pieces from this size on are not copied first
+constexpr std::size_t kDirectBytes = std::size_t{1} << 14;  ///< pieces from this size on are not copied first
 
 /// ".NAME.tmp.HOST." in the folder of `target`; a name too long for the file system is cut and hashed.
 std::filesystem::path temporary_stem(const std::filesystem::path& target, const std::string& host) {
@@ -77,21 +77,15 @@ std::string reason_and_remedy(int error) {
   const std::string reason = std::strerror(error);
   switch (error) {
     case ENOSPC:
-    case EDQUOT:
-      return reason + "; free space there or choose another folder";
-    case EFBIG:
-      return reason + "; raise the limit of file sizes (ulimit -f)";
-    case EPIPE:
-      return reason + "; the reader of the pipe ended early";
+    case EDQUOT: return reason + "; free space there or choose another folder";
+    case EFBIG: return reason + "; raise the limit of file sizes (ulimit -f)";
+    case EPIPE: return reason + "; the reader of the pipe ended early";
     case EROFS:
     case EACCES:
-    case EPERM:
-      return reason + "; choose a folder that can be written";
+    case EPERM: return reason + "; choose a folder that can be written";
     case ENOENT:
-    case ENOTDIR:
-      return reason + "; make the folder first";
-    default:
-      return reason;
+    case ENOTDIR: return reason + "; make the folder first";
+    default: return reason;
   }
 }
 
@@ -135,10 +129,10 @@ struct Ledger {
   };
   std::mutex mutex;
   std::vector<Line> lines;
-  std::set<std::string> open_keys;   ///< of the lines that are open
+  std::set<std::string> open_keys;  ///< of the lines that are open
   std::map<FileId, std::string>
-      to_be_replaced;  ///< by the lines that are open: what stands under their names, and these
-  std::map<FileId, std::string> inputs;           ///< and their names
+      to_be_replaced;                    ///< by the lines that are open: what stands under their names, and these
+  std::map<FileId, std::string> inputs;  ///< and their names
 
   /// Neither number is an input's for good: a file that is gone leaves it to another.
   void refuse_input(const FileId& id, const std::string& output) const {
@@ -295,8 +289,7 @@ struct Output::State : std::streambuf {
     int result = renameat2(AT_FDCWD, temporary->path(), AT_FDCWD, target.c_str(), flags);
     if (result != 0 && flags == 0 && (errno == EINVAL || errno == ENOSYS))
       result = rename(temporary->path(), target.c_str());
-    if (result != 0 && errno == EEXIST)
-      throw InputError(path + ": exists; leave out --no-clobber to replace it");
+    if (result != 0 && errno == EEXIST) throw InputError(path + ": exists; leave out --no-clobber to replace it");
     if (result != 0) fail(path, "cannot rename the finished file", errno);
     temporary->release();
     if (!sync) return;

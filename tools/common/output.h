@@ -34,7 +34,7 @@ class Output {
   /// Writes bytes through a buffer of 1 MiB of its own; throws ResourceError with the reason.
   void write(const void* data, std::size_t size);
   std::uint64_t written() const;  ///< bytes, by write() so far
-  std::ostream& stream();  ///< the same buffer as a std::ostream; errors throw as above
+  std::ostream& stream();         ///< the same buffer as a std::ostream; errors throw as above
 
   /// What was written so far can be read at temporary_path(). Throws as write().
   void flush();

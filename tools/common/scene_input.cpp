@@ -24,7 +24,9 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
     scene_.warnings.push_back(path + ": " + add_content_camera(scene_));
   if (needs & a_camera) scene_.camera_node(common.camera);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
-  if (const std::string doubt = doubt_of_light_units(scene_); needs & light && common.light_units == "raw" && !doubt.empty()) tool.warn(doubt);
+  if (const std::string doubt = doubt_of_light_units(scene_);
+      needs & light && common.light_units == "raw" && !doubt.empty())
+    tool.warn(doubt);
   for (const std::string& file : scene_.files) tool.depends_on(file, InputRole::of_scene);
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;
@@ -63,9 +65,9 @@ bool SceneInput::has_distant_light() const {
          });
 }
 
-/// Light from far away is sent through a sphere around all that it can meet: media of the frame belong to that. So with both each
-/// frame has bounds of its own, the same whether it is made alone or as one of a range; under frozen majorants the box of these
-/// takes the media's place, so that photons of all frames of the segment start alike.
+/// Light from far away is sent through a sphere around all that it can meet: media of the frame belong to that. So with
+/// both each frame has bounds of its own, the same whether it is made alone or as one of a range; under frozen
+/// majorants the box of these takes the media's place, so that photons of all frames of the segment start alike.
 void SceneInput::enter_segment(int frame, bool read_volumes) {
   const bool inside = segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last;
   const bool adds_media = read_volumes && volumes_->any() && has_distant_light();
@@ -73,11 +75,14 @@ void SceneInput::enter_segment(int frame, bool read_volumes) {
   Segment segment = segment_of(scene_, frame, time_);
   bounds_of_.reset();
   if (adds_media) {
-    const auto add = [&](const Box3d& box) { segment.world_bounds.add({box.lower + segment.origin, box.upper + segment.origin}); };
+    const auto add = [&](const Box3d& box) {
+      segment.world_bounds.add({box.lower + segment.origin, box.upper + segment.origin});
+    };
     if (const auto media = volumes_->at(frame, segment.origin)) {
       const Box3& frozen = media->majorants().box();
       if (volumes_->frozen()) add({Vec3d(frozen.lower), Vec3d(frozen.upper)});
-      else for (const Medium& medium : media->all()) add(medium.bounds());
+      else
+        for (const Medium& medium : media->all()) add(medium.bounds());
     }
     bounds_of_ = frame;
   }
@@ -126,8 +131,8 @@ void check_identity(Tool& tool, const std::string& file, const formats::Identity
   }
   const std::string stale = formats::stale_concerns(file_identity, identity_of(frame));
   if (stale.empty()) return;
-  const std::string message = file + ": made for another state of the scene: " + stale + " differ at frame " +
-                              std::to_string(frame.frame);
+  const std::string message =
+      file + ": made for another state of the scene: " + stale + " differ at frame " + std::to_string(frame.frame);
   if (!tool.common().allow_stale) throw InputError(message + "; make it again for this one, or pass --allow-stale");
   tool.warn(message);
 }

@@ -50,7 +50,7 @@ class SceneInput {
   Scene scene_;
   TimeOptions time_;
   std::optional<VolumeInput> volumes_;
-  std::optional<int> bounds_of_;   ///< frame whose media the segment's bounds hold
+  std::optional<int> bounds_of_;  ///< frame whose media the segment's bounds hold
   std::unique_ptr<SegmentScene> segment_;
   std::optional<EmissionTable> emission_;
   bool warned_range_ = false;

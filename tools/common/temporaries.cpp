@@ -27,8 +27,7 @@ static_assert(std::atomic<Temporary::Entry*>::is_always_lock_free && std::atomic
 extern "C" void remove_temporaries_and_end(int signal) {
   const int saved = errno;
   if (const pid_t child = running_child.load(); child > 0 && kill(child, SIGTERM) == 0)
-    while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {}
   for (Temporary::Entry* entry = first_entry.load(); entry; entry = entry->next)
     if (entry->live.load() && unlink(entry->path.c_str()) != 0 && errno == EISDIR) rmdir(entry->path.c_str());
   struct sigaction standard = {};
@@ -43,8 +42,7 @@ extern "C" void remove_temporaries_and_end(int signal) {
 Temporary::Temporary(const std::string& path) : entry_(new Entry) {
   entry_->path = path;
   entry_->next = first_entry.load();
-  while (!first_entry.compare_exchange_weak(entry_->next, entry_)) {
-  }
+  while (!first_entry.compare_exchange_weak(entry_->next, entry_)) {}
 }
 
 Temporary::~Temporary() { remove(); }
@@ -65,8 +63,7 @@ void install_signal_handlers() {
   sigfillset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
     action.sa_handler = remove_temporaries_and_end;
-    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-      sigaction(signal, &action, nullptr);
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
   action.sa_handler = SIG_IGN;
   pipe_may_end = sigaction(SIGPIPE, &action, &before) == 0 && before.sa_handler != SIG_IGN;

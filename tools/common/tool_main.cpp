@@ -64,7 +64,7 @@ void flush_stdout() {
   if (std::fflush(stdout) == 0 && std::cout) return;
   int error = errno ? errno : EIO;
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
-  if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR)) error = EPIPE;   // failed long before: errno is another's
+  if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR)) error = EPIPE;  // failed long before: errno is another's
   if (error == EPIPE) end_by_broken_pipe();
   throw ResourceError(std::string("standard output: write failed: ") + std::strerror(error));
 }
@@ -197,8 +197,7 @@ int Tool::State::run(const std::function<int()>& body, const Tool& tool) {
   for (const std::string& file : common.state_files) protect_input(file);
   // Created before the work, as all outputs: a place that cannot be written is noticed now.
   std::optional<Output> stats_output, dep_output;
-  if (!common.stats_file.empty())
-    stats_output.emplace(common.stats_file, common.no_clobber, Output::Kind::text);
+  if (!common.stats_file.empty()) stats_output.emplace(common.stats_file, common.no_clobber, Output::Kind::text);
   if (!common.dep_file.empty()) dep_output.emplace(common.dep_file, common.no_clobber, Output::Kind::text);
 
   const int code = body();
@@ -233,9 +232,7 @@ int Tool::run(const std::function<int()>& body) {
       if (state.print_manual()) return flush_stdout(), code;
       state.parse();
       code = state.run(body, *this);
-    } catch (const CLI::CallForHelp&) {
-      std::cout << state.app.help();
-    } catch (const CLI::CallForVersion&) {
+    } catch (const CLI::CallForHelp&) { std::cout << state.app.help(); } catch (const CLI::CallForVersion&) {
       std::cout << version_text(state.name);
     }
     flush_stdout();
@@ -246,15 +243,11 @@ int Tool::run(const std::function<int()>& body) {
     return fail(exit_bad_input, error.what());
   } catch (const std::invalid_argument& error) {
     return fail(exit_bad_input, error.what());
-  } catch (const ResourceError& error) {
-    return fail(exit_cannot, error.what());
-  } catch (const std::bad_alloc&) {
+  } catch (const ResourceError& error) { return fail(exit_cannot, error.what()); } catch (const std::bad_alloc&) {
     return fail(exit_cannot, out_of_memory_text(state.common));
   } catch (const std::system_error& error) {
     return fail(exit_cannot, error.what());
-  } catch (const std::exception& error) {
-    return fail(exit_cannot, std::string("unexpected: ") + error.what());
-  }
+  } catch (const std::exception& error) { return fail(exit_cannot, std::string("unexpected: ") + error.what()); }
 }
 
 }  // namespace tempolux::tools

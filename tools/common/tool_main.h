@@ -46,21 +46,22 @@ enum class InputRole {
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,  ///< --fps --segment --animation --light-units --environment... --volume... --state --allow-stale --allow-outside
-  uses_seed = 2,   ///< --seed --seed-mode
+  uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --volume... --state --allow-stale
+                    ///< --allow-outside
+  uses_seed = 2,    ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
 };
 
 /// Media that the command line names; a list has one value for all volumes or one for each.
 struct VolumeOptions {
-  std::vector<std::string> files;            ///< names or patterns; "none": what the scene names is left out
+  std::vector<std::string> files;  ///< names or patterns; "none": what the scene names is left out
   std::vector<std::string> grids;
-  std::vector<float> sigma_t;                ///< 1/m
+  std::vector<float> sigma_t;  ///< 1/m
   std::vector<std::array<float, 3>> albedo;
   std::vector<float> phase_g;
-  std::optional<std::pair<int, int>> frames; ///< that have files
-  std::string majorants;                     ///< file of scene-plan; "": each frame has its own
+  std::optional<std::pair<int, int>> frames;  ///< that have files
+  std::string majorants;                      ///< file of scene-plan; "": each frame has its own
 };
 
 /// Values of the common options.
@@ -73,8 +74,8 @@ struct Common {
   double fps = 24;
   int segment_length = 24;
   std::string light_units = "raw";
-  std::string animation;  ///< name of the one to play; "": all
-  std::string environment;                              ///< file; "": none
+  std::string animation;    ///< name of the one to play; "": all
+  std::string environment;  ///< file; "": none
   std::optional<std::array<float, 3>> environment_color;
   double environment_strength = 1, environment_rotation_deg = 0;
   VolumeOptions volume;
@@ -104,8 +105,7 @@ class Tool {
   const Common& common() const;
 
   /// Adds -o,--output (or another option that names an output, which then stays out of the history).
-  CLI::Option* output_option(std::string& path, const std::string& help,
-                             const std::string& names = "-o,--output");
+  CLI::Option* output_option(std::string& path, const std::string& help, const std::string& names = "-o,--output");
   /// Adds an option whose value is a count ("1M"), bytes ("2GiB") or "WIDTHxHEIGHT"; the default shown by
   /// --help is the variable's value.
   CLI::Option* count_option(const std::string& names, std::uint64_t& count, const std::string& help);

@@ -10,15 +10,15 @@
 namespace tempolux::tools {
 namespace {
 
-constexpr std::size_t kMostKept = std::size_t(1) << 30;   ///< bytes of voxels that stay in memory for frames to come
+constexpr std::size_t kMostKept = std::size_t(1) << 30;  ///< bytes of voxels that stay in memory for frames to come
 
 /// The value for volume i of n: its own, or the one given for all, or none.
 template <class T>
 const T* value_for(const std::vector<T>& values, std::size_t i, std::size_t n, const char* option) {
   if (values.empty()) return nullptr;
   if (values.size() != 1 && values.size() != n)
-    throw InputError(std::string(option) + ": is given " + std::to_string(values.size()) + " times for " + std::to_string(n) +
-                     " volumes; give it once, or once for each");
+    throw InputError(std::string(option) + ": is given " + std::to_string(values.size()) + " times for " +
+                     std::to_string(n) + " volumes; give it once, or once for each");
   return &values[values.size() == 1 ? 0 : i];
 }
 
@@ -30,7 +30,8 @@ std::string file_of(const VolumeSource& source, int frame) {
 
 /// Do all volumes have the same file at both frames?
 bool same_files(const std::vector<VolumeSource>& sources, int a, int b) {
-  return a == b || std::ranges::all_of(sources, [&](const VolumeSource& source) { return file_of(source, a) == file_of(source, b); });
+  return a == b || std::ranges::all_of(
+                       sources, [&](const VolumeSource& source) { return file_of(source, a) == file_of(source, b); });
 }
 
 std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
@@ -42,7 +43,8 @@ std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
     source.pattern = options.files[i];
     if (const auto* grid = value_for(options.grids, i, n, "--volume-grid")) source.grid = *grid;
     if (const auto* sigma = value_for(options.sigma_t, i, n, "--sigma-t")) source.options.sigma_t = *sigma;
-    if (const auto* albedo = value_for(options.albedo, i, n, "--albedo")) source.options.albedo = Rgb((*albedo)[0], (*albedo)[1], (*albedo)[2]);
+    if (const auto* albedo = value_for(options.albedo, i, n, "--albedo"))
+      source.options.albedo = Rgb((*albedo)[0], (*albedo)[1], (*albedo)[2]);
     if (const auto* g = value_for(options.phase_g, i, n, "--phase-g")) source.options.g = *g;
     if (max_component(source.options.albedo) > 1) throw InputError("--albedo: a share of light is at most 1");
     if (options.frames) source.frames = *options.frames;
@@ -58,9 +60,10 @@ VolumeInput::VolumeInput(Tool& tool, const Scene& scene) : tool_(tool) {
   const bool none = options.files.size() == 1 && options.files.front() == "none";
   if (options.files.empty()) sources_ = volumes_of(scene, tool.common().allow_outside);
   else if (!none) sources_ = sources_of(options);
-  if ((options.files.empty() || none) &&
-      (!options.grids.empty() || !options.sigma_t.empty() || !options.albedo.empty() || !options.phase_g.empty() || options.frames))
-    throw InputError("--volume-grid, --volume-frames, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
+  if ((options.files.empty() || none) && (!options.grids.empty() || !options.sigma_t.empty() ||
+                                          !options.albedo.empty() || !options.phase_g.empty() || options.frames))
+    throw InputError(
+        "--volume-grid, --volume-frames, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
 }
 
 int VolumeInput::last_frame() const {
@@ -106,7 +109,8 @@ const MajorantGrid* VolumeInput::majorants_for(int frame, Vec3d origin) {
   }
   if (frame < majorants_->first_frame || frame > majorants_->last_frame)
     throw InputError(file + ": holds for frames " + std::to_string(majorants_->first_frame) + " to " +
-                     std::to_string(majorants_->last_frame) + ", not for " + std::to_string(frame) + "; name that of its segment");
+                     std::to_string(majorants_->last_frame) + ", not for " + std::to_string(frame) +
+                     "; name that of its segment");
   scene_majorants_ = moved(majorants_->grid, origin);
   return &scene_majorants_;
 }
@@ -121,7 +125,8 @@ std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
     std::vector<VdbName> names;
     for (const int f : tool_.common().frames)
       for (const VolumeSource& source : sources_)
-        if (const VdbName name{file_of(source, f), source.grid}; std::ranges::find(names, name) == names.end()) names.push_back(name);
+        if (const VdbName name{file_of(source, f), source.grid}; std::ranges::find(names, name) == names.end())
+          names.push_back(name);
     series_.emplace(std::move(names));
   }
   for (const std::string& file : files)
@@ -142,9 +147,11 @@ std::shared_ptr<const Media> VolumeInput::at(int frame, Vec3d origin) {
   std::vector<Medium> media = read(frame, origin);
   if (const MajorantGrid* const majorants = majorants_for(frame, origin)) {
     try {
-      last_ = majorants->empty() && media.empty() ? nullptr : std::make_shared<const Media>(std::move(media), *majorants);
+      last_ =
+          majorants->empty() && media.empty() ? nullptr : std::make_shared<const Media>(std::move(media), *majorants);
     } catch (const std::invalid_argument& error) {
-      throw InputError(tool_.common().volume.majorants + ": " + error.what() + " at frame " + std::to_string(frame) + "; run scene-plan again");
+      throw InputError(tool_.common().volume.majorants + ": " + error.what() + " at frame " + std::to_string(frame) +
+                       "; run scene-plan again");
     }
   } else {
     last_ = media.empty() ? nullptr : std::make_shared<const Media>(std::move(media));

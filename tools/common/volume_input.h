@@ -16,8 +16,8 @@ namespace tempolux::tools {
 
 class VolumeInput {
  public:
-  /// `--volume` takes the place of what the scene names; "none" leaves that out. Throws InputError for options that do not
-  /// fit each other.
+  /// `--volume` takes the place of what the scene names; "none" leaves that out. Throws InputError for options that do
+  /// not fit each other.
   VolumeInput(Tool& tool, const Scene& scene);
 
   bool any() const { return !sources_.empty(); }
@@ -47,11 +47,11 @@ class VolumeInput {
     Vec3d origin;
     std::vector<Medium> media;
   };
-  std::map<int, Kept> kept_;                 ///< what read() gave, as far as kMostKept allows
+  std::map<int, Kept> kept_;  ///< what read() gave, as far as kMostKept allows
   std::size_t kept_bytes_ = 0;
   std::optional<FrozenMajorants> majorants_;
   MajorantGrid scene_majorants_;
-  std::shared_ptr<const Media> last_;        ///< what at() gave last
+  std::shared_ptr<const Media> last_;  ///< what at() gave last
   int last_at_ = 0;
   Vec3d last_origin_;
   bool has_last_ = false;

@@ -12,13 +12,13 @@ namespace tempolux::tools {
 namespace {
 
 constexpr std::array<const char*, 3> kLayers{"direct", "caustic", "indirect"};
-constexpr double kLimit = 0.02, kErrors = 3;   // as FrameAudit's is_biased()
+constexpr double kLimit = 0.02, kErrors = 3;  // as FrameAudit's is_biased()
 
 /// Of one layer over the frames.
 struct Sum {
   int frames = 0;
   double share = 0, share_square = 0, of_layer = 0, of_layer_square = 0;
-  double worst = 0, worst_error = 0;   ///< share of the picture, of the object that is farthest off
+  double worst = 0, worst_error = 0;  ///< share of the picture, of the object that is farthest off
   std::string worst_name;
 
   double mean() const { return share / frames; }
@@ -39,15 +39,16 @@ const double* number(const Image& image, const std::string& name) {
 
 void add(const Image& image, const std::string& layer, const std::string& frame, Sum& sum) {
   const std::string name = "audit." + layer;
-  const double *share = number(image, name), *error = number(image, name + "_error"), *of = number(image, name + ".of_layer"),
-               *of_error = number(image, name + ".of_layer_error");
+  const double *share = number(image, name), *error = number(image, name + "_error"),
+               *of = number(image, name + ".of_layer"), *of_error = number(image, name + ".of_layer_error");
   if (!share || !error || !of || !of_error) return;
   ++sum.frames;
   sum.share += *share;
   sum.share_square += *error * *error;
   sum.of_layer += *of;
   sum.of_layer_square += *of_error * *of_error;
-  const double *worst = number(image, name + ".worst_object"), *worst_error = number(image, name + ".worst_object_error"),
+  const double *worst = number(image, name + ".worst_object"),
+               *worst_error = number(image, name + ".worst_object_error"),
                *id = number(image, name + ".worst_object_id");
   if (!worst || !worst_error || !id || std::abs(*worst) <= std::abs(sum.worst)) return;
   sum.worst = *worst;
@@ -60,7 +61,7 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
 FramesAccount account_of_frames(const std::vector<std::string>& files) {
   std::array<Sum, kLayers.size()> sums;
   for (const std::string& file : files) {
-    ExrReadOptions attributes;   // and one channel: a picture without any is none
+    ExrReadOptions attributes;  // and one channel: a picture without any is none
     attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
     const Image image = load_exr(file, attributes);
     for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l], file, sums[l]);
@@ -69,13 +70,16 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
   for (std::size_t l = 0; l < kLayers.size(); ++l) {
     const Sum& sum = sums[l];
     if (sum.frames == 0) continue;
-    std::string text = std::string(kLayers[l]) + " light " + percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames) + " (" +
+    std::string text = std::string(kLayers[l]) + " light " +
+                       percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames) + " (" +
                        percent(sum.mean(), sum.error()) + " of the picture)";
-    if (!sum.worst_name.empty()) text += ", most by " + sum.worst_name + " (" + percent(sum.worst, sum.worst_error) + " of the picture)";
+    if (!sum.worst_name.empty())
+      text += ", most by " + sum.worst_name + " (" + percent(sum.worst, sum.worst_error) + " of the picture)";
     account.line += (account.line.empty() ? "audit of " + std::to_string(sum.frames) + " frames: " : "; ") + text;
     if (sum.biased() && l > 0)
       account.warnings.push_back(std::string(kLayers[l]) + " light is off by " + percent(sum.mean(), sum.error()) +
-                                 " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or INDIRECT=paths mend it");
+                                 " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
+                                 "INDIRECT=paths mend it");
   }
   return account;
 }

@@ -18,9 +18,11 @@ struct ComparedFile {
 
 /// The keys that come first: files, type, equal, and the headers' values that differ.
 inline Facts difference_of_headers(const char* type, const ComparedFile& a, const ComparedFile& b) {
-  Facts facts = {{"files", {a.path, b.path}}, {"type", type}, {"equal", a.digest == b.digest}, {"differing", Facts::object()}};
+  Facts facts = {
+      {"files", {a.path, b.path}}, {"type", type}, {"equal", a.digest == b.digest}, {"differing", Facts::object()}};
   for (const auto& [key, value] : a.header.items())
-    if (!b.header.contains(key) || b.header[key] != value) facts["differing"][key] = {value, b.header.contains(key) ? b.header[key] : Facts()};
+    if (!b.header.contains(key) || b.header[key] != value)
+      facts["differing"][key] = {value, b.header.contains(key) ? b.header[key] : Facts()};
   return facts;
 }
 
@@ -39,12 +41,15 @@ void add_differing_records(const Records& a, const Records& b, Facts& facts) {
   facts["records_differing"] = count_differing(a, b);
 }
 
-/// All of it for files that are a header and one array of records: how they are read, what of a header is compared, where the records are.
+/// All of it for files that are a header and one array of records: how they are read, what of a header is compared,
+/// where the records are.
 template <class File, class Header, class Records>
-Facts difference_of_files(const char* type, const std::string& a, const std::string& b, File (*load)(const std::string&), Facts (*header_facts)(const Header&),
+Facts difference_of_files(const char* type, const std::string& a, const std::string& b,
+                          File (*load)(const std::string&), Facts (*header_facts)(const Header&),
                           Records File::*records) {
   const File file_a = load(a), file_b = load(b);
-  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)}, of_b{b, digest_of(file_b), header_facts(file_b.header)};
+  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)},
+      of_b{b, digest_of(file_b), header_facts(file_b.header)};
   Facts facts = difference_of_headers(type, of_a, of_b);
   add_differing_records(file_a.*records, file_b.*records, facts);
   facts["digests"] = {of_a.digest, of_b.digest};

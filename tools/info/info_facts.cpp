@@ -97,9 +97,8 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x89TRADS")) return FileType::radsamples;
   if (head.starts_with("\x89TMESH")) return FileType::meshirrad;
   if (head.starts_with("\x89TLGRD")) return FileType::lightgrid;
-  if (path == "-") return FileType::photons;   // whose reader says what is wrong
-  if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{')
-    return FileType::json;
+  if (path == "-") return FileType::photons;  // whose reader says what is wrong
+  if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{') return FileType::json;
   for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
     if (head.starts_with(magic)) return FileType::image;
   if (head.starts_with("glTF")) throw InputError(path + ": a scene; scene-plan says what is in it");
@@ -108,24 +107,15 @@ FileType file_type(const std::string& path) {
 
 Facts facts_of(const std::string& path, bool allow_nan) {
   switch (file_type(path)) {
-    case FileType::photons:
-      return photon_facts(path);
-    case FileType::paths:
-      return paths_facts(path);
-    case FileType::irradpoints:
-      return irradpoints_facts(path);
-    case FileType::irradcache:
-      return irradcache_facts(path);
-    case FileType::radsamples:
-      return radsamples_facts(path);
-    case FileType::meshirrad:
-      return meshirrad_facts(path);
-    case FileType::lightgrid:
-      return lightgrid_facts(path);
-    case FileType::image:
-      return image_facts(path, allow_nan);
-    case FileType::json:
-      break;
+    case FileType::photons: return photon_facts(path);
+    case FileType::paths: return paths_facts(path);
+    case FileType::irradpoints: return irradpoints_facts(path);
+    case FileType::irradcache: return irradcache_facts(path);
+    case FileType::radsamples: return radsamples_facts(path);
+    case FileType::meshirrad: return meshirrad_facts(path);
+    case FileType::lightgrid: return lightgrid_facts(path);
+    case FileType::image: return image_facts(path, allow_nan);
+    case FileType::json: break;
   }
   return json_facts(path);
 }
@@ -136,43 +126,30 @@ Facts difference_of(const std::string& a, const std::string& b) {
   const FileType type = file_type(a);
   if (type != file_type(b)) throw InputError(b + ": of another type than " + a + "; nothing to compare");
   switch (type) {
-    case FileType::photons:
-      return photon_difference(a, b);
-    case FileType::paths:
-      return paths_difference(a, b);
-    case FileType::irradpoints:
-      return irradpoints_difference(a, b);
-    case FileType::irradcache:
-      return irradcache_difference(a, b);
-    case FileType::radsamples:
-      return radsamples_difference(a, b);
-    case FileType::meshirrad:
-      return meshirrad_difference(a, b);
-    case FileType::lightgrid:
-      return lightgrid_difference(a, b);
-    case FileType::image:
-      return image_difference(a, b);
-    case FileType::json:
-      break;
+    case FileType::photons: return photon_difference(a, b);
+    case FileType::paths: return paths_difference(a, b);
+    case FileType::irradpoints: return irradpoints_difference(a, b);
+    case FileType::irradcache: return irradcache_difference(a, b);
+    case FileType::radsamples: return radsamples_difference(a, b);
+    case FileType::meshirrad: return meshirrad_difference(a, b);
+    case FileType::lightgrid: return lightgrid_difference(a, b);
+    case FileType::image: return image_difference(a, b);
+    case FileType::json: break;
   }
   return json_difference(a, b);
 }
 
 void export_points(const std::string& path, const std::string& format, Output& output) {
   switch (file_type(path)) {
-    case FileType::photons:
-      return export_photons(path, format, output);
-    case FileType::irradpoints:
-      return export_irradpoints(path, format, output);
-    case FileType::irradcache:
-      return export_irradcache(path, format, output);
+    case FileType::photons: return export_photons(path, format, output);
+    case FileType::irradpoints: return export_irradpoints(path, format, output);
+    case FileType::irradcache: return export_irradcache(path, format, output);
     case FileType::paths:
     case FileType::radsamples:
     case FileType::meshirrad:
     case FileType::lightgrid:
     case FileType::image:
-    case FileType::json:
-      break;
+    case FileType::json: break;
   }
   throw InputError(path + ": holds no points to export; use --png or --json");
 }

@@ -58,7 +58,8 @@ std::string facts_as_text(const Facts& facts);
 /// Photons, irradiance points or records as points, one by one in file order: PLY (binary, with colours for
 /// viewers: the brightest is white) or CSV.
 void export_photons(const std::string& path, const std::string& format, Output& output);
-/// A line of CSV for each group of a .photons file: when it was traced, with how many paths. InputError if the file does not say.
+/// A line of CSV for each group of a .photons file: when it was traced, with how many paths. InputError if the file
+/// does not say.
 void print_groups(const std::string& path, Output& output);
 void export_irradpoints(const std::string& path, const std::string& format, Output& output);
 void export_irradcache(const std::string& path, const std::string& format, Output& output);
@@ -67,10 +68,11 @@ void export_points(const std::string& path, const std::string& format, Output& o
 
 /// What frames say of the bias of their light (docs/methods/account.md), together.
 struct FramesAccount {
-  std::string line;                      ///< in words; empty if no frame says anything
-  std::vector<std::string> warnings;     ///< layers that are off by more than 2 % of the picture and three standard errors
+  std::string line;                   ///< in words; empty if no frame says anything
+  std::vector<std::string> warnings;  ///< layers that are off by more than 2 % of the picture and three standard errors
 };
-/// By the attributes of EXR files. The audits of frames are independent, so the error of their mean is sqrt(sum of squares) / n.
+/// By the attributes of EXR files. The audits of frames are independent, so the error of their mean is sqrt(sum of
+/// squares) / n.
 FramesAccount account_of_frames(const std::vector<std::string>& files);
 
 struct PictureOptions {

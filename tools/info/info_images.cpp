@@ -31,7 +31,9 @@ Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
 }
 
 /// What a picture of it needs.
-Image load_shown(const std::string& path, const PictureOptions& options) { return load(path, true, options.layer.empty()); }
+Image load_shown(const std::string& path, const PictureOptions& options) {
+  return load(path, true, options.layer.empty());
+}
 
 constexpr std::string_view kHistory = "tempolux:history";
 
@@ -39,12 +41,9 @@ constexpr std::string_view kHistory = "tempolux:history";
 Facts attribute_facts(const Image& image) {
   Facts facts = {{"history", Facts::array()}, {"identity", nullptr}};
   for (const auto& [name, value] : image.text) {
-    if (name == kHistory)
-      facts["history"] = lines_of(value);
-    else if (name.starts_with(kIdentityPrefix))
-      facts["identity"][name.substr(kIdentityPrefix.size())] = value;
-    else
-      facts[name] = value;
+    if (name == kHistory) facts["history"] = lines_of(value);
+    else if (name.starts_with(kIdentityPrefix)) facts["identity"][name.substr(kIdentityPrefix.size())] = value;
+    else facts[name] = value;
   }
   for (const auto& [name, value] : image.numbers) facts[name] = value;
   for (const auto& [name, value] : image.matrices) facts[name] = value;
@@ -56,9 +55,7 @@ template <class Make>
 auto named(const std::string& path, const Make& make) {
   try {
     return make();
-  } catch (const InputError& error) {
-    throw InputError(path + ": " + error.what());
-  }
+  } catch (const InputError& error) { throw InputError(path + ": " + error.what()); }
 }
 
 Facts channel_facts(const ChannelStatistics& channel) {
@@ -152,7 +149,8 @@ void write_picture(const std::string& path, const PictureOptions& options, Outpu
 
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
   for (const std::string& path : options.marked)
-    if (std::find(paths.begin(), paths.end(), path) == paths.end()) throw InputError("--mark " + path + ": is not among the images of the sheet");
+    if (std::find(paths.begin(), paths.end(), path) == paths.end())
+      throw InputError("--mark " + path + ": is not among the images of the sheet");
   PreviewOptions preview{options.layer, options.exposure_stops};
   const double steps = double(paths.size()) * (preview.exposure_stops ? 1 : 2);
   double done = 0;

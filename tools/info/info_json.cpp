@@ -15,9 +15,7 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = 256u << 20;
 constexpr int kMaxDepth = 32;
 
-[[noreturn]] void bad(const std::string& path, const std::string& why) {
-  throw InputError(path + ": " + why);
-}
+[[noreturn]] void bad(const std::string& path, const std::string& why) { throw InputError(path + ": " + why); }
 
 Facts parse(const std::string& path) {
   std::error_code error;
@@ -65,8 +63,7 @@ Facts load(const std::string& path) {
   if (schema.empty()) bad(path, "JSON, but not of ours: it has no \"schema\": \"tempolux...\"");
   const Facts version = document.value("version", Facts());
   const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
-  if (text != "1" && !text.starts_with("1."))
-    bad(path, "version " + text + " is not known; use a newer tempolux");
+  if (text != "1" && !text.starts_with("1.")) bad(path, "version " + text + " is not known; use a newer tempolux");
   if (schema == "tempolux.stats") check_stats(path, document);
   if (schema == "tempolux.comparison") check_comparison(path, document);
   return document;

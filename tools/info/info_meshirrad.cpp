@@ -13,13 +13,16 @@ namespace {
 using namespace formats;
 
 Facts header_facts(const MeshirradHeader& header) {
-  Facts facts = {{"kinds", header.kinds}, {"origin_m", header.origin}, {"cell_m", header.cell}, {"unit_W", header.unit}, {"filter", header.filter},
-                 {"holds", std::array{"frame", "counts", "windows"}[std::size_t(header.holds)]}};
+  Facts facts = {
+      {"kinds", header.kinds},   {"origin_m", header.origin},
+      {"cell_m", header.cell},   {"unit_W", header.unit},
+      {"filter", header.filter}, {"holds", std::array{"frame", "counts", "windows"}[std::size_t(header.holds)]}};
   if (header.holds == MeshHolds::counts) facts["jump"] = header.jump;
   return facts;
 }
 
-/// Frames in the windows of elements that photons arrived at, and how many frames the middle of a window lies after its own.
+/// Frames in the windows of elements that photons arrived at, and how many frames the middle of a window lies after its
+/// own.
 Facts window_facts(const MeshirradFile& file) {
   Spread frames, age;
   for (const MeshElement& e : file.elements) {
@@ -36,7 +39,7 @@ Facts window_facts(const MeshirradFile& file) {
 struct Sum {
   std::uint64_t elements = 0, photons = 0;
   double area = 0;
-  std::array<double, 3> counted{}, filtered{};   ///< W: by sums, a frame; by irradiance times area
+  std::array<double, 3> counted{}, filtered{};  ///< W: by sums, a frame; by irradiance times area
   void add(const MeshElement& e, double unit) {
     ++elements;
     photons += e.photons;
@@ -47,7 +50,11 @@ struct Sum {
     }
   }
   Facts facts() const {
-    return {{"elements", elements}, {"photons", photons}, {"area_m2", area}, {"counted_flux_W", counted}, {"filtered_flux_W", filtered}};
+    return {{"elements", elements},
+            {"photons", photons},
+            {"area_m2", area},
+            {"counted_flux_W", counted},
+            {"filtered_flux_W", filtered}};
   }
 };
 

@@ -13,8 +13,9 @@ using namespace formats;
 
 /// The header but for history and identity.
 Facts header_facts(const PathsHeader& header) {
-  return {{"kinds", header.kinds},   {"origin_m", header.origin}, {"groups", header.group_count},
-          {"emitted_paths", header.emitted_count}, {"seed", header.seed}, {"intervals", header.movers.size()}};
+  return {{"kinds", header.kinds},        {"origin_m", header.origin},
+          {"groups", header.group_count}, {"emitted_paths", header.emitted_count},
+          {"seed", header.seed},          {"intervals", header.movers.size()}};
 }
 
 /// Number of paths by interval.

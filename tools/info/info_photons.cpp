@@ -28,9 +28,8 @@ std::string column_names(std::uint32_t columns) {
 
 /// The header but for history and identity.
 Facts header_facts(const PhotonHeader& header) {
-  Facts facts = {
-      {"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
-      {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
+  Facts facts = {{"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
+                 {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
   if (!header.part.empty()) facts["part"] = header.part;
   if (header.pilots > 0) facts["pilots_of_a_group"] = header.pilots;
   if (!header.base_name.empty()) {
@@ -64,7 +63,8 @@ Facts group_facts(const std::vector<GroupFlux>& ledger) {
     by_frame[group.frame].second += group.paths;
   }
   Facts facts = Facts::array();
-  for (const auto& [frame, count] : by_frame) facts.push_back({{"frame", frame}, {"groups", count.first}, {"paths", count.second}});
+  for (const auto& [frame, count] : by_frame)
+    facts.push_back({{"frame", frame}, {"groups", count.first}, {"paths", count.second}});
   return facts;
 }
 
@@ -81,8 +81,7 @@ std::string ply_header(std::uint64_t count) {
 }
 
 /// One vertex as the header above says, little-endian as every machine we build for.
-void append_vertex(std::string& to, const std::array<double, 3>& position, const Photon& photon,
-                   double white) {
+void append_vertex(std::string& to, const std::array<double, 3>& position, const Photon& photon, double white) {
   static_assert(std::endian::native == std::endian::little);
   const auto put = [&to](const auto& value) {
     char bytes[sizeof value];
@@ -104,11 +103,10 @@ void append_row(std::string& to, const std::array<double, 3>& position, const Ph
   const Photon& photon = block.photons[i];
   const auto normal = decode_normal(photon.normal);
   char text[400];
-  const int length =
-      std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u", position[0],
-                    position[1], position[2], double(photon.flux[0]), double(photon.flux[1]),
-                    double(photon.flux[2]), double(normal[0]), double(normal[1]), double(normal[2]),
-                    unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
+  const int length = std::snprintf(
+      text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u", position[0], position[1], position[2],
+      double(photon.flux[0]), double(photon.flux[1]), double(photon.flux[2]), double(normal[0]), double(normal[1]),
+      double(normal[2]), unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
   to.append(text, std::size_t(length));
   const auto add = [&](double value) {
     to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value)));
@@ -159,8 +157,7 @@ Facts photon_difference(const std::string& a, const std::string& b) {
   };
   const PhotonHeader &header_a = reader_a.header(), &header_b = reader_b.header();
   compare_facts({{"history", lines_of(header_a.history)}}, {{"history", lines_of(header_b.history)}});
-  compare_facts({{"identity", identity_facts(header_a.identity)}},
-                {{"identity", identity_facts(header_b.identity)}});
+  compare_facts({{"identity", identity_facts(header_a.identity)}}, {{"identity", identity_facts(header_b.identity)}});
   compare_facts(header_facts(header_a), header_facts(header_b));
   compare_facts({{"photons", reader_a.totals().photon_count}}, {{"photons", reader_b.totals().photon_count}});
   compare_facts(total_facts(reader_a.totals()), total_facts(reader_b.totals()));
@@ -186,13 +183,16 @@ void print_groups(const std::string& path, Output& output) {
   while (reader.read_block(block)) photons[block.group] += block.photons.size();
   if (reader.ledger().empty()) throw InputError(path + ": does not say what became of its groups: it has no ledger");
   const bool dated = !reader.header().majorants.empty();
-  std::string text = std::string("group,") + (dated ? "frame,paths," : "") + "photons,emitted_r_W,emitted_g_W,emitted_b_W\n";
+  std::string text =
+      std::string("group,") + (dated ? "frame,paths," : "") + "photons,emitted_r_W,emitted_g_W,emitted_b_W\n";
   for (const GroupFlux& group : reader.ledger()) {
     char line[200];
     int length = std::snprintf(line, sizeof line, "%u,", unsigned(group.group));
-    if (dated) length += std::snprintf(line + length, sizeof line - std::size_t(length), "%d,%llu,", int(group.frame), (unsigned long long)(group.paths));
-    std::snprintf(line + length, sizeof line - std::size_t(length), "%llu,%.9g,%.9g,%.9g\n", (unsigned long long)(photons[group.group]),
-                  group.emitted[0], group.emitted[1], group.emitted[2]);
+    if (dated)
+      length += std::snprintf(line + length, sizeof line - std::size_t(length), "%d,%llu,", int(group.frame),
+                              (unsigned long long)(group.paths));
+    std::snprintf(line + length, sizeof line - std::size_t(length), "%llu,%.9g,%.9g,%.9g\n",
+                  (unsigned long long)(photons[group.group]), group.emitted[0], group.emitted[1], group.emitted[2]);
     text += line;
   }
   output.write(text.data(), text.size());
@@ -222,10 +222,8 @@ void export_photons(const std::string& path, const std::string& format, Output& 
       const Photon& photon = block.photons[i];
       std::array<double, 3> position = origin;
       for (std::size_t c = 0; c < 3; ++c) position[c] += double(photon.position[c]);
-      if (ply)
-        append_vertex(text, position, photon, white);
-      else
-        append_row(text, position, block, i, columns);
+      if (ply) append_vertex(text, position, photon, white);
+      else append_row(text, position, block, i, columns);
     }
     output.write(text.data(), text.size());
     text.clear();

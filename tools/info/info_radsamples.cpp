@@ -56,9 +56,14 @@ Facts radsamples_facts(const std::string& path) {
   facts["identity"] = identity_facts(file.header.identity);
   facts.update(header_facts(file));
   facts["age"] = age_facts(file);
-  const auto has = [&](SampleFlags flag) { return share(file, [flag](const RadianceSample& s) { return (s.flags & flag) != 0; }); };
-  facts["share_of_samples"] = {{"valid", has(sample_valid)}, {"dynamic", has(sample_dynamic)}, {"miss", has(sample_miss)},
-                               {"near", has(sample_near)}, {"anchored", has(sample_anchored)}};
+  const auto has = [&](SampleFlags flag) {
+    return share(file, [flag](const RadianceSample& s) { return (s.flags & flag) != 0; });
+  };
+  facts["share_of_samples"] = {{"valid", has(sample_valid)},
+                               {"dynamic", has(sample_dynamic)},
+                               {"miss", has(sample_miss)},
+                               {"near", has(sample_near)},
+                               {"anchored", has(sample_anchored)}};
   std::array<std::uint64_t, 2> by_set{};
   std::uint64_t fading = 0, updates = 0;
   for (const RadsamplesRecord& record : file.records) {

@@ -199,7 +199,8 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   for (const IrradianceCacheRecord& record : file.records) white = std::max(white, largest(record.irradiance));
   std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
   const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
-             update = csv && file.header.columns & column_update, clearance = csv && file.header.columns & column_clearance;
+             update = csv && file.header.columns & column_update,
+             clearance = csv && file.header.columns & column_clearance;
   if (csv)
     for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
       for (const char* channel : {"_r", "_g", "_b"})

@@ -12,14 +12,14 @@
 namespace tempolux::tools {
 
 struct BaseFrame {
-  std::vector<std::uint8_t> mask;   ///< by pixel: is it traced? Empty: all are, and there is no base
+  std::vector<std::uint8_t> mask;  ///< by pixel: is it traced? Empty: all are, and there is no base
   Image base;
 };
 
 /// What the picture to come looks like.
 struct Picture {
   int width = 0, height = 0;
-  std::array<double, 16> world_to_camera{}, world_to_ndc{};   ///< as in its attributes (frames.md 3)
+  std::array<double, 16> world_to_camera{}, world_to_ndc{};  ///< as in its attributes (frames.md 3)
 };
 
 /// Reads both. InputError if the mask has another size, or if the base shows another state of the scene

@@ -15,19 +15,20 @@ GatherPoints counted(Tool& tool, GatherPoints points) {
 
 }  // namespace
 
-GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer,
-                                      const Lights& lights, const PointOptions& options) {
+GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
+                               const PointOptions& options) {
   tool.stats().phase("read photons");
   const formats::PhotonMap map = read_photons(tool, file, tracer.frame(), LightNeeded::all);
   tool.stats().phase("points", true);
   return counted(tool, make_points(map, tracer, lights, options));
 }
 
-DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights) {
+DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer,
+                                    const Lights& lights) {
   tool.stats().phase("read photons");
   const SceneFrame& frame = tracer.frame();
-  const DividedPhotonMap map = read_divided_photons(tool, frame_name(options.photons, frame.frame), frame_name(options.high, frame.frame), frame,
-                                                    LightNeeded::all);
+  const DividedPhotonMap map = read_divided_photons(tool, frame_name(options.photons, frame.frame),
+                                                    frame_name(options.high, frame.frame), frame, LightNeeded::all);
   tool.stats().phase("points", true);
   DividedGatherPoints divided = make_points(map, tracer, lights, options.points_of(frame));
   divided.whole = counted(tool, std::move(divided.whole));
@@ -43,16 +44,15 @@ void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& op
   Lights lights(frame, input.emission(frame.frame));
   lights.weigh_sky_by_cosine();
   tool.stats().phase("read photons");
-  const formats::PhotonMap map = read_photons(tool, frame_name(options.photons, number), frame,
-                                                     LightNeeded::all, "static");
+  const formats::PhotonMap map =
+      read_photons(tool, frame_name(options.photons, number), frame, LightNeeded::all, "static");
   tool.stats().phase("points", true);
   const GatherPoints points = counted(tool, make_points(map, tracer, lights, options.points_of(frame)));
   tool.stats().phase("write");
   write_points(tool, points, frame, output, std::array{frame.segment.first, frame.segment.last});
 }
 
-void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number,
-                          StandingTree& tree) {
+void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& tree) {
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number), standing = standing_scene(frame);
@@ -68,12 +68,13 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   const formats::PhotonMap moved = read_photons(tool, dynamic, frame, LightNeeded::all, "dynamic");
   const formats::PhotonMap fixed =
       read_photons(tool, frame_name(options.photons, number), standing, LightNeeded::all, "static",
-                          static_photons_read(frame, options.point, points.points, moved.photons));
+                   static_photons_read(frame, options.point, points.points, moved.photons));
   if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
     throw InputError(dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");
   tool.stats().phase("points", true);
-  const PointUpdateCounts counts = update_points({fixed, moved}, whole, without, lights, options.points_of(frame), points);
+  const PointUpdateCounts counts =
+      update_points({fixed, moved}, whole, without, lights, options.points_of(frame), points);
   points = counted(tool, std::move(points));
   tool.stats().phase("write");
   points.history = points.history + moved.header.history;
@@ -83,8 +84,7 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   tool.stats().count("points_anew", double(counts.anew));
 }
 
-void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number,
-                  StandingTree& standing) {
+void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& standing) {
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
@@ -92,9 +92,9 @@ void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, in
   const Tracer tracer(frame, standing);
   Lights lights(frame, input.emission(frame.frame));
   lights.weigh_sky_by_cosine();
-  const GatherPoints points = options.high.empty()
-      ? points_of_photons(tool, frame_name(options.photons, number), tracer, lights, options.points_of(frame))
-      : points_of_parts(tool, options, tracer, lights).whole;
+  const GatherPoints points = options.high.empty() ? points_of_photons(tool, frame_name(options.photons, number),
+                                                                       tracer, lights, options.points_of(frame))
+                                                   : points_of_parts(tool, options, tracer, lights).whole;
   tool.stats().phase("write");
   write_points(tool, points, frame, output);
 }

@@ -16,9 +16,9 @@ namespace tempolux::tools {
 struct CacheOptions {
   std::vector<std::string> inputs;  // [points|records] SCENE
   std::string photons, points, importance, high, records, mask, output, keep_points, map = "global", update;
-  std::vector<std::string> dynamic;   // the frame's own first
+  std::vector<std::string> dynamic;  // the frame's own first
   std::uint64_t point_count = PointOptions{}.count;
-  std::vector<formats::ViewSphere> view;   // of importance
+  std::vector<formats::ViewSphere> view;  // of importance
   int width = 640, height = 360;
   PointOptions point;
   GatherOptions gather;
@@ -39,7 +39,8 @@ struct CacheOptions {
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
                                const PointOptions& options);
 /// The same from the low part, options.photons, and the high part, options.high.
-DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights);
+DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer,
+                                    const Lights& lights);
 
 /// .irradpoints of a frame, from its global map.
 void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& standing);

@@ -17,8 +17,9 @@ namespace tempolux::tools {
 namespace {
 
 /// Header of a cache placed for these frames.
-formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneFrame& frame, const std::vector<int>& frames,
-                                       std::span<const IrradianceRecord> records, float least_cosine) {
+formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneFrame& frame,
+                                       const std::vector<int>& frames, std::span<const IrradianceRecord> records,
+                                       float least_cosine) {
   formats::IrradcacheHeader header;
   header.identity = identity_of(frame);
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
@@ -57,14 +58,16 @@ std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options,
 /// InputError unless all but the cameras is the same at two frames.
 void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const SceneFrame& first) {
   if (!formats::stale_concerns(identity_of(frame), identity_of(first)).empty())
-    throw InputError(options.scene() + ": frame " + std::to_string(frame.frame) + " is lit or built differently from frame " +
-                     std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
+    throw InputError(options.scene() + ": frame " + std::to_string(frame.frame) +
+                     " is lit or built differently from frame " + std::to_string(first.frame) +
+                     ": one cache cannot hold for both; make one for each");
 }
 
 /// The cameras that records are placed for. `at`: the scene at a frame, or as it stands there; `first`: at the first.
-RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames, const SceneFrame& first,
-                         std::function<SceneFrame(int)> at) {
-  RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}, {}};
+RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
+                         const SceneFrame& first, std::function<SceneFrame(int)> at) {
+  RecordCameras cameras{
+      frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}, {}};
   cameras.at = [&options, &first, at = std::move(at)](int number) {
     SceneFrame frame = at(number);
     check_lit_alike(options, frame, first);
@@ -72,7 +75,9 @@ RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& opti
   };
   cameras.wanted = [&](int number) { return wanted_pixels(tool, options, number); };
   cameras.progress = [&](double done) { tool.progress(done); };
-  cameras.added = [&](int number, std::size_t records) { tool.stats().set("records_added." + std::to_string(number), double(records)); };
+  cameras.added = [&](int number, std::size_t records) {
+    tool.stats().set("records_added." + std::to_string(number), double(records));
+  };
   return cameras;
 }
 
@@ -86,25 +91,29 @@ void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
 }
 
 /// Points made from photons, read, or read as two parts: high_shares receives what the high part has of each.
-GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights, std::vector<float>& high_shares) {
+GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights,
+                           std::vector<float>& high_shares) {
   if (options.high.empty())
-    return options.points.empty() ? points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame()))
-                                  : read_points(tool, options.points, tracer.frame());
-  DividedGatherPoints divided = options.points.empty() ? points_of_parts(tool, options, tracer, lights)
-                                                       : read_divided_points(tool, options.points, options.high, tracer.frame());
+    return options.points.empty()
+               ? points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame()))
+               : read_points(tool, options.points, tracer.frame());
+  DividedGatherPoints divided = options.points.empty()
+                                    ? points_of_parts(tool, options, tracer, lights)
+                                    : read_divided_points(tool, options.points, options.high, tracer.frame());
   high_shares = std::move(divided.high_shares);
   return std::move(divided.whole);
 }
 
 /// Dynamic maps of a frame, its own first, as densities over the standing scene.
-std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing, const SceneFrame& frame) {
+std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing,
+                                        const SceneFrame& frame) {
   std::vector<SignedDensity> maps;
   const DensityOptions density{options.point.neighbours, options.point.max_radius, kChangeProbes};
   for (const std::string& name : options.dynamic) {
     const std::string file = frame_name(name, frame.frame);
     const bool own = maps.empty();
-    const formats::PhotonMap map = own ? read_photons(tool, file, frame, LightNeeded::all, "dynamic")
-                                       : read_earlier_change(tool, file, frame);
+    const formats::PhotonMap map =
+        own ? read_photons(tool, file, frame, LightNeeded::all, "dynamic") : read_earlier_change(tool, file, frame);
     const std::array<double, 3>& origin = map.header.origin;
     maps.emplace_back(standing, map.photons, density, Vec3d{origin[0], origin[1], origin[2]} - frame.origin);
   }
@@ -134,7 +143,8 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
   std::optional<BrightPoints> bright;
   if (!beside_lamps.empty() || std::ranges::any_of(high_shares, [](float share) { return share > 0; })) {
-    bright.emplace(tracer, lights, lookup, std::move(high_shares), BrightOptions{.seed = options.gather.seed, .beside_lamps = beside_lamps});
+    bright.emplace(tracer, lights, lookup, std::move(high_shares),
+                   BrightOptions{.seed = options.gather.seed, .beside_lamps = beside_lamps});
     tool.stats().count("bright_points", double(bright->spot_count()));
     tool.stats().count("bright_sites", double(bright->site_count()));
     options.gather.bright = &*bright;
@@ -142,11 +152,11 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   const FinalGather gather(tracer, lights, lookup, options.gather);
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
   std::string history = points.history;
-  if (!options.records.empty())
-    history = read_records(tool, options.records, InputRole::replaceable, first, store);
+  if (!options.records.empty()) history = read_records(tool, options.records, InputRole::replaceable, first, store);
 
   tool.stats().phase("records", true);
-  const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state), options.placement, store);
+  const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state),
+                                                options.placement, store);
   tool.stats().phase("write");
   formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
   if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
@@ -185,14 +195,16 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   std::optional<BrightPoints> bright;
   GatherOptions gathering = options.gather;
   if (!beside_lamps.empty()) {
-    bright.emplace(tracer, lights, lookup, std::vector<float>{}, BrightOptions{.seed = gathering.seed, .beside_lamps = beside_lamps});
+    bright.emplace(tracer, lights, lookup, std::vector<float>{},
+                   BrightOptions{.seed = gathering.seed, .beside_lamps = beside_lamps});
     gathering.bright = &*bright;
   }
   const FinalGather gather(tracer, lights, lookup, gathering);
 
   tool.stats().phase("records", true);
   const RecordCameras cameras = cameras_of(tool, input, options, frames, frame, [&](int f) { return input.at(f); });
-  const GatherCounts counts = update_for_cameras({gather, tracer, lookup, maps, options.influence, options.gather.seed}, cameras, options.placement, cache);
+  const GatherCounts counts = update_for_cameras({gather, tracer, lookup, maps, options.influence, options.gather.seed},
+                                                 cameras, options.placement, cache);
 
   tool.stats().phase("write");
   std::vector<IrradianceRecord> all = cache.standing;

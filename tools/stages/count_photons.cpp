@@ -18,23 +18,28 @@ bool wants(const CountOptions& options, formats::PathKind kind) {
 }
 
 /// 2^-44 of what all lamps emit, a power of two: a sum holds 2^19 times that flux.
-double unit_of(double emitted) { return std::exp2(std::clamp(std::ceil(std::log2(std::max(emitted, 1e-300))), -900.0, 900.0) - 44); }
+double unit_of(double emitted) {
+  return std::exp2(std::clamp(std::ceil(std::log2(std::max(emitted, 1e-300))), -900.0, 900.0) - 44);
+}
 
 std::string kinds_text(const CountOptions& options) {
   std::string text;
   for (const char* kind : kKinds)
-    if (std::ranges::find(options.kinds, kind) != options.kinds.end()) text += (text.empty() ? "" : ",") + std::string(kind);
+    if (std::ranges::find(options.kinds, kind) != options.kinds.end())
+      text += (text.empty() ? "" : ",") + std::string(kind);
   return text;
 }
 
 formats::PhotonMap read_map(Tool& tool, const std::string& name, const SceneFrame& frame, const CountOptions& options) {
-  const auto wanted = [&](const formats::PhotonHeader&, const formats::Photon& photon) { return wants(options, photon.kind); };
+  const auto wanted = [&](const formats::PhotonHeader&, const formats::Photon& photon) {
+    return wants(options, photon.kind);
+  };
   formats::PhotonMap map = formats::load_photons(name, wanted);
   tool.depends_on(name);
   check_identity(tool, name, map.header.identity, frame);
   if (map.header.map != "global" || !map.header.part.empty())
-    throw InputError(name + ": holds a part of the light (" + (map.header.part.empty() ? map.header.map : map.header.part) +
-                     "); name a global map");
+    throw InputError(name + ": holds a part of the light (" +
+                     (map.header.part.empty() ? map.header.map : map.header.part) + "); name a global map");
   for (const std::string& kind : options.kinds)
     if (("," + map.header.kinds + ",").find("," + kind + ",") == std::string::npos)
       throw InputError(name + ": has no photons of kind " + kind + "; trace them with --kinds, or leave the kind out");
@@ -69,7 +74,8 @@ class SegmentFrames {
   std::map<int, SceneFrame> others_;
 };
 
-/// Of windows: the same in all frames of a segment, so they follow from the paths and not from the photons that were stored.
+/// Of windows: the same in all frames of a segment, so they follow from the paths and not from the photons that were
+/// stored.
 MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& first, std::uint64_t paths) {
   MeshOptions mesh = window_widths(surface_area(first), double(paths) * options.frames);
   if (options.mesh.filter.width > 0) {
@@ -84,11 +90,16 @@ MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& fir
 
 void add_count_options(CLI::App& app, CountOptions& options) {
   app.add_option("--photons", options.photons, ".photons file of the frame, or a pattern")->type_name("FILE");
-  app.add_option("--kinds", options.kinds, "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
-                                           "caustic,indirect without a map")
-      ->delimiter(',')->type_name("NAMES")->default_str("indirect")->check(CLI::IsMember({"direct", "caustic", "indirect"}));
+  app.add_option("--kinds", options.kinds,
+                 "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
+                 "caustic,indirect without a map")
+      ->delimiter(',')
+      ->type_name("NAMES")
+      ->default_str("indirect")
+      ->check(CLI::IsMember({"direct", "caustic", "indirect"}));
   app.add_option("--cell", options.mesh.cell, "longest edge of an element, m; 0: the filter's width")
-      ->capture_default_str()->check(number_between(0));
+      ->capture_default_str()
+      ->check(number_between(0));
 }
 
 CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame,
@@ -124,8 +135,8 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
     leave_out_dark(file.elements);
   }
   if (sums.lost() * 100 > map.photons.size())
-    tool.warn(name + ": no surface was found for " + std::to_string(sums.lost()) + " of " + std::to_string(map.photons.size()) +
-              " photons");
+    tool.warn(name + ": no surface was found for " + std::to_string(sums.lost()) + " of " +
+              std::to_string(map.photons.size()) + " photons");
   tool.stats().count("photons", double(map.photons.size()));
   tool.stats().count("lost_photons", double(sums.lost()));
   return counted;

@@ -10,20 +10,21 @@
 namespace tempolux::tools {
 
 struct CountOptions {
-  std::string photons;                        ///< file, or a pattern
+  std::string photons;  ///< file, or a pattern
   std::vector<std::string> kinds{"indirect"};
   MeshOptions mesh;
-  bool for_windows = false;                   ///< the same elements in all frames of a segment
-  int frames = 33;                            ///< of a full window
+  bool for_windows = false;  ///< the same elements in all frames of a segment
+  int frames = 33;           ///< of a full window
 };
 /// The options --photons, --kinds and --cell.
 void add_count_options(CLI::App& app, CountOptions& options);
 
 struct CountedPhotons {
-  formats::MeshirradFile file;                ///< its header is complete but for filter and history, which is the map's
-  MeshOptions mesh;                           ///< the widths
+  formats::MeshirradFile file;  ///< its header is complete but for filter and history, which is the map's
+  MeshOptions mesh;             ///< the widths
 };
-/// Counts the photons of a frame, of all its elements or, for windows, of the sides that photons reach. Counts photons for stats.
+/// Counts the photons of a frame, of all its elements or, for windows, of the sides that photons reach. Counts photons
+/// for stats.
 CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame,
                              StandingTree& standing);
 

@@ -22,7 +22,8 @@ std::string filter_text(const MeshFilter& filter, const std::string& name) {
 
 std::vector<Rgbd> flux_of(const formats::MeshirradFile& file) {
   std::vector<Rgbd> flux;
-  for (const formats::MeshElement& e : file.elements) flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * file.header.unit);
+  for (const formats::MeshElement& e : file.elements)
+    flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * file.header.unit);
   return flux;
 }
 
@@ -44,18 +45,26 @@ void make_texture(Tool& tool, SceneInput& input, const Options& options, int num
 }  // namespace
 
 int filter_mesh(int argc, char** argv) {
-  Tool tool("st-filter mesh", "Make light textures: photons counted by small triangles of the surfaces, smoothed along them.", argc, argv);
+  Tool tool("st-filter mesh",
+            "Make light textures: photons counted by small triangles of the surfaces, smoothed along them.", argc,
+            argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   add_count_options(app, options.count);
   app.get_option("--photons")->required();
-  auto* counts = app.add_flag("--counts", options.count.for_windows, "count alone, by elements that all frames of the segment share: for gather-temporal density");
+  auto* counts =
+      app.add_flag("--counts", options.count.for_windows,
+                   "count alone, by elements that all frames of the segment share: for gather-temporal density");
   app.add_option("--filter", options.filter, "how elements are smoothed")
-      ->capture_default_str()->check(CLI::IsMember({"none", "box", "gaussian", "bilateral"}))->excludes(counts);
-  app.add_option("--filter-width", options.count.mesh.filter.width,
-                 "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that 256 photons count in the mean")
-      ->capture_default_str()->check(number_between(0));
+      ->capture_default_str()
+      ->check(CLI::IsMember({"none", "box", "gaussian", "bilateral"}))
+      ->excludes(counts);
+  app.add_option(
+         "--filter-width", options.count.mesh.filter.width,
+         "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that 256 photons count in the mean")
+      ->capture_default_str()
+      ->check(number_between(0));
   tool.output_option(options.output, ".meshirrad file, or a pattern; - for standard output")->required();
   tool.common_options(uses_scene | uses_frames);
   return tool.run([&] {
@@ -63,8 +72,10 @@ int filter_mesh(int argc, char** argv) {
     if (frames.size() > 1 && !has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example m.####.meshirrad");
     using Kind = MeshFilter::Kind;
-    options.count.mesh.filter.kind = options.filter == "none" ? Kind::none : options.filter == "box" ? Kind::box
-                               : options.filter == "bilateral" ? Kind::bilateral : Kind::gaussian;
+    options.count.mesh.filter.kind = options.filter == "none"        ? Kind::none
+                                     : options.filter == "box"       ? Kind::box
+                                     : options.filter == "bilateral" ? Kind::bilateral
+                                                                     : Kind::gaussian;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);
     StandingTree standing;

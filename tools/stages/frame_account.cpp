@@ -32,7 +32,9 @@ std::string noise_line(const RenderedFrame& rendered) {
 const AuditEntry* worst_of(const std::vector<AuditEntry>& audit, Layer layer, const std::string& kind) {
   const AuditEntry* worst = nullptr;
   for (const AuditEntry& entry : audit) {
-    if (entry.layer != layer || !entry.part.starts_with(kind) || std::abs(entry.bias.value) <= kAuditErrors * entry.bias.error) continue;
+    if (entry.layer != layer || !entry.part.starts_with(kind) ||
+        std::abs(entry.bias.value) <= kAuditErrors * entry.bias.error)
+      continue;
     const auto light = [](const AuditEntry& of) { return std::abs(of.bias.value) * double(of.pixels); };
     if (!worst || light(entry) > light(*worst)) worst = &entry;
   }
@@ -51,10 +53,14 @@ std::string in_words(const AuditEntry& part, const std::vector<std::string>& obj
   return named ? part.part + " \"" + object_names[part.object] + "\"" : part.part;
 }
 
-std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit, const std::vector<std::string>& object_names) {
-  std::string line = std::string(kLayerNames[std::size_t(of.layer)]) + " light " + percent(of.of_layer(), of.of_layer_error()) + " (" + percent(of.share(), of.share_error()) + " of the picture)";
+std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit,
+                       const std::vector<std::string>& object_names) {
+  std::string line = std::string(kLayerNames[std::size_t(of.layer)]) + " light " +
+                     percent(of.of_layer(), of.of_layer_error()) + " (" + percent(of.share(), of.share_error()) +
+                     " of the picture)";
   for (const char* kind : {"object", "tile"})
-    if (const AuditEntry* worst = worst_of(audit, of.layer, kind)) line += ", " + in_words(*worst, object_names) + " " + percent(worst->of_layer(), worst->of_layer_error());
+    if (const AuditEntry* worst = worst_of(audit, of.layer, kind))
+      line += ", " + in_words(*worst, object_names) + " " + percent(worst->of_layer(), worst->of_layer_error());
   return line;
 }
 
@@ -93,8 +99,8 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
   return numbers;
 }
 
-void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked,
-                 const std::vector<std::string>& object_names) {
+void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
+                 const FrameOptions& asked, const std::vector<std::string>& object_names) {
   for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);
   if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
   for (const AuditEntry& entry : audit) {
@@ -102,13 +108,16 @@ void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<Au
     const std::string line = "audit: " + audit_line(entry, audit, object_names);
     tool.say(line);
     if (is_biased(entry) && entry.layer != Layer::direct)
-      tool.warn(line + "; more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high), or paths (no files of light) mend it");
+      tool.warn(line +
+                "; more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high), or paths "
+                "(no files of light) mend it");
   }
   if (!rendered.noise.known()) return;
   tool.say(noise_line(rendered));
   if (asked.seen_error > 0 && rendered.noise.image.codes > asked.seen_error)
-    tool.warn("--seen-error " + number(asked.seen_error) + ": " + number(rendered.noise.image.codes) + " codes are left, and " + number(100 * rendered.at_limit) +
-              " % of the pixels are at --pixel-limit " + std::to_string(asked.adaptive_limit) + "; raise it, or give files of light (--points, --irradcache)");
+    tool.warn("--seen-error " + number(asked.seen_error) + ": " + number(rendered.noise.image.codes) +
+              " codes are left, and " + number(100 * rendered.at_limit) + " % of the pixels are at --pixel-limit " +
+              std::to_string(asked.adaptive_limit) + "; raise it, or give files of light (--points, --irradcache)");
 }
 
 }  // namespace tempolux::tools

@@ -18,8 +18,9 @@ namespace tempolux::tools {
 std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit);
 
 /// Says them: results of --stats, a line each with --verbose, a warning if `asked` (FrameOptions::seen_error)
-/// was not reached, and one for each layer that is biased (is_biased). object_names: by id.object, those of the scene's file.
-void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked,
-                 const std::vector<std::string>& object_names);
+/// was not reached, and one for each layer that is biased (is_biased). object_names: by id.object, those of the scene's
+/// file.
+void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
+                 const FrameOptions& asked, const std::vector<std::string>& object_names);
 
 }  // namespace tempolux::tools

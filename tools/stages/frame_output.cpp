@@ -39,7 +39,7 @@ void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const
     add_colour_channels(*parts[i], channels, image);
     if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
     describe(description, parts[i]->samples, image);
-    if (i == 0)   // of the mean of all samples
+    if (i == 0)  // of the mean of all samples
       for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;
     save_exr(outputs_[i].temporary_path(), image, options);
   }

@@ -20,7 +20,7 @@ struct FrameDescription {
   int frame = 0;
   double fps = 24;
   std::array<double, 16> world_to_camera{}, world_to_ndc{};
-  std::map<std::string, double> account;   ///< account_of()
+  std::map<std::string, double> account;  ///< account_of()
 };
 
 class FrameOutputs {
@@ -30,11 +30,11 @@ class FrameOutputs {
   /// Writes and commits all of them. `data` holds the data channels already; where there is a mask, pixels it
   /// leaves out are those of `base`.
   void write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
-             const FrameDescription& description, const ExrWriteOptions& options,
-             const std::vector<std::uint8_t>& mask, const Image& base);
+             const FrameDescription& description, const ExrWriteOptions& options, const std::vector<std::uint8_t>& mask,
+             const Image& base);
 
  private:
-  std::vector<Output> outputs_;   ///< the mean, then half a and half b
+  std::vector<Output> outputs_;  ///< the mean, then half a and half b
 };
 
 }  // namespace tempolux::tools

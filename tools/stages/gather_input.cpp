@@ -28,15 +28,17 @@ void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, 
 /// A part of the light taken for all of it would be light lost without a word.
 void refuse_part(const std::string& file, const std::string& part) {
   if (!part.empty())
-    throw InputError(file + ": holds the " + part + " part of the light alone (photonmap-split); give the whole, or the low part here and the high "
+    throw InputError(file + ": holds the " + part +
+                     " part of the light alone (photonmap-split); give the whole, or the low part here and the high "
                      "one as --high");
 }
 
-void check_photons(Tool& tool, const std::string& file, const formats::PhotonHeader& header, const SceneFrame& frame, LightNeeded needed,
-                   const std::string& wanted) {
+void check_photons(Tool& tool, const std::string& file, const formats::PhotonHeader& header, const SceneFrame& frame,
+                   LightNeeded needed, const std::string& wanted) {
   if (header.map != wanted)
-    throw InputError(file + ": a " + header.map + " map" + (header.map == "global" ? "" : " is a part of the scene's light") +
-                     "; give a " + wanted + " one, as photon-trace writes it with --map " + wanted);
+    throw InputError(file + ": a " + header.map + " map" +
+                     (header.map == "global" ? "" : " is a part of the scene's light") + "; give a " + wanted +
+                     " one, as photon-trace writes it with --map " + wanted);
   refuse_part(file, header.part);
   check_identity(tool, file, header.identity, frame);
   const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
@@ -48,7 +50,8 @@ void check_photons(Tool& tool, const std::string& file, const formats::PhotonHea
 
 namespace {
 
-GatherPoints checked_points(Tool& tool, const std::string& file, const formats::IrradpointsFile& in, const SceneFrame& frame) {
+GatherPoints checked_points(Tool& tool, const std::string& file, const formats::IrradpointsFile& in,
+                            const SceneFrame& frame) {
   check_identity(tool, file, in.header.identity, frame);
   check_kinds(tool, file, in.header.kinds, {"direct", "caustic", "indirect"}, frame, "make the points again");
   return {from_file(in.records, shift_of(in.header.origin, frame)), float(in.header.spacing), in.header.kinds,
@@ -56,12 +59,14 @@ GatherPoints checked_points(Tool& tool, const std::string& file, const formats::
 }
 
 /// One of the files of photonmap-split.
-formats::IrradpointsFile load_part(Tool& tool, const std::string& file, const std::string& part, const std::string& option) {
+formats::IrradpointsFile load_part(Tool& tool, const std::string& file, const std::string& part,
+                                   const std::string& option) {
   tool.depends_on(file);
   formats::IrradpointsFile in = formats::load_irradpoints(file);
   if (in.header.part != part)
-    throw InputError(file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " + option +
-                     " the " + part + " part that photonmap-split writes");
+    throw InputError(file + ": is " +
+                     (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " +
+                     option + " the " + part + " part that photonmap-split writes");
   return in;
 }
 
@@ -74,15 +79,16 @@ GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& 
   return checked_points(tool, file, in, frame);
 }
 
-DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file, const std::string& high_file, const SceneFrame& frame) {
+DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file, const std::string& high_file,
+                                        const SceneFrame& frame) {
   formats::IrradpointsFile low = load_part(tool, low_file, "low", "--points");
   const formats::IrradpointsFile high = load_part(tool, high_file, "high", "--high");
   check_identity(tool, high_file, high.header.identity, frame);
   DividedGatherPoints divided;
   divided.high_shares = tempolux::join_parts(low.records, high.records);
   // Points of a surface are the first of one sequence: fewer of them lie at places that more of them have, too.
-  if (divided.high_shares.size() != low.records.size() || low.header.origin != high.header.origin || low.header.spacing != high.header.spacing ||
-      low.header.emitted_count != high.header.emitted_count)
+  if (divided.high_shares.size() != low.records.size() || low.header.origin != high.header.origin ||
+      low.header.spacing != high.header.spacing || low.header.emitted_count != high.header.emitted_count)
     throw InputError(high_file + ": its points are not those of " + low_file + "; give the two parts of one file");
   divided.whole = checked_points(tool, low_file, low, frame);
   return divided;
@@ -97,17 +103,20 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
 }
 
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
-                                const std::string& wanted, const std::function<bool(Vec3, const formats::Photon&)>& keep) {
+                                const std::string& wanted,
+                                const std::function<bool(Vec3, const formats::Photon&)>& keep) {
   tool.depends_on(file);
-  formats::PhotonMap map = formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
-    const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
-    return keep(Vec3(place + shift_of(header.origin, frame)), photon);
-  });
+  formats::PhotonMap map =
+      formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
+        const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
+        return keep(Vec3(place + shift_of(header.origin, frame)), photon);
+      });
   check_photons(tool, file, map.header, frame, needed, wanted);
   return map;
 }
 
-DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame, LightNeeded needed) {
+DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high,
+                                      const SceneFrame& frame, LightNeeded needed) {
   DividedPhotonMap map;
   for (const bool is_high : {false, true}) {
     const std::string& file = is_high ? high : low;
@@ -116,13 +125,15 @@ DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const 
     tool.depends_on(file);
     in = formats::load_photons(file);
     if (in.header.part != part)
-      throw InputError(file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " +
-                       (is_high ? "--high" : "--photons") + " the " + part + " part that photonmap-split writes");
+      throw InputError(
+          file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") +
+          "; give " + (is_high ? "--high" : "--photons") + " the " + part + " part that photonmap-split writes");
   }
   const formats::PhotonHeader &one = map.whole.header, &other = map.high.header;
-  // A photon's place is one of the whole map's: both parts have its paths, its flux sent out and the state of the scene.
-  if (one.emitted_count != other.emitted_count || one.origin != other.origin || one.columns != other.columns || one.kinds != other.kinds ||
-      one.map != other.map || map.whole.totals.emitted_flux != map.high.totals.emitted_flux)
+  // A photon's place is one of the whole map's: both parts have its paths, its flux sent out and the state of the
+  // scene.
+  if (one.emitted_count != other.emitted_count || one.origin != other.origin || one.columns != other.columns ||
+      one.kinds != other.kinds || one.map != other.map || map.whole.totals.emitted_flux != map.high.totals.emitted_flux)
     throw InputError(high + ": its photons are not those of " + low + "; give the two parts of one file");
   check_identity(tool, high, other.identity, frame);
   join_parts(map.whole, map.high);
@@ -156,10 +167,11 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   output.commit();
 }
 
-std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file, const SceneFrame& frame,
-                        RecordStore& store) {
+std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file,
+                        const SceneFrame& frame, RecordStore& store) {
   if (file.header.columns & (formats::column_influence | formats::column_update))
-    throw InputError(name + ": holds records that stand beside those of a frame (--update); give one without these columns");
+    throw InputError(name +
+                     ": holds records that stand beside those of a frame (--update); give one without these columns");
   check_identity(tool, name, file.header.identity, frame);
   store.narrow(float(file.header.least_cosine));
   store.add(from_file(file.records, shift_of(file.header.origin, frame)));

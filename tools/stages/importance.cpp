@@ -4,7 +4,8 @@
 
 namespace tempolux::tools {
 
-Importance::Importance(Tool& tool, SceneInput& input, const std::string& option) : tool_(tool), input_(input), own_(option.empty()) {
+Importance::Importance(Tool& tool, SceneInput& input, const std::string& option)
+    : tool_(tool), input_(input), own_(option.empty()) {
   if (own_ || option == "none") return;
   tool.depends_on(option);
   given_ = formats::read_view(option);
@@ -19,8 +20,9 @@ const std::vector<formats::ViewSphere>& Importance::at(int frame) {
   const int camera = input_.scene().camera_node(tool_.common().camera);
   const int asked[] = {inside};
   const Plan plan = make_plan(input_.scene(), asked, camera, input_.time());
-  const SceneSource source{[&](int f, bool with_media) { return input_.at(f, with_media); }, [&](int f) { return input_.emission(f); }, camera};
-  const Wish usual;   // its size: the ratio of width to height counts
+  const SceneSource source{[&](int f, bool with_media) { return input_.at(f, with_media); },
+                           [&](int f) { return input_.emission(f); }, camera};
+  const Wish usual;  // its size: the ratio of width to height counts
   const std::string text = view_of(plan.segments.front(), usual.width, usual.height, source);
   if (!text.empty()) found->second = formats::parse_view(text, "what the camera sees");
   return found->second;

@@ -12,7 +12,8 @@ namespace tempolux::tools {
 
 /// The help of the option, whose value is FILE, none or "" (what the tool finds itself).
 inline constexpr const char* kImportanceHelp =
-    "where photons of sun and sky are aimed and points lie closer together: a view file of scene-plan, state/FRAME-KEY.view; "
+    "where photons of sun and sky are aimed and points lie closer together: a view file of scene-plan, "
+    "state/FRAME-KEY.view; "
     "none: the whole scene; without it: what the camera sees over the frame's segment";
 
 /// What cameras see, in world space, segment by segment.
@@ -26,9 +27,9 @@ class Importance {
  private:
   Tool& tool_;
   SceneInput& input_;
-  bool own_;                                                   ///< found by this tool, as scene-plan finds it
+  bool own_;  ///< found by this tool, as scene-plan finds it
   std::vector<formats::ViewSphere> given_;
-  std::map<int, std::vector<formats::ViewSphere>> found_;      ///< by first frame of the segment
+  std::map<int, std::vector<formats::ViewSphere>> found_;  ///< by first frame of the segment
 };
 
 }  // namespace tempolux::tools

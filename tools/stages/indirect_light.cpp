@@ -9,10 +9,12 @@
 
 namespace tempolux::tools {
 
-IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
-                             int number) {
+IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer,
+                             const Lights& lights, std::uint64_t seed, int number) {
   const SceneFrame& frame = tracer.frame();
-  known_.lights_are_met = lights.has_environment() || std::ranges::any_of(frame.materials, [](const Material& material) { return material.emissive(); });
+  known_.lights_are_met =
+      lights.has_environment() ||
+      std::ranges::any_of(frame.materials, [](const Material& material) { return material.emissive(); });
   if (!options.photons.empty()) read_maps(tool, options, tracer, number);
   if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
   if (!options.meshirrad.empty()) {
@@ -25,8 +27,8 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   }
 }
 
-void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
-                                int number) {
+void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer,
+                                const Lights& lights, std::uint64_t seed, int number) {
   tool.stats().phase("read points");
   const std::string name = frame_name(options.points, number);
   std::vector<float> high_shares;
@@ -43,7 +45,8 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
   known_.points = lookup_.get();
   if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
   tool.stats().phase("bright points", true);
-  bright_ = std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed});
+  bright_ =
+      std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed});
   known_.bright = bright_.get();
   known_.bright_samples = options.high_samples;
   tool.stats().count("bright_points", double(bright_->spot_count()));
@@ -53,8 +56,9 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
   const SceneFrame& frame = tracer.frame();
   const std::string name = frame_name(options.photons, number);
   // Do photons tell indirect light, too? Beside a map of caustic photons paths find it.
-  const bool alone = options.irradcache.empty() && options.points.empty() && options.meshirrad.empty() &&
-                     (options.photons_alone || formats::PhotonReader(name, {.digest = false}).header().kinds != "caustic");
+  const bool alone =
+      options.irradcache.empty() && options.points.empty() && options.meshirrad.empty() &&
+      (options.photons_alone || formats::PhotonReader(name, {.digest = false}).header().kinds != "caustic");
   const LightNeeded needed = alone ? LightNeeded::all : LightNeeded::caustic;
   const auto shift = [&](const formats::PhotonMap& map) {
     return Vec3d{map.header.origin[0], map.header.origin[1], map.header.origin[2]} - frame.origin;
@@ -69,9 +73,12 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
     map = read_photons(tool, name, frame, needed);
     moved = shift(map);
   } else {
-    const auto wanted = [alone](Vec3, const formats::Photon& photon) { return alone || photon.kind == formats::PathKind::caustic; };
+    const auto wanted = [alone](Vec3, const formats::Photon& photon) {
+      return alone || photon.kind == formats::PathKind::caustic;
+    };
     map = read_photons(tool, name, standing_scene(frame), needed, "static", wanted);
-    const formats::PhotonMap dynamic = read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
+    const formats::PhotonMap dynamic =
+        read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
     formats::PhotonBlock whole = whole_photons({map, dynamic, shift(map), shift(dynamic)}, wanted);
     map.photons = std::move(whole.photons);
     map.directions = std::move(whole.directions);
@@ -89,24 +96,28 @@ void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFr
   tool.depends_on(name);
   const formats::MeshirradFile file = formats::load_meshirrad(name);
   check_identity(tool, name, file.header.identity, frame);
-  if (file.header.holds == formats::MeshHolds::counts) throw InputError(name + ": holds counts, not light; make light of them with gather-temporal density");
+  if (file.header.holds == formats::MeshHolds::counts)
+    throw InputError(name + ": holds counts, not light; make light of them with gather-temporal density");
   if (file.header.kinds != "indirect" && (file.header.kinds != "caustic,indirect" || photons_))
-    throw InputError(name + ": holds light of kinds " + file.header.kinds + ", of which frames sample or look up some by themselves; make it with --kinds indirect, or caustic,indirect and no --photons");
+    throw InputError(name + ": holds light of kinds " + file.header.kinds +
+                     ", of which frames sample or look up some by themselves; make it with --kinds indirect, or "
+                     "caustic,indirect and no --photons");
   history_ = file.header.history;
   mesh_ = std::make_unique<MeshLight>(file, frame);
   known_.mesh = mesh_.get();
   known_.mesh_has_caustic = file.header.kinds == "caustic,indirect";
 }
 
-void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds) {
+void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame,
+                               const InfluenceThresholds& thresholds) {
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
   if (is_localised(file)) {
     check_identity(tool, name, file.header.identity, frame);
     LocalisedRecords records = localised_records(file, frame);
     history_ = records.history;
-    localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered, records.least_cosine, thresholds,
-                                                  MovingObjects(frame));
+    localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered,
+                                                  records.least_cosine, thresholds, MovingObjects(frame));
     known_.localised = localised_.get();
     return;
   }

@@ -12,26 +12,28 @@
 namespace tempolux::tools {
 
 struct IndirectLightOptions {
-  std::string photons, irradcache, points, meshirrad;   ///< files, or patterns; "": none
-  std::string dynamic;                       ///< the same: photons is then the segment's static map
-  std::string high;                          ///< the same: points, or without points photons, is then the low part of photonmap-split
-  int high_samples = 4;                      ///< of an eye path
-  bool photons_alone = false;                ///< photons must tell indirect light
+  std::string photons, irradcache, points, meshirrad;  ///< files, or patterns; "": none
+  std::string dynamic;                                 ///< the same: photons is then the segment's static map
+  std::string high;            ///< the same: points, or without points photons, is then the low part of photonmap-split
+  int high_samples = 4;        ///< of an eye path
+  bool photons_alone = false;  ///< photons must tell indirect light
   PhotonLightOptions photon_light;
-  InfluenceThresholds influence;             ///< of a localised cache
+  InfluenceThresholds influence;  ///< of a localised cache
 };
 
 /// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
 class IndirectLight {
  public:
-  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
+  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
+                std::uint64_t seed, int number);
 
   /// Empty if none was named: paths alone.
   const KnownLight& get() const { return known_; }
   const std::string& history() const { return history_; }
 
  private:
-  void read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
+  void read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
+                   std::uint64_t seed, int number);
   void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
   void read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame);
   void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);

@@ -28,12 +28,16 @@ std::string hash_of(const formats::RadsamplesRecord& record, const SeenSamples& 
 
 /// What of the records is not of the scene; "" if all is.
 std::string fault_of(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points) {
-  if (kept.point_light.size() != points.anchored) return "it has the light of " + std::to_string(kept.point_light.size()) + " points, of " + std::to_string(points.anchored);
+  if (kept.point_light.size() != points.anchored)
+    return "it has the light of " + std::to_string(kept.point_light.size()) + " points, of " +
+           std::to_string(points.anchored);
   for (std::size_t i = 0; i < kept.records.size(); ++i) {
     const formats::RadsamplesRecord& r = kept.records[i].record;
-    const bool there = r.surface < frame.surfaces.size() && r.triangle < frame.surfaces[r.surface].primitive->triangles.size();
+    const bool there =
+        r.surface < frame.surfaces.size() && r.triangle < frame.surfaces[r.surface].primitive->triangles.size();
     if (!there || (r.set == formats::SurfaceSet::dynamic_set) != (r.surface >= frame.static_count))
-      return "record " + std::to_string(i) + " lies on triangle " + std::to_string(r.triangle) + " of surface " + std::to_string(r.surface) + ", which the scene does not have";
+      return "record " + std::to_string(i) + " lies on triangle " + std::to_string(r.triangle) + " of surface " +
+             std::to_string(r.surface) + ", which the scene does not have";
   }
   return "";
 }
@@ -57,7 +61,8 @@ FramePoints read_frame_points(Tool& tool, const std::string& file, const std::st
     DividedGatherPoints divided = read_divided_points(tool, file, high, frame);
     points.read = std::move(divided.whole);
     points.high_shares = std::move(divided.high_shares);
-    points.high_hash = hash_hex({reinterpret_cast<const char*>(points.high_shares.data()), points.high_shares.size() * sizeof(float)});
+    points.high_hash =
+        hash_hex({reinterpret_cast<const char*>(points.high_shares.data()), points.high_shares.size() * sizeof(float)});
   }
   points.anchored = anchored_points(frame, points.read.points);
   Hasher hasher;
@@ -73,11 +78,15 @@ KeptHemispheres nothing_kept(const Tool& tool, const std::string& output) {
   KeptHemispheres kept;
   const std::string folder = std::filesystem::path(output).parent_path();
   if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0)
-    kept.shelf = std::make_shared<SampleShelf>(output == "-" ? std::filesystem::temp_directory_path().string() : folder.empty() ? "." : folder, limit / 8);
+    kept.shelf = std::make_shared<SampleShelf>(output == "-"    ? std::filesystem::temp_directory_path().string()
+                                               : folder.empty() ? "."
+                                                                : folder,
+                                               limit / 8);
   return kept;
 }
 
-void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHeader& header, const std::string& digest, const std::vector<std::string>& hashes) {
+void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHeader& header, const std::string& digest,
+                          const std::vector<std::string>& hashes) {
   path_ = path;
   digest_ = digest;
   points_hash_ = header.points_hash;
@@ -88,9 +97,10 @@ void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHead
 }
 
 /// False, and nothing done, if less than half of the samples are the base's.
-bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::string>& hashes, formats::RadsamplesFile& file) const {
-  if (path_.empty() || !same_folder(path, path_) || segment_ != file.header.segment || points_hash_ != file.header.points_hash ||
-      divided_ == file.header.high_hash.empty())
+bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::string>& hashes,
+                              formats::RadsamplesFile& file) const {
+  if (path_.empty() || !same_folder(path, path_) || segment_ != file.header.segment ||
+      points_hash_ != file.header.points_hash || divided_ == file.header.high_hash.empty())
     return false;
   std::vector<std::uint32_t> kept_from(file.records.size(), 0);
   std::size_t kept = 0, all = 0;
@@ -108,7 +118,8 @@ bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::st
   return true;
 }
 
-void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points, const std::string& history, Output& output) {
+void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points,
+                      const std::string& history, Output& output) {
   formats::RadsamplesFile file = head_of(kept);
   file.header.history = history;
   file.header.identity = identity_of(frame);
@@ -137,18 +148,24 @@ void read_kept(Tool& tool, SceneInput& input, const std::string& file, const Sce
                KeptHemispheres& kept, std::optional<SceneFrame>& before) {
   tool.depends_on(file, InputRole::replaceable);
   const formats::RadsamplesFile in = formats::read_radsamples(
-      file, [&](const formats::RadsamplesFile& head, std::size_t record, std::span<const formats::RadianceSample> samples,
-                std::span<const std::uint32_t> anchors) { take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - now.origin, kept); });
+      file, [&](const formats::RadsamplesFile& head, std::size_t record,
+                std::span<const formats::RadianceSample> samples, std::span<const std::uint32_t> anchors) {
+        take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - now.origin, kept);
+      });
   take_head(in, kept);
   if (!in.header.base_name.empty()) tool.depends_on(formats::path_of_base(file, in.header.base_name));
   const formats::Identity& identity = in.header.identity;
-  if (!identity.known()) throw InputError(file + ": does not say of which frame it is; give a file that gather-temporal wrote");
+  if (!identity.known())
+    throw InputError(file + ": does not say of which frame it is; give a file that gather-temporal wrote");
   const int frame = identity.first_frame;
-  if (!same_segment(in.header, now) && in.header.segment[0] == now.segment.first && in.header.segment[1] == now.segment.last)
-    throw InputError(file + ": of a scene of another size, " + std::to_string(in.header.diagonal) + " m across in this segment, not " + std::to_string(sample_unit(now)) +
+  if (!same_segment(in.header, now) && in.header.segment[0] == now.segment.first &&
+      in.header.segment[1] == now.segment.last)
+    throw InputError(file + ": of a scene of another size, " + std::to_string(in.header.diagonal) +
+                     " m across in this segment, not " + std::to_string(sample_unit(now)) +
                      " m: another one, or edited since; leave out --previous");
   if (!same_segment(in.header, now))
-    throw InputError(file + ": of frame " + std::to_string(frame) + ", in another segment than frame " + std::to_string(now.frame) +
+    throw InputError(file + ": of frame " + std::to_string(frame) + ", in another segment than frame " +
+                     std::to_string(now.frame) +
                      "; nothing is kept from one segment to the next: leave out --previous");
   before.emplace(input.at(frame, false));
   check_identity(tool, file, identity, *before);
@@ -156,30 +173,36 @@ void read_kept(Tool& tool, SceneInput& input, const std::string& file, const Sce
     throw InputError(file + ": its points lay elsewhere than those of frame " + std::to_string(now.frame) +
                      "; make the points of both frames with the same options");
   if (in.header.high_hash.empty() != points.high_hash.empty())
-    throw InputError(file + (points.high_hash.empty() ? ": its samples hold the low part of the light alone; give --high, too, or leave out --previous"
-                                                      : ": its samples hold all of the light, not the low part alone; leave out --high or --previous"));
-  if (const std::string fault = fault_of(kept, now, points); !fault.empty()) throw InputError(file + ": " + fault + "; leave out --previous");
+    throw InputError(
+        file + (points.high_hash.empty()
+                    ? ": its samples hold the low part of the light alone; give --high, too, or leave out --previous"
+                    : ": its samples hold all of the light, not the low part alone; leave out --high or --previous"));
+  if (const std::string fault = fault_of(kept, now, points); !fault.empty())
+    throw InputError(file + ": " + fault + "; leave out --previous");
 }
 
-std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const SceneFrame& frame, const FramePoints& points, const std::string& history,
+std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const SceneFrame& frame,
+                                               const FramePoints& points, const std::string& history,
                                                KeptHemispheres kept) {
   if (!std::filesystem::is_regular_file(file)) return std::nullopt;
   try {
     std::vector<std::string> hashes;
     formats::RadsamplesDigest digest;
     const formats::RadsamplesFile in = formats::read_radsamples(
-        file, [&](const formats::RadsamplesFile& head, std::size_t record, std::span<const formats::RadianceSample> samples,
-                  std::span<const std::uint32_t> anchors) {
+        file, [&](const formats::RadsamplesFile& head, std::size_t record,
+                  std::span<const formats::RadianceSample> samples, std::span<const std::uint32_t> anchors) {
           take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - frame.origin, kept);
           hashes.push_back(hash_of(head.records[record], {samples, anchors}));
           digest.add(samples, anchors);
         });
     take_head(in, kept);
-    if (!same_segment(in.header, frame) || in.header.history != history || !(in.header.identity == identity_of(frame)) ||
-        in.header.points_hash != points.places_hash || in.header.high_hash != points.high_hash)
+    if (!same_segment(in.header, frame) || in.header.history != history ||
+        !(in.header.identity == identity_of(frame)) || in.header.points_hash != points.places_hash ||
+        in.header.high_hash != points.high_hash)
       return std::nullopt;
     const bool whole = in.header.base_name.empty();
-    if (!whole && (!same_folder(file, path_) || in.header.base_name != std::filesystem::path(path_).filename() || in.header.base_digest != digest_))
+    if (!whole && (!same_folder(file, path_) || in.header.base_name != std::filesystem::path(path_).filename() ||
+                   in.header.base_digest != digest_))
       return std::nullopt;
     if (!fault_of(kept, frame, points).empty()) return std::nullopt;
     for (std::size_t i = 0; i < kept.point_light.size(); ++i)
@@ -187,7 +210,7 @@ std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const Sc
     if (whole) make_base(file, in.header, digest.of(in), hashes);
     return kept;
   } catch (const InputError&) {
-    return std::nullopt;   // cut off or damaged: made again
+    return std::nullopt;  // cut off or damaged: made again
   }
 }
 

@@ -33,9 +33,13 @@ std::unique_ptr<LightGrid> read_light_grid(Tool& tool, const std::string& name, 
   const formats::LightgridFile file = formats::load_lightgrid(name);
   if (file.cells.empty()) return nullptr;
   if (file.header.origin != std::array{frame.origin.x, frame.origin.y, frame.origin.z})
-    throw InputError(name + ": its cells lie about another origin than this scene's; learn it again with frame-render --learn-lights -o FILE.lightgrid");
+    throw InputError(name +
+                     ": its cells lie about another origin than this scene's; learn it again with frame-render "
+                     "--learn-lights -o FILE.lightgrid");
   if (file.header.parts != std::array{LightGrid::kAcross, LightGrid::kDown})
-    throw InputError(name + ": has other parts of the sky than 32 x 16; learn it again with frame-render --learn-lights -o FILE.lightgrid");
+    throw InputError(
+        name +
+        ": has other parts of the sky than 32 x 16; learn it again with frame-render --learn-lights -o FILE.lightgrid");
   auto grid = std::make_unique<LightGrid>(float(file.header.edge), frame.environment);
   std::vector<std::uint64_t> keys;
   std::vector<LightGrid::Cell> cells;

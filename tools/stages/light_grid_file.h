@@ -13,8 +13,8 @@ namespace tempolux::tools {
 /// Writes what was learned in `frame`; nullptr: no cells.
 void write_light_grid(Tool& tool, const LightGrid* grid, const SceneFrame& frame, Output& output);
 
-/// Reads a grid for `frame`; nullptr if it has no cells. One of another scene costs noise only, so it is taken as it is; InputError if its lattice is
-/// not that of the frame's space, or it has other parts of the sky than LightGrid.
+/// Reads a grid for `frame`; nullptr if it has no cells. One of another scene costs noise only, so it is taken as it
+/// is; InputError if its lattice is not that of the frame's space, or it has other parts of the sky than LightGrid.
 std::unique_ptr<LightGrid> read_light_grid(Tool& tool, const std::string& file, const SceneFrame& frame);
 
 }  // namespace tempolux::tools

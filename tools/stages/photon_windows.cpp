@@ -52,7 +52,8 @@ class Counts {
       const bool here = named_ ? kept_.contains(f) : std::ranges::binary_search(range_, f);
       if (!here && f < frame.frame) found.clear();
       if (!here && f == frame.frame)
-        throw InputError("frame " + std::to_string(f) + " has no counts; name those that st-filter mesh --counts made of it");
+        throw InputError("frame " + std::to_string(f) +
+                         " has no counts; name those that st-filter mesh --counts made of it");
       if (!here && f > frame.frame) break;
       if (!here) continue;
       if (f == frame.frame) at = found.size();
@@ -74,8 +75,10 @@ class Counts {
     tool_.stats().phase("read counts");
     tool_.depends_on(name);
     formats::MeshirradFile file = formats::load_meshirrad(name);
-    if (file.header.holds != formats::MeshHolds::counts) throw InputError(name + ": holds no counts; make it with st-filter mesh --counts");
-    if (!file.header.identity.known()) throw InputError(name + ": does not say of which frame it is; make it with st-filter mesh --counts");
+    if (file.header.holds != formats::MeshHolds::counts)
+      throw InputError(name + ": holds no counts; make it with st-filter mesh --counts");
+    if (!file.header.identity.known())
+      throw InputError(name + ": does not say of which frame it is; make it with st-filter mesh --counts");
     return keep(std::move(file));
   }
   static std::shared_ptr<Counted> keep(formats::MeshirradFile file) {
@@ -93,7 +96,7 @@ class Counts {
   const Options& options_;
   const std::vector<int>& range_;
   StandingTree standing_;
-  bool named_ = false;                       ///< by names, not by a pattern or photons
+  bool named_ = false;  ///< by names, not by a pattern or photons
   std::map<int, std::shared_ptr<const Counted>> kept_;
 };
 
@@ -101,8 +104,10 @@ class Counts {
 void check_alike(const Counted& here, const Counted& other) {
   const auto& a = here.header;
   const auto& b = other.header;
-  if (a.identity.static_geometry != b.identity.static_geometry || a.cell != b.cell || a.kinds != b.kinds || a.origin != b.origin)
-    throw InputError("counts of frames " + std::to_string(here.counts.frame) + " and " + std::to_string(other.counts.frame) +
+  if (a.identity.static_geometry != b.identity.static_geometry || a.cell != b.cell || a.kinds != b.kinds ||
+      a.origin != b.origin)
+    throw InputError("counts of frames " + std::to_string(here.counts.frame) + " and " +
+                     std::to_string(other.counts.frame) +
                      " differ in scene, cell or kinds; count all frames of a segment with the same options");
 }
 
@@ -123,9 +128,10 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
   // What moves is cut as the counts are; the frames by which they were cut are looked at again.
   const Segment& s = frame.segment;
   std::vector<SceneFrame> others;
-  for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last}) others.push_back(f == number ? frame : input.at(f, false));
+  for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last})
+    others.push_back(f == number ? frame : input.at(f, false));
   file.elements = all_elements(frame, MeshCuts(here.header.cell, {&others[0], &others[1], &others[2]}));
-  std::vector<FrameCounts> scaled;           // units of this frame
+  std::vector<FrameCounts> scaled;  // units of this frame
   std::vector<const FrameCounts*> window;
   scaled.reserve(found.size());
   for (const auto& counted : found) {
@@ -135,7 +141,8 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
     window.push_back(&scaled.back());
   }
   WindowOptions window_options = options.window;
-  window_options.width = options.count.mesh.filter.width > 0 ? options.count.mesh.filter.width : here.header.cell / kCellOfWindows;
+  window_options.width =
+      options.count.mesh.filter.width > 0 ? options.count.mesh.filter.width : here.header.cell / kCellOfWindows;
   CollectedLight light = collect_windows(window, at, std::uint32_t(frame.static_count), window_options, file.elements);
   tool.stats().phase("filter", true);
   for (Rgbd& flux : light.flux) flux *= here.header.unit;
@@ -152,7 +159,8 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
 
 void check(const Options& options, const std::vector<int>& frames) {
   if (options.counts.empty() == options.count.photons.empty())
-    throw InputError("--photons or --counts: name the photons of the frames, or what st-filter mesh --counts made of them");
+    throw InputError(
+        "--photons or --counts: name the photons of the frames, or what st-filter mesh --counts made of them");
   if (frames.size() > 1 && !has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example d.####.meshirrad");
   if (frames.size() > 1 && !options.count.photons.empty() && !has_frame_pattern(options.count.photons))
@@ -162,29 +170,38 @@ void check(const Options& options, const std::vector<int>& frames) {
 }  // namespace
 
 int photon_windows(int argc, char** argv) {
-  Tool tool("gather-temporal density",
-            "Make light textures from the photons of many frames: each element takes as many as its light stands still.", argc, argv);
+  Tool tool(
+      "gather-temporal density",
+      "Make light textures from the photons of many frames: each element takes as many as its light stands still.",
+      argc, argv);
   Options options;
   options.count.for_windows = true;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   add_count_options(app, options.count);
-  tool.leave_out_of_history(app.add_option("--counts", options.counts,
-                                           "in place of photons: .meshirrad files of st-filter mesh --counts, of the frame and those around "
-                                           "it, or a pattern")->type_name("FILE..."));
+  tool.leave_out_of_history(
+      app.add_option("--counts", options.counts,
+                     "in place of photons: .meshirrad files of st-filter mesh --counts, of the frame and those around "
+                     "it, or a pattern")
+          ->type_name("FILE..."));
   app.add_option("--reach", options.window.reach, "frames that a window reaches to each side at most")
-      ->capture_default_str()->check(number_between(0, 127));
-  app.add_option("--false-alarms", options.window.false_alarms, "share of windows that close early though light stands still")
-      ->capture_default_str()->check(number_between(1e-9, 0.5));
+      ->capture_default_str()
+      ->check(number_between(0, 127));
+  app.add_option("--false-alarms", options.window.false_alarms,
+                 "share of windows that close early though light stands still")
+      ->capture_default_str()
+      ->check(number_between(1e-9, 0.5));
   app.add_option("--filter-width", options.count.mesh.filter.width,
-                 "least deviation of the Gaussian by which elements are smoothed, m; it is wider where fewer than 2500 photons count in the "
+                 "least deviation of the Gaussian by which elements are smoothed, m; it is wider where fewer than 2500 "
+                 "photons count in the "
                  "mean; 0: half of --cell")
-      ->capture_default_str()->check(number_between(0));
+      ->capture_default_str()
+      ->check(number_between(0));
   tool.output_option(options.output, ".meshirrad file, or a pattern")->required();
   tool.common_options(uses_scene | uses_frames);
   return tool.run([&] {
     std::vector<int> frames = tool.common().frames;
-    std::ranges::sort(frames);               // each is read once
+    std::ranges::sort(frames);  // each is read once
     check(options, frames);
     options.count.frames = 2 * options.window.reach + 1;
     tool.stats().phase("load");

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPlansKept = 2;   ///< earlier plans whose files are kept, so that going back to a mode makes nothing again
+constexpr int kPlansKept = 2;  ///< earlier plans whose files are kept, so that going back to a mode makes nothing again
 
 void make_folder(const std::string& folder) {
   std::error_code error;
@@ -56,7 +56,9 @@ std::string stems(const Graph& graph, const std::vector<std::string>& others) {
 bool has_key(const std::string& stem) {
   const std::size_t dash = stem.rfind('-');
   if (dash == std::string::npos || stem.size() - dash != 11 || dash < 4) return false;
-  const auto all_in = [](const std::string& text, const char* allowed) { return text.find_first_not_of(allowed) == std::string::npos; };
+  const auto all_in = [](const std::string& text, const char* allowed) {
+    return text.find_first_not_of(allowed) == std::string::npos;
+  };
   return all_in(stem.substr(0, dash), "0123456789+") && all_in(stem.substr(dash + 1), "0123456789abcdef");
 }
 
@@ -91,18 +93,23 @@ ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
     for (const std::string& module : modules) shared.add(std::string_view(inputs.hash_of(module)));
   }
   inputs.hash_of(programs + "/scene-plan");
-  return [&inputs, programs, common = shared.hex()](const std::string& tool) { return inputs.hash_of(programs + "/" + tool) + common; };
+  return [&inputs, programs, common = shared.hex()](const std::string& tool) {
+    return inputs.hash_of(programs + "/" + tool) + common;
+  };
 }
 
 }  // namespace
 
-PlanFolder::PlanFolder(std::string path) : path_(std::move(path)), inputs_(path_ + "/state/inputs") { make_folder(path_ + "/state"); }
+PlanFolder::PlanFolder(std::string path) : path_(std::move(path)), inputs_(path_ + "/state/inputs") {
+  make_folder(path_ + "/state");
+}
 
 bool PlanFolder::up_to_date(const std::string& wish) {
   return fs::exists(path_ + "/plan.mk") && fs::exists(path_ + "/plan.json") && inputs_.unchanged(wish);
 }
 
-Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide) {
+Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string& key,
+                                const std::function<Decisions()>& decide) {
   const std::string name = "state/" + frame_digits(segment.first) + "-" + key_of(key);
   decided_.push_back(name);
   const std::string kept = content_of(path_ + "/" + name + ".decided");
@@ -112,7 +119,8 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
   return decided;
 }
 
-void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history) {
+void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish,
+                       const std::string& history) {
   for (const char* sub : {"frames", "shown", "report"}) make_folder(path_ + "/" + sub);
   for (const GraphFile& file : planned.graph.files) make_folder(path_ + "/" + file.name.substr(0, file.name.find('/')));
   for (const PlanFile& state : planned.graph.states) write_if_changed(path_ + "/" + state.name, state.content);
@@ -133,23 +141,30 @@ void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const 
   write_if_changed(path_ + "/state/warnings", warnings);
   write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history));
   write_if_changed(path_ + "/plan.mk", plan_makefile(planned.plan, planned.graph, tool_hash));
-  write_whole(path_ + "/state/inputs", inputs_.text(wish));   // last: from here on the plan is up to date
+  write_whole(path_ + "/state/inputs", inputs_.text(wish));  // last: from here on the plan is up to date
 }
 
-Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes, PlanFolder* folder)
-    : tool_hash_(tool_hashes(folder ? folder->inputs() : none_, recipes)), input_(tool, scene, SceneInput::light | SceneInput::a_camera) {
+Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes,
+                 PlanFolder* folder)
+    : tool_hash_(tool_hashes(folder ? folder->inputs() : none_, recipes)),
+      input_(tool, scene, SceneInput::light | SceneInput::a_camera) {
   const int camera = input_.scene().camera_node(tool.common().camera);
   tool.stats().phase("plan");
   Plan& plan = planned_.plan;
   planned_.scene_name = fs::path(scene).filename().string();
   plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
-                   input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{}, helper_frames(tool.common().frames, wish));
-  const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); }, [&](int frame) { return input_.emission(frame); }, camera};
+                   input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{},
+                   helper_frames(tool.common().frames, wish));
+  const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); },
+                           [&](int frame) { return input_.emission(frame); }, camera};
   tool.stats().phase("pilots", true);
   for (PlannedSegment& segment : plan.segments) {
     tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
     const auto make = [&] { return decide(segment, wish, plan.media, source); };
-    segment.decisions = folder ? folder->decisions(segment, hash_hex(decision_key(segment, wish, plan.media) + tool_hash_("scene-plan")), make) : make();
+    segment.decisions =
+        folder ? folder->decisions(segment,
+                                   hash_hex(decision_key(segment, wish, plan.media) + tool_hash_("scene-plan")), make)
+               : make();
   }
   tool.stats().phase("graph");
   planned_.graph = graph(plan, wish);
@@ -159,17 +174,22 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   for (const std::string& file : input_.scene().files) folder->inputs().hash_of(file);
   for (const std::string& file : input_.media_files()) {
     folder->inputs().hash_of(file);
-    folder->inputs().hash_of(fs::absolute(file).parent_path().string());   // a file that comes or goes is a change as well
+    folder->inputs().hash_of(
+        fs::absolute(file).parent_path().string());  // a file that comes or goes is a change as well
   }
 }
 
 Graph Planner::graph(const Plan& plan, const Wish& wish) {
-  return make_graph(plan, wish, tool_hash_, [&](int first, int last) { return majorants_text(input_.frozen_majorants(first, last)); });
+  return make_graph(plan, wish, tool_hash_,
+                    [&](int first, int last) { return majorants_text(input_.frozen_majorants(first, last)); });
 }
 
 void check_words(const std::string& option, const std::string& words) {
-  const bool fine = std::ranges::all_of(words, [](unsigned char c) { return std::isalnum(c) || std::string_view(" .,:+-_%/").find(char(c)) != std::string_view::npos; });
-  if (!fine) throw InputError(option + ": '" + words + "': only letters, digits, blanks and . , : + - _ % / can stand there");
+  const bool fine = std::ranges::all_of(words, [](unsigned char c) {
+    return std::isalnum(c) || std::string_view(" .,:+-_%/").find(char(c)) != std::string_view::npos;
+  });
+  if (!fine)
+    throw InputError(option + ": '" + words + "': only letters, digits, blanks and . , : + - _ % / can stand there");
 }
 
 }  // namespace tempolux::tools

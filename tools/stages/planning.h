@@ -16,7 +16,7 @@ struct Planned {
   Plan plan;
   Graph graph;
   std::string scene_name;
-  std::vector<std::string> warnings;   ///< that were given for the scene
+  std::vector<std::string> warnings;  ///< that were given for the scene
 };
 
 /// The folder that a plan lies in, which is the folder of all files that it names.
@@ -28,7 +28,8 @@ class PlanFolder {
   Inputs& inputs() { return inputs_; }
   /// Whether the plan in the folder is that of this wish and nothing that it was made from has changed.
   bool up_to_date(const std::string& wish);
-  /// The decisions for a segment: those that an earlier plan made for the same content, else `decide` makes them and they are kept.
+  /// The decisions for a segment: those that an earlier plan made for the same content, else `decide` makes them and
+  /// they are kept.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
   /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before it name.
   void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history);
@@ -36,14 +37,15 @@ class PlanFolder {
  private:
   std::string path_;
   Inputs inputs_;
-  std::vector<std::string> decided_;   ///< files that decisions() has read or written
+  std::vector<std::string> decided_;  ///< files that decisions() has read or written
 };
 
 /// Plans the frames asked for. The files that it reads become inputs of the folder.
 class Planner {
  public:
   /// Reads the scene. `folder`: nullptr if nothing is to be kept. `recipes`: files that hold the rules.
-  Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes, PlanFolder* folder);
+  Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes,
+          PlanFolder* folder);
 
   const Planned& planned() const { return planned_; }
   const ToolHash& tool_hash() const { return tool_hash_; }
@@ -52,17 +54,18 @@ class Planner {
 
  private:
   Inputs none_{""};
-  ToolHash tool_hash_;   ///< of the programs beside this one, with all modules and with `recipes`
+  ToolHash tool_hash_;  ///< of the programs beside this one, with all modules and with `recipes`
   SceneInput input_;
   Planned planned_;
 };
 
-/// Options that all stages share and that no state of the scene holds: they are a part of what files are made from, as typed. What names of files stand for,
-/// segments and the choice of an animation is in the states.
-inline constexpr std::array kSharedWords{"--fps", "--reduce-textures", "--max-texture", "--allow-outside", "--allow-stale"};
+/// Options that all stages share and that no state of the scene holds: they are a part of what files are made from, as
+/// typed. What names of files stand for, segments and the choice of an animation is in the states.
+inline constexpr std::array kSharedWords{"--fps", "--reduce-textures", "--max-texture", "--allow-outside",
+                                         "--allow-stale"};
 
-/// Throws InputError, naming the option, unless the words are letters, digits, blanks and . , : + - _ % /: they stand in
-/// plan.mk, where other characters would mean something.
+/// Throws InputError, naming the option, unless the words are letters, digits, blanks and . , : + - _ % /: they stand
+/// in plan.mk, where other characters would mean something.
 void check_words(const std::string& option, const std::string& words);
 
 }  // namespace tempolux::tools

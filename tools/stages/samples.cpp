@@ -18,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWidth = 128;        ///< pixels of the larger sample, at most half of the picture
-constexpr int kFewerRays = 4;         ///< of a record
+constexpr double kWidth = 128;  ///< pixels of the larger sample, at most half of the picture
+constexpr int kFewerRays = 4;   ///< of a record
 constexpr std::array kSamples{"small", "large"};
 
-/// How often a stage runs for the frames asked for, and how much more its files take than those of a sample, but for the size of the picture: mean
-/// factors of work and of bytes.
+/// How often a stage runs for the frames asked for, and how much more its files take than those of a sample, but for
+/// the size of the picture: mean factors of work and of bytes.
 struct Runs {
   double count = 0, work = 0, bytes = 0;
 };
@@ -40,7 +40,8 @@ double rays_of(const std::string& words) {
 /// Cameras for which records are placed: frames of --frames.
 double cameras_of(const std::string& words) {
   const std::size_t at = words.find("--frames ");
-  return at == std::string::npos ? 1 : 1 + double(std::ranges::count(words.substr(at, words.find(' ', at + 9) - at), ','));
+  return at == std::string::npos ? 1
+                                 : 1 + double(std::ranges::count(words.substr(at, words.find(' ', at + 9) - at), ','));
 }
 
 std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sample, double photons) {
@@ -52,8 +53,10 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sam
   const std::function<void(const std::string&)> need = [&](const std::string& name) {
     const GraphFile* file = whole.graph.find(name);
     if (!file || !needed.insert(file).second) return;
-    const double cameras = makes_records(*file) ? d.records_of(cameras_of(file->words)) : 1, bytes = makes_photons(*file) ? photons : cameras;
-    const double rays = makes_records(*file) && sample_rays[file->stage] > 0 ? rays_of(file->words) / sample_rays[file->stage] : 1;
+    const double cameras = makes_records(*file) ? d.records_of(cameras_of(file->words)) : 1,
+                 bytes = makes_photons(*file) ? photons : cameras;
+    const double rays =
+        makes_records(*file) && sample_rays[file->stage] > 0 ? rays_of(file->words) / sample_rays[file->stage] : 1;
     Runs& stage = runs[file->stage];
     stage.count += 1;
     stage.work += bytes * rays;
@@ -67,7 +70,8 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sam
 /// The first frame asked for, and the first that is warped.
 std::vector<int> sampled_frames(const Planned& planned) {
   std::vector<int> frames{planned.plan.frames.front()};
-  const auto warped = std::ranges::find_if(planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage::walked.folder); });
+  const auto warped = std::ranges::find_if(
+      planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage::walked.folder); });
   if (warped != planned.graph.pictures.end() && warped->first != frames.front()) frames.push_back(warped->first);
   return frames;
 }
@@ -99,7 +103,8 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage, c
     mean.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work) / double(stems.size());
   }
   for (const auto& entry : fs::directory_iterator(folder + "/" + std::string(stage.folder)))
-    if (entry.path().extension() != ".json" && std::ranges::find(stems, std::string(stage.folder) + "/" + stem_of(entry.path().filename())) != stems.end())
+    if (entry.path().extension() != ".json" &&
+        std::ranges::find(stems, std::string(stage.folder) + "/" + stem_of(entry.path().filename())) != stems.end())
       mean.bytes += double(entry.file_size()) / double(stems.size());
   return stems.empty() ? std::nullopt : std::optional(mean);
 }
@@ -144,12 +149,17 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
   for (const StageInfo& stage : kStages) {
     const std::string name(stage.name);
     if (!json.at("runs").contains(name)) continue;
-    const auto cost = [&](const char* sample) { return cost_of(folder, stage, json.at(sample).value(name, std::vector<std::string>{})); };
+    const auto cost = [&](const char* sample) {
+      return cost_of(folder, stage, json.at(sample).value(name, std::vector<std::string>{}));
+    };
     const std::optional<Cost> a = cost(kSamples[0]), b = cost(kSamples[1]);
     if (!a || !b) continue;
     const std::array<double, 3> runs = json.at("runs").at(name);
-    const auto whole = [&](double in_small, double in_large) { return power_law(json.at("scales")[0], in_small, json.at("scales")[1], in_large, 1); };
-    estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s), runs[2] * whole(a->bytes, b->bytes)});
+    const auto whole = [&](double in_small, double in_large) {
+      return power_law(json.at("scales")[0], in_small, json.at("scales")[1], in_large, 1);
+    };
+    estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s),
+                         runs[2] * whole(a->bytes, b->bytes)});
   }
   return estimates;
 }

@@ -47,8 +47,7 @@ bool is_unlocked(const std::string& path) {
 }
 
 bool is_left_over(const std::string& path, const Writer& writer, const struct stat& status, double other_hosts_s) {
-  if (writer.host == temporary_host())
-    return ::kill(writer.process, 0) != 0 && errno == ESRCH && is_unlocked(path);
+  if (writer.host == temporary_host()) return ::kill(writer.process, 0) != 0 && errno == ESRCH && is_unlocked(path);
   return std::difftime(std::time(nullptr), status.st_mtime) > other_hosts_s && is_unlocked(path);
 }
 

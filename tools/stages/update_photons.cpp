@@ -18,8 +18,9 @@ namespace tempolux::tools {
 namespace {
 
 const std::map<std::string, UpdateStrategy> kStrategies{
-    {"oldest", UpdateStrategy::oldest}, {"random", UpdateStrategy::random}, {"census", UpdateStrategy::census}, {"fde", UpdateStrategy::fde},
-    {"dip", UpdateStrategy::dip},       {"hybrid", UpdateStrategy::hybrid}, {"path", UpdateStrategy::path},     {"all", UpdateStrategy::all}};
+    {"oldest", UpdateStrategy::oldest}, {"random", UpdateStrategy::random}, {"census", UpdateStrategy::census},
+    {"fde", UpdateStrategy::fde},       {"dip", UpdateStrategy::dip},       {"hybrid", UpdateStrategy::hybrid},
+    {"path", UpdateStrategy::path},     {"all", UpdateStrategy::all}};
 
 /// "10%" or "10" as .1.
 double share_of(const std::string& text, const char* option) {
@@ -27,8 +28,7 @@ double share_of(const std::string& text, const char* option) {
   double percent = -1;
   try {
     percent = std::stod(text, &read);
-  } catch (const std::exception&) {
-  }
+  } catch (const std::exception&) {}
   if (!(percent >= 0 && percent <= 100) || (text.substr(read) != "%" && read != text.size()))
     throw InputError(std::string(option) + ": '" + text + "' is not a share; write 10% or 2.5%");
   return percent / 100;
@@ -36,8 +36,8 @@ double share_of(const std::string& text, const char* option) {
 
 /// Are all states of the scene that light depends on those of the map?
 bool is_still(const formats::Identity& a, const formats::Identity& b) {
-  return a.known() && a.static_geometry == b.static_geometry && a.moving_geometry == b.moving_geometry && a.materials == b.materials &&
-         a.lights == b.lights && a.media == b.media;
+  return a.known() && a.static_geometry == b.static_geometry && a.moving_geometry == b.moving_geometry &&
+         a.materials == b.materials && a.lights == b.lights && a.media == b.media;
 }
 
 /// --refine works on the map of the frame itself, an update on that of the frame before.
@@ -61,12 +61,14 @@ bool may_keep(const Tool& tool, std::uint64_t photons) {
   return photons <= memory / 4 / bytes_of_photon;
 }
 
-void check_updatable(const std::string& name, const MapToUpdate& map, const formats::PhotonHeader& previous, bool any_count) {
+void check_updatable(const std::string& name, const MapToUpdate& map, const formats::PhotonHeader& previous,
+                     bool any_count) {
   formats::PhotonHeader wanted = map.header;
   describe_map(map.photons, map.options, wanted);
   if (any_count) wanted.emitted_count = previous.emitted_count;
   if (const std::string why = why_not_updatable(previous, wanted); !why.empty())
-    throw InputError(name + ": cannot be " + (any_count ? "refined" : "updated") + ": " + why + "; trace this frame anew, without --update");
+    throw InputError(name + ": cannot be " + (any_count ? "refined" : "updated") + ": " + why +
+                     "; trace this frame anew, without --update");
 }
 
 PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t extra, const MapToUpdate& map,
@@ -74,7 +76,8 @@ PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t ex
   const formats::PhotonHeader previous = formats::PhotonReader(name, {.digest = false}).header();
   check_updatable(name, map, previous, true);
   if (!is_still(previous.identity, map.header.identity))
-    throw InputError(name + ": is the map of another state of the scene; --refine takes that of frame " + std::to_string(map.frame.frame));
+    throw InputError(name + ": is the map of another state of the scene; --refine takes that of frame " +
+                     std::to_string(map.frame.frame));
   const GroupMoments groups = read_moments(name, map.photons);
   formats::PhotonHeader header = map.header;
   header.history = previous.history + map.header.history;
@@ -87,35 +90,48 @@ PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t ex
 
 void add_update_options(CLI::App& app, UpdateArguments& arguments) {
   app.add_option("--update", arguments.update,
-                 "map of the frame before, or a pattern: keep its groups but for those that are traced again; needs photons in media and "
+                 "map of the frame before, or a pattern: keep its groups but for those that are traced again; needs "
+                 "photons in media and "
                  "--majorants")
       ->type_name("FILE");
-  app.add_option("--share", arguments.share, "of --update: share of the paths that are traced again, as 10%, those of pilots counted")->type_name("PERCENT");
-  app.add_option("--max-groups", arguments.max_groups, "of --update: instead of a share, the number of groups; pilots are not counted")->type_name("N");
+  app.add_option("--share", arguments.share,
+                 "of --update: share of the paths that are traced again, as 10%, those of pilots counted")
+      ->type_name("PERCENT");
+  app.add_option("--max-groups", arguments.max_groups,
+                 "of --update: instead of a share, the number of groups; pilots are not counted")
+      ->type_name("N");
   std::vector<std::string> names;
   for (const auto& [name, strategy] : kStrategies) names.push_back(name);
   app.add_option("--strategy", arguments.strategy,
-                 "which groups go first: oldest; random; census: where the stored photons saw most change of the smoke; of pilots: fde: that look "
-                 "at smoke that has changed; dip: that smoke scatters elsewhere; hybrid: by how much the smoke has changed; path: that take "
+                 "which groups go first: oldest; random; census: where the stored photons saw most change of the "
+                 "smoke; of pilots: fde: that look "
+                 "at smoke that has changed; dip: that smoke scatters elsewhere; hybrid: by how much the smoke has "
+                 "changed; path: that take "
                  "another path; all. All but the first two times age")
       ->capture_default_str()
       ->check(CLI::IsMember(names));
-  app.add_option("--pilots", arguments.pilots, "of a map that will be updated by pilots: share of each group's paths that are pilots, as 3%; at least one, at most 256")
+  app.add_option("--pilots", arguments.pilots,
+                 "of a map that will be updated by pilots: share of each group's paths that are pilots, as 3%; at "
+                 "least one, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
   // For comparisons with the papers: no part of the help. docs/methods/volume_photons.md has what they do.
-  app.add_option("--age-floor", arguments.how.age_floor, "of --update: groups as many frames old go before all others; 0: none")
+  app.add_option("--age-floor", arguments.how.age_floor,
+                 "of --update: groups as many frames old go before all others; 0: none")
       ->group("")
       ->check(number_between(0, 1e6));
-  app.add_option("--age-power", arguments.how.age_power, "of --update: priorities are times age to this power; 0: as in the papers")
+  app.add_option("--age-power", arguments.how.age_power,
+                 "of --update: priorities are times age to this power; 0: as in the papers")
       ->group("")
       ->check(number_between(0, 16));
   app.add_flag("--corrective", arguments.corrective,
-               "of --update: take groups back by negative photons through the smoke of their frame, instead of leaving them out: "
+               "of --update: take groups back by negative photons through the smoke of their frame, instead of leaving "
+               "them out: "
                "the same map for twice the paths")
       ->group("");
   app.add_option("--refine", arguments.refine,
-                 "instead of tracing groups of --update again: add this many paths to them (10k, 1M), where they make light in smoke less noisy; "
+                 "instead of tracing groups of --update again: add this many paths to them (10k, 1M), where they make "
+                 "light in smoke less noisy; "
                  "--update is the map of the frame itself")
       ->type_name("N")
       ->capture_default_str();
@@ -125,25 +141,33 @@ void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArgu
   const bool refines = parse_count(arguments.refine) > 0;
   arguments.how.strategy = kStrategies.at(arguments.strategy);
   if (static_or_dynamic && arguments.updates()) throw InputError("--update: only with --map global");
-  if (!arguments.updates() && refines) throw InputError("--refine: name the map that gets further paths, --update FILE");
+  if (!arguments.updates() && refines)
+    throw InputError("--refine: name the map that gets further paths, --update FILE");
   if (!arguments.updates() && arguments.corrective) throw InputError("--corrective: only with --update");
   if (refines && (arguments.corrective || !arguments.share.empty() || arguments.max_groups > 0))
-    throw InputError("--refine: adds paths; --share, --max-groups and --corrective trace some again: use one or the other");
-  if (arguments.updates() && share_of(arguments.pilots, "--pilots") > 0) throw InputError("--pilots: of an update the map before has them");
+    throw InputError(
+        "--refine: adds paths; --share, --max-groups and --corrective trace some again: use one or the other");
+  if (arguments.updates() && share_of(arguments.pilots, "--pilots") > 0)
+    throw InputError("--pilots: of an update the map before has them");
   if (!arguments.updates()) return;
   if (!refines && arguments.share.empty() && arguments.max_groups == 0 && arguments.strategy != "all")
     throw InputError("--update: say how many groups to trace again, --share 10% or --max-groups N");
   if (tool.common().volume.majorants.empty())
-    throw InputError("--update: needs the --majorants of the segment (scene-plan writes state/majorants.FFFF): without them photons look at "
-                     "other places in each frame");
+    throw InputError(
+        "--update: needs the --majorants of the segment (scene-plan writes state/majorants.FFFF): without them photons "
+        "look at "
+        "other places in each frame");
 }
 
 std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& photons, int frame) {
-  if (arguments.updates()) return formats::PhotonReader(previous_name(arguments, frame), {.digest = false}).header().pilots;
+  if (arguments.updates())
+    return formats::PhotonReader(previous_name(arguments, frame), {.digest = false}).header().pilots;
   const double share = share_of(arguments.pilots, "--pilots");
   if (!(share > 0)) return 0;
-  const std::uint32_t groups = photons.group_count ? photons.group_count : automatic_group_count(photons.photon_count, true);
-  return std::uint32_t(std::clamp(std::ceil(share * double(photons.photon_count) / groups), 1.0, double(formats::photons::kMostPilots)));
+  const std::uint32_t groups =
+      photons.group_count ? photons.group_count : automatic_group_count(photons.photon_count, true);
+  return std::uint32_t(
+      std::clamp(std::ceil(share * double(photons.photon_count) / groups), 1.0, double(formats::photons::kMostPilots)));
 }
 
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
@@ -151,17 +175,21 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   const int frame = map.frame.frame;
   const std::string name = previous_name(arguments, frame);
   tool.depends_on(name, InputRole::replaceable);
-  if (const std::uint64_t extra = parse_count(arguments.refine); extra > 0) return refine_map(tool, name, extra, map, sink);
+  if (const std::uint64_t extra = parse_count(arguments.refine); extra > 0)
+    return refine_map(tool, name, extra, map, sink);
   // Where nothing has changed no group is traced: nobody need look.
   const bool is_here = kept.name == name && kept.map.is_kept();
-  const formats::PhotonHeader before = is_here ? kept.map.header : formats::PhotonReader(name, {.digest = false}).header();
+  const formats::PhotonHeader before =
+      is_here ? kept.map.header : formats::PhotonReader(name, {.digest = false}).header();
   check_updatable(name, map, before, false);
   const bool still = is_still(before.identity, map.header.identity);
-  const UpdateStrategy strategy = still && arguments.how.strategy != UpdateStrategy::all ? UpdateStrategy::oldest : arguments.how.strategy;
+  const UpdateStrategy strategy =
+      still && arguments.how.strategy != UpdateStrategy::all ? UpdateStrategy::oldest : arguments.how.strategy;
   PreviousMap& previous = kept.map;
   if (!is_here) {
     tool.stats().phase("read map");
-    const bool keep = kept.wanted && !arguments.corrective && may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
+    const bool keep = kept.wanted && !arguments.corrective &&
+                      may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
     previous = read_previous(name, map.photons, strategy, map.frame.origin, keep);
   }
   if (previous.is_kept()) {

@@ -12,7 +12,7 @@
 namespace tempolux::tools {
 
 struct UpdateArguments {
-  std::string update;                        ///< file or pattern; "": trace anew
+  std::string update;  ///< file or pattern; "": trace anew
   std::string share, pilots = "0%", strategy = "oldest";
   std::uint64_t max_groups = 0;
   std::string refine = "0";
@@ -33,19 +33,21 @@ struct MapToUpdate {
   const SceneFrame& frame;
   const PhotonTracer& photons;
   const PhotonOptions& options;
-  const formats::PhotonHeader& header;       ///< of a map made anew
-  std::string output;                        ///< name of the file to come
-  std::function<std::shared_ptr<const PhotonTracer>(int frame)> tracer_at;   ///< the same through the smoke of another frame
+  const formats::PhotonHeader& header;  ///< of a map made anew
+  std::string output;                   ///< name of the file to come
+  std::function<std::shared_ptr<const PhotonTracer>(int frame)>
+      tracer_at;  ///< the same through the smoke of another frame
 };
-/// Of a range: the map before stays in memory for the next frame, if it takes at most a quarter of it (--max-memory, or the machine's).
+/// Of a range: the map before stays in memory for the next frame, if it takes at most a quarter of it (--max-memory, or
+/// the machine's).
 struct KeptMap {
-  bool wanted = false;                       ///< there is a next frame
-  std::string name;                          ///< of the map's file; "": none is kept
+  bool wanted = false;  ///< there is a next frame
+  std::string name;     ///< of the map's file; "": none is kept
   PreviousMap map;
 };
 
-/// Writes the map of the frame through `sink`, as --update, --refine and --corrective ask. Counts groups and pilots for --stats.
-/// `kept`: the map before, if it is there; becomes the new one, if that can be kept.
+/// Writes the map of the frame through `sink`, as --update, --refine and --corrective ask. Counts groups and pilots for
+/// --stats. `kept`: the map before, if it is there; becomes the new one, if that can be kept.
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
                            const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept);
 

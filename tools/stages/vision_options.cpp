@@ -22,20 +22,17 @@ double number_attribute(const Image* image, const std::string& name, double othe
 
 void declare_vision(Tool& tool, VisionWords& w) {
   CLI::App& app = tool.app();
-  app.add_option(
-         "--flow", w.flow,
-         "pixel flow of the frame, EXR (ibr-warp): judge as a viewer would, by each pixel's own motion")
+  app.add_option("--flow", w.flow,
+                 "pixel flow of the frame, EXR (ibr-warp): judge as a viewer would, by each pixel's own motion")
       ->type_name("FILE");
-  tool.output_option(w.map,
-                     "write the probability that a difference is seen: EXR, channel P, or PNG over the frame",
+  tool.output_option(w.map, "write the probability that a difference is seen: EXR, channel P, or PNG over the frame",
                      "-o,--map");
   app.add_option("--display", w.display,
                  "office: 200 cd/m2 at 38 pixels/degree; dark: the same in a dark room; hdr: 1500 cd/m2, 75")
       ->type_name("NAME")
       ->capture_default_str()
       ->check(CLI::IsMember({"office", "hdr", "dark"}));
-  app.add_option("--peak", w.peak,
-                 "largest luminance of the display, cd/m2, and what white has; else --display's")
+  app.add_option("--peak", w.peak, "largest luminance of the display, cd/m2, and what white has; else --display's")
       ->type_name("VALUE")
       ->check(number_between(1, 1e5));
   app.add_option("--ppd", w.pixels_per_degree, "pixels per degree of the eye; else --display's")
@@ -49,8 +46,7 @@ void declare_vision(Tool& tool, VisionWords& w) {
       ->type_name("{track,fixed}")
       ->capture_default_str()
       ->check(CLI::IsMember({"track", "fixed"}));
-  app.add_option("--fps", w.frames_per_second,
-                 "frames per second; else what the flow or the frame says, else 24")
+  app.add_option("--fps", w.frames_per_second, "frames per second; else what the flow or the frame says, else 24")
       ->type_name("VALUE")
       ->check(number_between(1e-3, 1e4));
 }
@@ -61,8 +57,7 @@ void check_vision(const VisionWords& w, bool several_frames) {
   if (several_frames && !w.map.empty() && !has_frame_pattern(w.map))
     throw InputError("--map " + w.map + ": give a pattern such as p.####.exr for several frames");
   double stops = 0;
-  if (w.exposure != "auto" &&
-      (!CLI::detail::lexical_cast(w.exposure, stops) || !(stops > -200 && stops < 200)))
+  if (w.exposure != "auto" && (!CLI::detail::lexical_cast(w.exposure, stops) || !(stops > -200 && stops < 200)))
     throw InputError("--exposure: '" + w.exposure + "' is neither auto nor a number of stops");
 }
 
@@ -77,13 +72,10 @@ VisionOptions vision_options(const VisionWords& w, const LoadedFrame& first) {
   if (w.pixels_per_degree > 0) options.display.pixels_per_degree = w.pixels_per_degree;
   options.gaze = w.eye == "track" ? vision::Gaze::track : vision::Gaze::fixed;
   const double said = number_attribute(first.inputs().test.image, "framesPerSecond", 24);
-  options.frames_per_second = w.frames_per_second > 0
-                                  ? w.frames_per_second
-                                  : number_attribute(first.flow_image(), "framesPerSecond", said);
-  if (w.exposure == "auto")
-    options.exposure_stops = shared_exposure_stops(first.inputs());
-  else
-    CLI::detail::lexical_cast(w.exposure, options.exposure_stops);
+  options.frames_per_second =
+      w.frames_per_second > 0 ? w.frames_per_second : number_attribute(first.flow_image(), "framesPerSecond", said);
+  if (w.exposure == "auto") options.exposure_stops = shared_exposure_stops(first.inputs());
+  else CLI::detail::lexical_cast(w.exposure, options.exposure_stops);
   return options;
 }
 
@@ -91,8 +83,7 @@ void write_map(Tool& tool, const JudgedFrame& judged, const LoadedFrame& frame, 
                std::optional<int> number, Output output) {
   const Image& shown = *frame.inputs().test.image;
   if (is_png(output.path())) {
-    save_png(output.temporary_path(),
-             heat_map(judged, shown, {frame.inputs().layer, options.exposure_stops}));
+    save_png(output.temporary_path(), heat_map(judged, shown, {frame.inputs().layer, options.exposure_stops}));
   } else {
     Image image = probability_image(judged, shown.width, shown.height);
     image.text["tempolux:history"] = tool.history_line(number);

@@ -15,7 +15,8 @@ LoadedKey load_key(Tool& tool, const std::string& file) {
   tool.depends_on(file);
   LoadedKey key;
   key.file = file;
-  if (const auto history = image.text.find("tempolux:history"); history != image.text.end()) key.history = history->second;
+  if (const auto history = image.text.find("tempolux:history"); history != image.text.end())
+    key.history = history->second;
   key.identity = identity_in(image);
   if (const auto frame = image.numbers.find("tempolux:frame");
       frame != image.numbers.end() && std::abs(frame->second) < 1e8)
@@ -32,14 +33,15 @@ void warn_of_foreign(Tool& tool, const std::vector<LoadedKey>& keys) {
   std::string files;
   for (const LoadedKey& key : keys)
     if (is_foreign(key)) files += (files.empty() ? "" : ", ") + key.file;
-  if (!files.empty()) tool.warn(files + ": by another program: taken as linear radiance of this scene, Z along the view axis in metres");
+  if (!files.empty())
+    tool.warn(files + ": by another program: taken as linear radiance of this scene, Z along the view axis in metres");
 }
 
 /// Do two frames show the same light on what stands? Unknown: not said.
 bool light_differs(const formats::Identity& a, const formats::Identity& b) {
   const auto differ = [](const std::string& x, const std::string& y) { return !x.empty() && !y.empty() && x != y; };
-  return differ(a.lights, b.lights) || differ(a.moving_geometry, b.moving_geometry) || differ(a.materials, b.materials) ||
-         differ(a.media, b.media);
+  return differ(a.lights, b.lights) || differ(a.moving_geometry, b.moving_geometry) ||
+         differ(a.materials, b.materials) || differ(a.media, b.media);
 }
 
 /// Cameras of one frame are equal to float32, as attributes hold them.
@@ -61,7 +63,8 @@ std::vector<LoadedKey> load_keys(Tool& tool, const std::vector<std::string>& fil
     if (key.key->camera().width() != first.camera().width() || key.key->camera().height() != first.camera().height())
       throw InputError(key.file + ": is not of the size of " + first.name() + "; render both alike");
     if (key.key->colour_names() != first.colour_names())
-      throw InputError(key.file + ": has other colour layers than " + first.name() + "; render both with the same --channels");
+      throw InputError(key.file + ": has other colour layers than " + first.name() +
+                       "; render both with the same --channels");
   }
   warn_of_foreign(tool, keys);
   return keys;
@@ -112,16 +115,19 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
   const SceneFrame& here = frames.at(number, true);
   for (const LoadedKey& key : keys) {
     if (!key.frame)
-      throw InputError(key.file + ": attribute tempolux:frame is missing: at which frame of the scene it was rendered is not "
-                                  "known; write it (a double), or give --view instead of --scene");
+      throw InputError(key.file +
+                       ": attribute tempolux:frame is missing: at which frame of the scene it was rendered is not "
+                       "known; write it (a double), or give --view instead of --scene");
     const SceneFrame& there = frames.at(*key.frame);
     if (!is_foreign(key)) check_identity(tool, key.file, key.identity, there);
     const bool same = same_attributes(key.key->camera(), frames.camera(*key.frame), key.points);
     // The scene's camera in double, of which the attributes are a rounding.
     const FrameCamera& camera = same ? frames.camera(*key.frame) : key.key->camera();
     if (!same) {
-      const std::string message = key.file + ": seen by another camera than the scene has at frame " + std::to_string(*key.frame);
-      if (!tool.common().allow_stale) throw InputError(message + "; give a key of this camera (--camera), or pass --allow-stale");
+      const std::string message =
+          key.file + ": seen by another camera than the scene has at frame " + std::to_string(*key.frame);
+      if (!tool.common().allow_stale)
+        throw InputError(message + "; give a key of this camera (--camera), or pass --allow-stale");
       tool.warn(message);
     }
     motions_.push_back(std::make_unique<ObjectMotions>(here, there));
@@ -130,7 +136,7 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     const int step = number < *key.frame ? -1 : 1;
     for (int f = *key.frame; f != number && !keys_.back().cut_off; f += step) {
       keys_.back().cut_off = is_cut(key.points, frames.camera(f), frames.camera(f + step));
-      std::vector<int> needed{number, f + step};   // of a key far away not all frames between are kept
+      std::vector<int> needed{number, f + step};  // of a key far away not all frames between are kept
       for (const LoadedKey& each : keys) needed.push_back(each.frame.value_or(number));
       frames.keep(needed);
     }

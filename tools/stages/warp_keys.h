@@ -19,13 +19,13 @@ namespace tempolux::tools {
 struct LoadedKey {
   std::string file, history;
   formats::Identity identity;
-  std::optional<int> frame;              ///< tempolux:frame
+  std::optional<int> frame;  ///< tempolux:frame
   std::unique_ptr<KeyFrame> key;
-  std::vector<Vec3d> points;             ///< grid_of_points()
+  std::vector<Vec3d> points;  ///< grid_of_points()
 };
 
-/// One or two keys of one size and with the same colour channels. InputError otherwise, and for a key without depth, colour or
-/// camera. A key that another program wrote is taken with one warning.
+/// One or two keys of one size and with the same colour channels. InputError otherwise, and for a key without depth,
+/// colour or camera. A key that another program wrote is taken with one warning.
 std::vector<LoadedKey> load_keys(Tool& tool, const std::vector<std::string>& files);
 
 /// Frames of a scene as a warp needs them, each evaluated once.
@@ -49,7 +49,8 @@ class FramesOfScene {
   std::map<int, std::shared_ptr<Kept>> frames_;
 };
 
-/// Checks each key against the scene at its own frame: identity, and that it was seen by the camera asked for (InputError; with
+/// Checks each key against the scene at its own frame: identity, and that it was seen by the camera asked for
+/// (InputError; with
 /// --allow-stale a warning). `number`: the frame to make. Says which keys are cut off from it.
 class KeysOfFrame {
  public:
@@ -60,7 +61,8 @@ class KeysOfFrame {
   const std::vector<WarpKey>& get() const { return keys_; }
 
  private:
-  void add(const LoadedKey& key, const FrameCamera& camera, const FrameCamera& target, const formats::Identity& identity);
+  void add(const LoadedKey& key, const FrameCamera& camera, const FrameCamera& target,
+           const formats::Identity& identity);
 
   std::vector<std::unique_ptr<ObjectMotions>> motions_;
   std::vector<std::unique_ptr<KeyView>> views_;

@@ -17,9 +17,7 @@ using namespace synthetic;
 std::string refusal(const ComparedInputs& inputs) {
   try {
     compare_layers(inputs);
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  } catch (const InputError& error) { return error.what(); }
   return "accepted";
 }
 
@@ -68,9 +66,7 @@ TEST(DifferenceTest, IsSignedAgainstTheMeanOfTheHalves) {
 }
 
 TEST(DifferenceTest, PictureIsGreyAtZeroRedAboveAndBlueBelow) {
-  const Image x = rgb_image(3, 1, [](std::size_t i, std::uint32_t) {
-    return i == 0 ? 1.0 : i == 1 ? 1.5 : 0.75;
-  });
+  const Image x = rgb_image(3, 1, [](std::size_t i, std::uint32_t) { return i == 0 ? 1.0 : i == 1 ? 1.5 : 0.75; });
   const Image r = constant_image(3, 1, 1);
   const Picture picture = difference_picture(compare(x, r), 0.5);
   EXPECT_EQ(picture.rgb, (std::vector<std::uint8_t>{128, 128, 128, 255, 0, 0, 64, 64, 192}));

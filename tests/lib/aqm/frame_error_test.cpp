@@ -55,8 +55,7 @@ TEST(FrameErrorTest, LargestDifferenceNamesItsPixelAndChannel) {
 TEST(FrameErrorTest, RelativeErrorDoesNotDependOnBrightness) {
   const auto scaled = [](double s) {
     const Image r = rgb_image(16, 16, [=](std::size_t i, std::uint32_t) { return s * double(1 + i % 5); });
-    const Image x =
-        rgb_image(16, 16, [=](std::size_t i, std::uint32_t) { return s * (1.25 + double(i % 5)); });
+    const Image x = rgb_image(16, 16, [=](std::size_t i, std::uint32_t) { return s * (1.25 + double(i % 5)); });
     return errors_of(x, r).relative_squared_error->value;
   };
   EXPECT_NEAR(scaled(2000) / scaled(2), 1, 1e-5);
@@ -91,8 +90,7 @@ TEST(FrameErrorTest, HalvesGiveTheSquaredErrorWithoutTheReferencesNoise) {
   const Image x = constant_image(256, 256, 1.02);
   double sum = 0, chi = 0;
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
-    const Image r1 = noisy_image(256, 256, 1, 0.1, 2 * seed),
-                r2 = noisy_image(256, 256, 1, 0.1, 2 * seed + 1);
+    const Image r1 = noisy_image(256, 256, 1, 0.1, 2 * seed), r2 = noisy_image(256, 256, 1, 0.1, 2 * seed + 1);
     const FrameError error = errors_of(x, r1, &r2);
     const Estimate squared = error.squared_error.squared;
     EXPECT_NEAR(squared.value, 0.0004, 9.4e-5);
@@ -167,8 +165,8 @@ TEST(FrameErrorTest, BiasOfAnObjectHidesInTheWholeImage) {
   EXPECT_NEAR(error.objects[0].bias->value, 0.03, 1e-6);
   EXPECT_NEAR(*error.objects[0].bias->standard_error, 0, 1e-6);
   EXPECT_FALSE(error.objects[0].few_pixels);
-  EXPECT_TRUE(error.objects[1].few_pixels);                    // id 7, one pixel
-  EXPECT_FALSE(error.objects[1].bias->standard_error);         // one block: no scatter to judge by
+  EXPECT_TRUE(error.objects[1].few_pixels);             // id 7, one pixel
+  EXPECT_FALSE(error.objects[1].bias->standard_error);  // one block: no scatter to judge by
   EXPECT_NEAR(error.objects[2].bias->value, -0.03, 1e-6);
   EXPECT_NEAR(error.objects[2].share_of_squared_error, 0.5, 1e-4);
 }
@@ -231,8 +229,7 @@ TEST(FrameErrorTest, NoiseOfAnImageFollowsFromItsTwoHalves) {
 }
 
 TEST(FlickerTest, ConstantErrorDoesNotFlickerAndAlternatingErrorDoesBySteps) {
-  const Image bright = constant_image(32, 32, 1.5), dark = constant_image(32, 32, 0.75),
-              r = constant_image(32, 32, 1);
+  const Image bright = constant_image(32, 32, 1.5), dark = constant_image(32, 32, 0.75), r = constant_image(32, 32, 1);
   FlickerMeter steady, alternating;
   EXPECT_FALSE(steady.result());
   for (int t = 0; t < 4; ++t) {

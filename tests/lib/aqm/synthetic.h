@@ -33,14 +33,12 @@ inline Image constant_image(int width, int height, double value) {
 
 /// value + sigma noise.
 inline Image noisy_image(int width, int height, double value, double sigma, std::uint64_t seed) {
-  return rgb_image(width, height,
-                   [=](std::size_t i, std::uint32_t c) { return value + sigma * noise(seed, i, c); });
+  return rgb_image(width, height, [=](std::size_t i, std::uint32_t c) { return value + sigma * noise(seed, i, c); });
 }
 
 inline Compared compare(const Image& test, const Image& reference, const Image* second = nullptr,
                         const Image* mask = nullptr, const std::string& layer = "") {
-  return compare_layers(
-      {{&test, "x.exr"}, {&reference, "r.exr"}, {second, "r2.exr"}, {mask, "mask.exr"}, layer});
+  return compare_layers({{&test, "x.exr"}, {&reference, "r.exr"}, {second, "r2.exr"}, {mask, "mask.exr"}, layer});
 }
 
 inline FrameError errors_of(const Image& test, const Image& reference, const Image* second = nullptr,

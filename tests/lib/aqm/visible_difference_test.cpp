@@ -20,8 +20,7 @@ constexpr double kPixelsPerDegree = 30, kMean = 100;
 /// 192 x 192 pixels: a plane of 100 cd/m2, and on it a grating of Michelson contrast `contrast`, `frequency`
 /// c/px, at `degrees`.
 DisplayedPair grating(double frequency, double degrees, double contrast, int size = 192) {
-  DisplayedPair pair{
-      size, size, std::vector<float>(std::size_t(size) * std::size_t(size), float(kMean)), {}, {}};
+  DisplayedPair pair{size, size, std::vector<float>(std::size_t(size) * std::size_t(size), float(kMean)), {}, {}};
   pair.second = pair.first;
   const double angle = degrees * std::numbers::pi / 180;
   for (int y = 0; y < size; ++y)
@@ -48,11 +47,13 @@ double threshold_times_sensitivity(double frequency, double degrees, double spee
   return kHalfSeen / std::pow(-std::log1p(-p), 1 / kPsychometricSlope);
 }
 
-// Two estimates that err alike, each by d / sqrt(2) of their difference d: m + a and m - a are judged as m + a / sqrt(2) beside m - a / sqrt(2).
-// Grey is below the display's white, so that nothing is clipped; mixtures round in float32.
+// Two estimates that err alike, each by d / sqrt(2) of their difference d: m + a and m - a are judged as m + a /
+// sqrt(2) beside m - a / sqrt(2). Grey is below the display's white, so that nothing is clipped; mixtures round in
+// float32.
 TEST(VisibleDifferenceTest, OfTwoEstimatesIsJudgedWhatEitherErrsBy) {
   const auto image = [](double amplitude) {
-    return synthetic::rgb_image(96, 96, [=](std::size_t i, std::uint32_t) { return 0.4 + amplitude * std::sin(0.6 * double(i % 96)); });
+    return synthetic::rgb_image(
+        96, 96, [=](std::size_t i, std::uint32_t) { return 0.4 + amplitude * std::sin(0.6 * double(i % 96)); });
   };
   const auto seen = [&](double first, double second, bool either) {
     const Image a = image(first), b = image(second);
@@ -79,10 +80,8 @@ TEST(VisibleDifferenceTest, GratingsAtBandCentresAreSeenAtTheirThreshold) {
         const double frequency = band_frequency(band);
         if (contrast_sensitivity(frequency * kPixelsPerDegree, std::max(speed, kDriftSpeed)) < 3) continue;
         const double threshold = threshold_times_sensitivity(frequency, degrees, speed);
-        EXPECT_NEAR(threshold, 1, 0.15)
-            << frequency << " c/px, " << degrees << " degrees, " << speed << " deg/s";
-        std::printf("%.4f c/px %2.0f deg %4.2f deg/s: contrast x S %.3f\n", frequency, degrees, speed,
-                    threshold);
+        EXPECT_NEAR(threshold, 1, 0.15) << frequency << " c/px, " << degrees << " degrees, " << speed << " deg/s";
+        std::printf("%.4f c/px %2.0f deg %4.2f deg/s: contrast x S %.3f\n", frequency, degrees, speed, threshold);
       }
 }
 
@@ -168,8 +167,7 @@ TEST(VisibleDifferenceTest, WhatDoesNotCountIsNotSeen) {
 TEST(VisibleDifferenceTest, SinglePixelsAndNarrowPicturesHaveAnAnswer) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {300, 1}, {3, 2}}) {
     DisplayedPair pair = noisy_pair(width, height, 30);
-    for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability)
-      EXPECT_TRUE(p >= 0 && p <= 1);
+    for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_TRUE(p >= 0 && p <= 1);
   }
 }
 

@@ -25,8 +25,7 @@ TEST(VisionModelTest, ContrastSensitivityIsTheTable) {
                               {92.667, 13.647, 0.074, 0, 0, 0},
                               {0.086, 0, 0, 0, 0, 0}};
   for (int v = 0; v < 8; ++v)
-    for (int f = 0; f < 6; ++f)
-      expect_as_printed(contrast_sensitivity(frequencies[f], speeds[v]), table[v][f]);
+    for (int f = 0; f < 6; ++f) expect_as_printed(contrast_sensitivity(frequencies[f], speeds[v]), table[v][f]);
   EXPECT_EQ(contrast_sensitivity(0, 0.15), 0);
 }
 
@@ -45,7 +44,8 @@ TEST(VisionModelTest, ContrastSensitivityPeaksAndEndsWhereTheTableSays) {
   }
 }
 
-// Daly 1993 (docs/methods/vision.md): at 100 cd/m2, one square degree, half a metre S(4) = 163.58, and the peak is 171.8 at 4.70 cpd.
+// Daly 1993 (docs/methods/vision.md): at 100 cd/m2, one square degree, half a metre S(4) = 163.58, and the peak is
+// 171.8 at 4.70 cpd.
 TEST(VisionModelTest, StaticSensitivityIsTheTable) {
   const auto at = [](double frequency) { return static_contrast_sensitivity(frequency, 100, 1, 0.5); };
   EXPECT_NEAR(at(4), 163.58, 1e-3 * 163.58);
@@ -69,8 +69,7 @@ TEST(VisionModelTest, EyesFollowWithAGainAndALimit) {
 
 TEST(VisionModelTest, ReceptorResponseIsTheTable) {
   const double table[][2] = {{1, 7.35294}, {10, 15.6865}, {100, 30.3691}, {1000, 50.5543}};
-  for (const auto& [luminance, response] : table)
-    EXPECT_NEAR(receptor_response(luminance), response, 1e-5 * response);
+  for (const auto& [luminance, response] : table) EXPECT_NEAR(receptor_response(luminance), response, 1e-5 * response);
   EXPECT_EQ(receptor_response(0), 0);
   // d ln R / d ln L = .37 12.6 / (L^.37 + 12.6)
   EXPECT_NEAR(response_per_log_luminance(receptor_response(1)) / receptor_response(1), 0.343, 5e-4);
@@ -78,8 +77,7 @@ TEST(VisionModelTest, ReceptorResponseIsTheTable) {
 }
 
 TEST(VisionModelTest, BandsPeakWhereTheyShould) {
-  for (int band = 1; band <= 5; ++band)
-    EXPECT_NEAR(band_filter(band, 4.0 / 3 * std::ldexp(1.0, -band)), 1, 1e-12);
+  for (int band = 1; band <= 5; ++band) EXPECT_NEAR(band_filter(band, 4.0 / 3 * std::ldexp(1.0, -band)), 1, 1e-12);
   EXPECT_DOUBLE_EQ(band_frequency(1), 0.5);
   EXPECT_DOUBLE_EQ(band_frequency(2), 1.0 / 3);
   EXPECT_DOUBLE_EQ(band_frequency(5), 1.0 / 24);

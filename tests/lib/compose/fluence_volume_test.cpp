@@ -41,7 +41,7 @@ TEST(FluenceSums, AddingAndTakingAwayAreInverse) {
   FluenceSums changed = sums;
   for (const Deposit& d : second) changed.add(d.at, d.worth);
   EXPECT_FALSE(changed == sums);
-  for (auto d = second.rbegin(); d != second.rend(); ++d) changed.add(d->at, d->worth, -1);   // in another order
+  for (auto d = second.rbegin(); d != second.rend(); ++d) changed.add(d->at, d->worth, -1);  // in another order
   EXPECT_TRUE(changed == sums);
   FluenceSums replaced = sums;
   for (const Deposit& d : first) replaced.add(d.at, d.worth, -1);
@@ -53,7 +53,7 @@ TEST(FluenceSums, AddingAndTakingAwayAreInverse) {
 
 TEST(FluenceSums, KeepsTheDigitsOfAPhoton) {
   FluenceSums sums(majorants(), 0.1, 100);
-  sums.add({0.25f, 0.25f, 0.25f}, Rgb(1e-6f, 0, 0));   // of 100 W through 2.4 m: one of 10^8 photons
+  sums.add({0.25f, 0.25f, 0.25f}, Rgb(1e-6f, 0, 0));  // of 100 W through 2.4 m: one of 10^8 photons
   const std::int64_t kept = sums.sums()[sums.cell_of({0.25f, 0.25f, 0.25f})][0];
   EXPECT_NEAR(double(kept) * sums.unit(), 1e-6, 1e-6 * 1e-4);
 }
@@ -66,19 +66,20 @@ TEST(FluenceSums, OutsideAndNotFiniteCountNothing) {
   sums.add({NAN, 0, 0}, Rgb(1.0f));
   sums.add({0.5f, 0.5f, 0.5f}, Rgb(NAN, 1, 1));
   EXPECT_TRUE(sums == empty);
-  sums.add({1, 1, 2}, Rgb(1.0f));   // the corner belongs to the last cell
+  sums.add({1, 1, 2}, Rgb(1.0f));  // the corner belongs to the last cell
   EXPECT_FALSE(sums == empty);
   EXPECT_TRUE(FluenceSums(MajorantGrid(), 0.1, 5).sums().empty());
 }
 
-/// Fluence that is the same everywhere stays so under each filter, at the border of the open part too: photons spread evenly, so
-/// many that their own noise is small. 400 000 photons in 7/8 of 20 x 20 x 40 cells are 28 a cell; a Gaussian of 2 cells takes 356
-/// of these together, 1 % noise; at a corner an eighth, 3 %. The box of width 3 takes 343, as many. Bilateral weights are less even: 4 %.
+/// Fluence that is the same everywhere stays so under each filter, at the border of the open part too: photons spread
+/// evenly, so many that their own noise is small. 400 000 photons in 7/8 of 20 x 20 x 40 cells are 28 a cell; a
+/// Gaussian of 2 cells takes 356 of these together, 1 % noise; at a corner an eighth, 3 %. The box of width 3 takes
+/// 343, as many. Bilateral weights are less even: 4 %.
 TEST(FluenceVolume, EvenLightStaysEven) {
   FluenceSums sums(majorants(), 0.05, 5);
   const std::size_t n = 400000;
   for (const Deposit& d : deposits(n, 3)) sums.add(d.at, Rgb(1.0f / float(n)));
-  const double exact = 1 / 1.75;   // 1 W m over 7/4 m^3
+  const double exact = 1 / 1.75;  // 1 W m over 7/4 m^3
   for (const auto kind : {FluenceFilter::Kind::gaussian, FluenceFilter::Kind::box, FluenceFilter::Kind::bilateral}) {
     const FluenceVolume volume(sums, {kind, kind == FluenceFilter::Kind::box ? 3.0f : 2.0f, 0.5f});
     double mean = 0;
@@ -88,7 +89,8 @@ TEST(FluenceVolume, EvenLightStaysEven) {
         for (float z = 0.01f; z < 2; z += 0.07f) {
           if (x > 0.49f && y > 0.49f && z > 0.99f) continue;
           const Rgb here = volume.at({x, y, z});
-          ASSERT_NEAR(here.r, exact, 0.2 * exact) << int(kind) << ' ' << x << ' ' << y << ' ' << z;   // 5 deviations at a corner
+          ASSERT_NEAR(here.r, exact, 0.2 * exact)
+              << int(kind) << ' ' << x << ' ' << y << ' ' << z;  // 5 deviations at a corner
           mean += double(here.r);
           ++places;
         }
@@ -102,7 +104,7 @@ TEST(FluenceVolume, WidthFollowsTheNumberOfPhotons) {
   for (const Deposit& d : deposits(5000, 4)) few.add(d.at, d.worth);
   for (const Deposit& d : deposits(40000, 4)) many.add(d.at, d.worth);
   const float wide = FluenceVolume(few, {}).width(), narrow = FluenceVolume(many, {}).width();
-  EXPECT_NEAR(wide / narrow, 2, 1e-3);   // eight times as many in half the width
+  EXPECT_NEAR(wide / narrow, 2, 1e-3);  // eight times as many in half the width
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// Integral over the sphere of f(q) / 4 pi, q = 4 pi p(theta). By mu = cos(theta) drawn from p, where it is even in the number xi: dmu/2 = dxi / q.
+/// Integral over the sphere of f(q) / 4 pi, q = 4 pi p(theta). By mu = cos(theta) drawn from p, where it is even in the
+/// number xi: dmu/2 = dxi / q.
 template <class F>
 double over_sphere(float g, const F& f) {
   constexpr int steps = 200000;
@@ -18,8 +19,9 @@ double over_sphere(float g, const F& f) {
   return sum / steps;
 }
 
-/// Under light that is the same from everywhere a phase function scatters as even scattering does: the two parts add up to 1. By photons
-/// it is the mean of q share(q), by rays that of 1 - share(q) over what the phase function draws. 1e-3: quadrature where q is small.
+/// Under light that is the same from everywhere a phase function scatters as even scattering does: the two parts add up
+/// to 1. By photons it is the mean of q share(q), by rays that of 1 - share(q) over what the phase function draws.
+/// 1e-3: quadrature where q is small.
 TEST(PhaseShare, PartsAddUp) {
   for (const float g : {-0.9f, 0.75f, 0.9f, 0.99f})
     for (const int rays : {4, 16, 64}) {
@@ -31,14 +33,15 @@ TEST(PhaseShare, PartsAddUp) {
     }
 }
 
-/// What a photon counts has mean square (1 + g^2) / (1 - g^2)^2 by itself: 50.1 at g = .9, so that 50 photons tell as much as one that is
-/// scattered evenly. (Sum over l of (2 l + 1) g^(2 l), from the phase function's Legendre moments g^l.) Of its share it is n / m = 16 at most:
-/// q share <= n / m, and its mean is 1 at most.
+/// What a photon counts has mean square (1 + g^2) / (1 - g^2)^2 by itself: 50.1 at g = .9, so that 50 photons tell as
+/// much as one that is scattered evenly. (Sum over l of (2 l + 1) g^(2 l), from the phase function's Legendre moments
+/// g^l.) Of its share it is n / m = 16 at most: q share <= n / m, and its mean is 1 at most.
 TEST(PhaseShare, NoPhotonCountsForMany) {
   const double alone = over_sphere(0.9f, [](float q) { return double(q) * double(q); });
   EXPECT_NEAR(alone, 1.81 / (0.19 * 0.19), 0.05);
   const PhaseShare share(0.9f, 16);
-  const double shared = over_sphere(0.9f, [&](float q) { return double(q * share.of_photons(q)) * double(q * share.of_photons(q)); });
+  const double shared =
+      over_sphere(0.9f, [&](float q) { return double(q * share.of_photons(q)) * double(q * share.of_photons(q)); });
   EXPECT_LT(shared, 256.0 / 16);
   EXPECT_LT(shared, alone / 10);
 }

@@ -1,5 +1,5 @@
-// child-probe MODE -- a helper program that behaves as badly as child_process_test.cpp asks for. Without MODE, as the helper of a
-// tool (cli/guard_check.sh): the mode is in the environment, CHILD_PROBE.
+// child-probe MODE -- a helper program that behaves as badly as child_process_test.cpp asks for. Without MODE, as the
+// helper of a tool (cli/guard_check.sh): the mode is in the environment, CHILD_PROBE.
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
@@ -63,9 +63,7 @@ int behave() {
   for (int i = 0; i < 1000; ++i) texts.emplace_back(std::size_t(i) * 1000, 'x');
   try {
     throw std::bad_alloc();
-  } catch (const std::bad_alloc&) {
-    std::printf("%zu texts", texts.size());
-  }
+  } catch (const std::bad_alloc&) { std::printf("%zu texts", texts.size()); }
   return 0;
 }
 
@@ -94,8 +92,7 @@ int main(int argc, char** argv) {
     ::sleep(1000);
   }
   if (mode == "spin")
-    for (volatile bool forever = true; forever;) {
-    }
+    for (volatile bool forever = true; forever;) {}
   if (mode == "flood")
     for (;;) print(std::string(1 << 16, 'x'));
   if (mode == "words") {

@@ -1,5 +1,5 @@
-// Helpers that die, hang, print too much or too little and ask for too much memory: each gives one line, and nothing of it
-// is left behind.
+// Helpers that die, hang, print too much or too little and ask for too much memory: each gives one line, and nothing of
+// it is left behind.
 #include "lib/core/child_process.h"
 
 #include <gtest/gtest.h>
@@ -132,7 +132,7 @@ TEST_F(ChildProcess, DiesWhereItAsksForMoreThanItsGuardAllows) {
 #endif
   EXPECT_EQ(text_of(run("guarded-behave")), "1000 texts");
   for (const std::string kind : {"open", "look", "socket", "fork", "exec", "thread", "code", "kill"}) {
-    if (kind != "exec") {   // nothing else stops it
+    if (kind != "exec") {  // nothing else stops it
       EXPECT_EQ(text_of(run("free-" + kind)), "done") << kind;
     }
     const ChildResult result = run("guarded-" + kind);
@@ -194,8 +194,10 @@ TEST_F(ChildProcess, SaysWhatIsMissing) {
     FAIL();
   } catch (const InputError& e) {
     const std::string message = e.what();
-    EXPECT_TRUE(message.starts_with("scene.glb: reading Draco needs tempolux-nothing, which was not built or not "
-                                    "installed (looked in ")) << message;
+    EXPECT_TRUE(
+        message.starts_with("scene.glb: reading Draco needs tempolux-nothing, which was not built or not "
+                            "installed (looked in "))
+        << message;
     EXPECT_TRUE(message.ends_with("install all of tempolux together")) << message;
   }
 }

@@ -55,8 +55,11 @@ TEST(ParallelOrdered, TakesInOrderWithBoundedResultsInFlight) {
 }
 
 TEST(ParallelOrdered, AnExceptionReachesTheCaller) {
-  EXPECT_THROW(parallel_ordered(100, 4, [](std::size_t) { return std::shared_ptr<void>(); },
-                                [](std::size_t i, void*) { if (i == 50) throw std::runtime_error("disk full"); }),
+  EXPECT_THROW(parallel_ordered(
+                   100, 4, [](std::size_t) { return std::shared_ptr<void>(); },
+                   [](std::size_t i, void*) {
+                     if (i == 50) throw std::runtime_error("disk full");
+                   }),
                std::runtime_error);
 }
 

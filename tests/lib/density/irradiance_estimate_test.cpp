@@ -24,8 +24,7 @@ Photon photon(Vec3 p, Rgb flux, Vec3 normal = kUp, PathKind kind = PathKind::ind
   return result;
 }
 
-IrradianceEstimate estimate(const std::vector<Photon>& photons, Vec3 point,
-                            const IrradianceOptions& options) {
+IrradianceEstimate estimate(const std::vector<Photon>& photons, Vec3 point, const IrradianceOptions& options) {
   NeighbourList scratch;
   return estimate_irradiance(PhotonIndex(photons), point, kUp, options, scratch);
 }
@@ -50,8 +49,7 @@ TEST(EstimateIrradiance, SumsAllWithinTheLargestRadiusIfTheyAreFewerThanK) {
   expect_rgb(few.irradiance, Rgbd{111, 0, -111} / (25 * kPiD));
   EXPECT_EQ(few.radius, 5);
   EXPECT_EQ(few.count, 3u);
-  expect_rgb(estimate(kThree, {}, {.neighbours = 3, .max_radius = 2.5f}).irradiance,
-             Rgbd{11, 0, -11} / (6.25 * kPiD));
+  expect_rgb(estimate(kThree, {}, {.neighbours = 3, .max_radius = 2.5f}).irradiance, Rgbd{11, 0, -11} / (6.25 * kPiD));
   expect_rgb(estimate(kThree, {}, {.neighbours = 3, .max_radius = 0.5f}).irradiance, Rgbd{});
 }
 
@@ -118,7 +116,7 @@ TEST(EstimateIrradiance, SeparatesTheSidesOfAThinWallAndLeavesOutTheWallBesideAF
   // Flattened tenfold, photons one millimetre below count as 10 mm away, whatever their normal.
   const IrradianceOptions fixed{.max_radius = 0.0099f, .min_cos = kAnyNormal};
   const double flat = estimate_irradiance_fixed(index, {0.5f, 0.5f, 0}, kUp, fixed, scratch).irradiance.r;
-  EXPECT_LT(flat, 5e4);   // 1e6 if the other side were let in
+  EXPECT_LT(flat, 5e4);  // 1e6 if the other side were let in
 }
 
 TEST(EstimateIrradiance, UsesOnlyTheKindsAskedFor) {
@@ -152,8 +150,13 @@ TEST(EstimateIrradiance, HasNoBiasOnAPlaneOfUniformPhotons) {
   // 0.05 %, and 0.2 % is 4 sigma. Mistakes: k for k-1 is +2.0 % (all of k50), dividing by the disc of the
   // farthest found instead of the largest radius +1.5 % or more (truncated).
   constexpr std::uint64_t kPhotons = 200000;
-  const double mean50 = std::sqrt(50 / (kPiD * kPhotons));   // the radius that holds 50 in the mean
-  struct Rule { const char* name; IrradianceOptions options; bool fixed; double sum; };
+  const double mean50 = std::sqrt(50 / (kPiD * kPhotons));  // the radius that holds 50 in the mean
+  struct Rule {
+    const char* name;
+    IrradianceOptions options;
+    bool fixed;
+    double sum;
+  };
   const float half = float(mean50), less = float(0.9 * mean50);
   std::vector<Rule> rules{{"k50", {.neighbours = 50}, false, 0},
                           {"truncated for half", {.neighbours = 50, .max_radius = half}, false, 0},
@@ -170,7 +173,8 @@ TEST(EstimateIrradiance, HasNoBiasOnAPlaneOfUniformPhotons) {
       const Vec3 point{(float(q / 100) + u.x) / 200, (float(q % 100) + u.y) / 100, 0.5f};
       for (Rule& rule : rules)
         rule.sum += (rule.fixed ? estimate_irradiance_fixed(index, point, kUp, rule.options, scratch)
-                                : estimate_irradiance(index, point, kUp, rule.options, scratch)).irradiance.g;
+                                : estimate_irradiance(index, point, kUp, rule.options, scratch))
+                        .irradiance.g;
     }
   }
   for (const Rule& rule : rules) {

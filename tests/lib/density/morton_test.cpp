@@ -36,7 +36,10 @@ TEST(MortonOrder, FollowsTheCurveOnASmallSquare) {
 TEST(MortonOrder, MakesStepsShortInFlatAndLongBoxesToo) {
   // n points spread over an area A: the shortest possible mean step is about 0.7 sqrt(A/n), that of a Morton
   // curve about twice that; a random order on the unit square has 0.52. Along a line of length 1: 1/n.
-  struct Case { Vec3 size; double limit; };
+  struct Case {
+    Vec3 size;
+    double limit;
+  };
   const std::size_t n = 40000;
   for (const Case& c : {Case{{1, 1, 0}, 2.5 / std::sqrt(n)}, Case{{0, 1, 1}, 2.5 / std::sqrt(n)},
                         Case{{100, 0.01f, 0}, 2.5 / std::sqrt(n)}, Case{{1, 0, 0}, 1.1 / n}}) {

@@ -24,12 +24,12 @@ TEST(ParallelPartition, PutsInFrontWhatIsBelow) {
         ASSERT_EQ(parallel_partition(std::span(values), chunk, below), border) << count << " " << chunk;
         ASSERT_TRUE(std::is_partitioned(values.begin(), values.end(), below)) << count << " " << chunk << " " << border;
         std::sort(values.begin(), values.end());
-        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(values[i], i);   // none lost, none twice
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(values[i], i);  // none lost, none twice
       }
 }
 
-/// Large enough that samples are taken; shuffled, in order, backwards, and with a sample that tells lies: all it meets are
-/// the smallest values, so that what is sought lies far outside of it.
+/// Large enough that samples are taken; shuffled, in order, backwards, and with a sample that tells lies: all it meets
+/// are the smallest values, so that what is sought lies far outside of it.
 TEST(ParallelNthElement, IsTheNth) {
   constexpr std::size_t kCount = 400000;
   std::vector<std::uint32_t> up(kCount), down, lies(kCount);
@@ -44,7 +44,9 @@ TEST(ParallelNthElement, IsTheNth) {
       std::vector<std::uint32_t> values = start;
       parallel_nth_element(std::span(values), n, std::less<>());
       ASSERT_EQ(values[n], n);
-      ASSERT_TRUE(std::all_of(values.begin(), values.begin() + std::ptrdiff_t(n), [&](std::uint32_t v) { return v < n; })) << n;
+      ASSERT_TRUE(std::all_of(values.begin(), values.begin() + std::ptrdiff_t(n), [&](std::uint32_t v) {
+        return v < n;
+      })) << n;
     }
 }
 

@@ -32,10 +32,13 @@ Photon photon_at(Vec3 p, std::uint64_t i) {
 
 /// The shapes of point set that break trees.
 enum class Shape { cube, clusters, plane, coincident, line_of_copies, far_away, lattice };
-const std::vector<std::pair<Shape, std::string>> kShapes{
-    {Shape::cube, "cube"}, {Shape::clusters, "clusters"}, {Shape::plane, "plane"},
-    {Shape::coincident, "coincident"}, {Shape::line_of_copies, "line of copies"},
-    {Shape::far_away, "far away"}, {Shape::lattice, "lattice"}};
+const std::vector<std::pair<Shape, std::string>> kShapes{{Shape::cube, "cube"},
+                                                         {Shape::clusters, "clusters"},
+                                                         {Shape::plane, "plane"},
+                                                         {Shape::coincident, "coincident"},
+                                                         {Shape::line_of_copies, "line of copies"},
+                                                         {Shape::far_away, "far away"},
+                                                         {Shape::lattice, "lattice"}};
 
 Vec3 place(Shape shape, std::uint64_t i) {
   const Vec2 u = random2(i, 1), v = random2(i, 2);
@@ -49,7 +52,7 @@ Vec3 place(Shape shape, std::uint64_t i) {
     case Shape::plane: return {u.x, 0.25f, u.y};
     case Shape::coincident: return {0.3f, 0.4f, 0.5f};
     case Shape::line_of_copies: return {float(i % 10), 0, 0};
-    case Shape::far_away: return {1e5f + u.x, -1e5f + u.y, 1e5f + v.x};   // float step 1/128: many ties
+    case Shape::far_away: return {1e5f + u.x, -1e5f + u.y, 1e5f + v.x};  // float step 1/128: many ties
     case Shape::lattice: return {std::floor(u.x * 12), std::floor(u.y * 12), std::floor(v.x * 12)};
   }
   return {};
@@ -93,8 +96,7 @@ Found contents(const NeighbourList& list) {
 }
 
 /// Both searches for one query against brute force.
-void expect_exact(const PhotonIndex& index, const PhotonQuery& query, const std::vector<int>& ks,
-                  NeighbourList& list) {
+void expect_exact(const PhotonIndex& index, const PhotonQuery& query, const std::vector<int>& ks, NeighbourList& list) {
   Found all = all_passing(index, query);
   index.find_within(query, list);
   ASSERT_EQ(contents(list), all);
@@ -149,8 +151,7 @@ TEST(PhotonIndex, IsExactForEveryKFrom1To512) {
   NeighbourList list;
   std::vector<int> ks(512);
   for (int k = 1; k <= 512; ++k) ks[std::size_t(k - 1)] = k;
-  for (int q = 0; q < 6; ++q)
-    expect_exact(index, query_of(Shape::clusters, std::uint64_t(q), q % 2), ks, list);
+  for (int q = 0; q < 6; ++q) expect_exact(index, query_of(Shape::clusters, std::uint64_t(q), q % 2), ks, list);
 }
 
 TEST(PhotonIndex, IsExactAlongAPathOfQueriesThroughManyPhotons) {
@@ -205,8 +206,7 @@ TEST(PhotonIndex, KeepsEveryPhotonOnceWithItsData) {
     EXPECT_EQ(index.object(i), p.object);
     EXPECT_EQ(index.kind(i), p.kind);
     const auto n = formats::decode_normal(p.normal);
-    for (int axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(index.normal(i)[axis], n[std::size_t(axis)], 0.5001 / 511);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(index.normal(i)[axis], n[std::size_t(axis)], 0.5001 / 511);
   }
 }
 

@@ -30,7 +30,8 @@ Photon photon(float x, float y, float z, float flux, Vec3 normal = kUp, std::uin
   return p;
 }
 
-/// A floor of 8 x 8 m with `count` photons of flux 1, and `spot` times as many more in the square metre around (2.5, 2.5).
+/// A floor of 8 x 8 m with `count` photons of flux 1, and `spot` times as many more in the square metre around
+/// (2.5, 2.5).
 PhotonBlock floor_with_spot(int count, int spot, std::uint64_t seed) {
   const PathRandom random(seed, 0);
   PhotonBlock block;
@@ -60,8 +61,8 @@ TEST(WindowSum, IsExactInAnyOrderFromDenormalToHuge) {
   for (float v : values) backwards.add(v);
   EXPECT_EQ(forwards.value(), backwards.value());
   WindowSum small;
-  for (int i = 0; i < 1000; ++i) small.add(i % 2 ? 0.1f : -0.1f);   // magnitudes count
-  EXPECT_EQ(small.value(), 1000 * double(0.1f));                    // exact in a double: 24 + 10 bits
+  for (int i = 0; i < 1000; ++i) small.add(i % 2 ? 0.1f : -0.1f);  // magnitudes count
+  EXPECT_EQ(small.value(), 1000 * double(0.1f));                   // exact in a double: 24 + 10 bits
   WindowSum denormal;
   denormal.add(1e-45f);
   EXPECT_EQ(denormal.value(), std::ldexp(1.0, -149));
@@ -151,7 +152,7 @@ TEST(EnergyCells, ASpotKeepsItsMultipleOfTheMean) {
   EXPECT_NEAR(cells.area(), 64, 64 * 0.02);
   EXPECT_EQ(cells.energy(), 3 * 40000);
   const double kept = cells.low_share({{2.5f, 2.5f, 0}, kUp, 1});
-  EXPECT_NEAR(kept, 4 * 625 / 20312.5, 0.2 * 4 * 625 / 20312.5);   // a cell's area and count: 10 % each
+  EXPECT_NEAR(kept, 4 * 625 / 20312.5, 0.2 * 4 * 625 / 20312.5);  // a cell's area and count: 10 % each
   EXPECT_EQ(cells.low_share({{6.5f, 6.5f, 0}, kUp, 1}), 1);
   // The spot's square metre meets 9 cells, whose grid is shifted; no other cell is bright.
   EXPECT_GE(cells.bright_count(), 4u);
@@ -212,12 +213,12 @@ TEST(EnergyCells, AllInOnePointAndNothingAreNoError) {
   EnergyCells none = cells_of(block, 1, {});
   EXPECT_EQ(none.mean_irradiance(), 0);
   for (int i = 0; i < 1000; ++i) block.photons.push_back(photon(1, 2, 3, 1));
-  const EnergyCells cells = cells_of(block, 1, {});   // no area, no mean: nothing is above it
+  const EnergyCells cells = cells_of(block, 1, {});  // no area, no mean: nothing is above it
   EXPECT_EQ(divide(block, cells).low.photons.size() + divide(block, cells).high.photons.size(), 1000u);
-  for (Photon& p : block.photons) p.flux = {-1, 0, -2};   // a dynamic map: negative only
+  for (Photon& p : block.photons) p.flux = {-1, 0, -2};  // a dynamic map: negative only
   const DividedPhotons parts = divide(block, cells_of(block, 1, {4, 10}));
   EXPECT_EQ(parts.high.photons.size(), 1000u);
-  EXPECT_NEAR(parts.low.photons[0].flux[0], -0.01f, 0x1p-24f);   // the larger part's rounding
+  EXPECT_NEAR(parts.low.photons[0].flux[0], -0.01f, 0x1p-24f);  // the larger part's rounding
 }
 
 TEST(EnergyCells, ReflectedShareMakesDarkSurfacesLessBright) {
@@ -244,12 +245,13 @@ TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
   EXPECT_FALSE(parts.high.photons.empty());
 }
 
-// Some photons are in one part alone: without flux in the low one, by a limit of 0 in the high one. Directions stay with their photons.
+// Some photons are in one part alone: without flux in the low one, by a limit of 0 in the high one. Directions stay
+// with their photons.
 TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   PhotonBlock block = floor_with_spot(3000, 6000, 6);
   for (std::size_t i = 0; i < block.photons.size(); ++i) block.directions.push_back({std::uint16_t(i), 7});
   block.photons[5].flux = {0, 0, 0};
-  block.photons[7] = block.photons[6];   // two photons that differ in nothing
+  block.photons[7] = block.photons[6];  // two photons that differ in nothing
   block.directions[7] = block.directions[6];
   for (const EnergyLimit& limit : {EnergyLimit{2}, EnergyLimit{0}, EnergyLimit{1e9}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
@@ -285,7 +287,7 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
   add_energy(points, 0.01, cells);
   cells.close({4});
   const double mean = (100 + 16 * 100) / 116.0;
-  EXPECT_NEAR(cells.mean_irradiance(), mean, 1e-5 * mean);   // floats of the products
+  EXPECT_NEAR(cells.mean_irradiance(), mean, 1e-5 * mean);  // floats of the products
   const DividedPoints parts = divide(points, cells);
   EXPECT_EQ(parts.low.size(), 116u);
   ASSERT_EQ(parts.high.size(), 16u);
@@ -298,7 +300,7 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
     EXPECT_NEAR(double(shares[i]), i < 100 ? 0 : 1 - 4 * mean / 100, 1e-6);
   }
   joined = {parts.low.begin(), parts.low.begin() + 110};
-  EXPECT_TRUE(join_parts(joined, parts.high).empty());   // a point that the low part has not
+  EXPECT_TRUE(join_parts(joined, parts.high).empty());  // a point that the low part has not
   EXPECT_NEAR(double(parts.low[110].direct[0]), 60 * 4 * mean / 100, 1e-4);
   for (std::size_t i = 0; i < 16; ++i) {
     EXPECT_EQ(double(parts.low[100 + i].direct[0]) + double(parts.high[i].direct[0]), 60);
@@ -324,7 +326,7 @@ TEST(CellEdge, SixteenMeanDistancesOnASurface) {
   CellEdge one;
   for (int i = 0; i < 100000; ++i) one.add({1, 2, 3});
   EXPECT_EQ(one.edge(), 1);
-  CellEdge zeros;   // one place under two names
+  CellEdge zeros;  // one place under two names
   zeros.add({0, 0, 0});
   zeros.add({-0.0f, 0, 0});
   EXPECT_EQ(zeros.edge(), 1);

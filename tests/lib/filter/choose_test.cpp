@@ -49,10 +49,11 @@ TEST(Choose, WhereHalvesAgreeThePictureStays) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(out[c], light[c]);
 }
 
-/// V = sigma^2 / 2 is the variance of M. A candidate without noise that is off by b has the best share V / (V + b^2), so the mean of the
-/// result is off by b V / (V + b^2) and its squared error is V b^2 / (V + b^2), for b^2 = V half of either. V and (F - M)^2 are known by
-/// about 60 pixels each, to sqrt(2 / 60) = 18 %: the share is off by 9 % of 1 at random, which adds (.09)^2 (V + b^2) = .016 V to the
-/// squared error, and by a few percent of itself in the mean, as the inverse of a noisy mean is too large.
+/// V = sigma^2 / 2 is the variance of M. A candidate without noise that is off by b has the best share V / (V + b^2),
+/// so the mean of the result is off by b V / (V + b^2) and its squared error is V b^2 / (V + b^2), for b^2 = V half of
+/// either. V and (F - M)^2 are known by about 60 pixels each, to sqrt(2 / 60) = 18 %: the share is off by 9 % of 1 at
+/// random, which adds (.09)^2 (V + b^2) = .016 V to the squared error, and by a few percent of itself in the mean, as
+/// the inverse of a noisy mean is too large.
 TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
   const float sigma = 0.1f, variance = sigma * sigma / 2, b = std::sqrt(variance);
   const Colours out = choose({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kDark);
@@ -67,18 +68,19 @@ TEST(Choose, AWrongCandidateLeavesTheRawPicture) {
   EXPECT_LT(squared_error(out[0], 1), 1.03 * double(sigma) * double(sigma) / 2);
 }
 
-/// The right one of two leaves next to nothing of the noise, in whatever order they come. Its own estimate of V is off by 18 %, which w is
-/// cut to 1 above.
+/// The right one of two leaves next to nothing of the noise, in whatever order they come. Its own estimate of V is off
+/// by 18 %, which w is cut to 1 above.
 TEST(Choose, TheBetterCandidateIsTaken) {
   const float sigma = 0.1f;
-  const Halves right{constant(1), constant(1)}, wrong{constant(1.5f), constant(1.5f)}, raw{noise(6, sigma), noise(7, sigma)};
+  const Halves right{constant(1), constant(1)}, wrong{constant(1.5f), constant(1.5f)},
+      raw{noise(6, sigma), noise(7, sigma)};
   for (const auto& candidates : {std::vector{right, wrong}, std::vector{wrong, right}})
     EXPECT_LT(squared_error(choose(raw, candidates, kInside, kDark)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
 }
 
-/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2, the mean of (F - M)^2
-/// is (b^2 + V) / 4. With b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean is off by b / 4. Without the covariance the share
-/// would be 1. Tolerance: as above.
+/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2,
+/// the mean of (F - M)^2 is (b^2 + V) / 4. With b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean is off by
+/// b / 4. Without the covariance the share would be 1. Tolerance: as above.
 TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   const float sigma = 0.1f, b = sigma * std::sqrt(1.5f);
   const Halves raw{noise(8, sigma), noise(9, sigma)};
@@ -105,9 +107,7 @@ TEST(Choose, WhatIsNoNumberIsFilledAndDecidesNothing) {
   const Colours out = choose(raw, {candidate}, kInside, kDark);
   for (const auto& plane : out)
     for (std::size_t p = 0; p < kCount; ++p)
-      if (p != 7000) {
-        EXPECT_EQ(plane[p], 1.0f);
-      }
+      if (p != 7000) { EXPECT_EQ(plane[p], 1.0f); }
   EXPECT_EQ(out[2][7000], 5e29f);
 }
 

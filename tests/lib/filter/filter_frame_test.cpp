@@ -1,4 +1,5 @@
-// The filter on pictures whose answer is known: constant, noise, edges, ramps, steps of light that move, what passes by.
+// The filter on pictures whose answer is known: constant, noise, edges, ramps, steps of light that move, what passes
+// by.
 #include "lib/filter/filter_frame.h"
 
 #include <gtest/gtest.h>
@@ -33,9 +34,9 @@ TEST(Filter, AConstantPictureStays) {
     for (const float v : out.find(c)->values) EXPECT_EQ(v, 0.7f);
 }
 
-/// Two sides, told apart by object, by depth or by normal, whose values differ by less than their noise: no light of one in the other. One
-/// pixel of the 225 of a window would be .1 / 225. Made-up halves of noise .1 give weights that differ by about 4 %: of the noise of a mean
-/// of 225 that leaves 3e-4.
+/// Two sides, told apart by object, by depth or by normal, whose values differ by less than their noise: no light of
+/// one in the other. One pixel of the 225 of a window would be .1 / 225. Made-up halves of noise .1 give weights that
+/// differ by about 4 %: of the noise of a mean of 225 that leaves 3e-4.
 TEST(Filter, NothingCrossesAnEdge) {
   for (const std::string by : {"object", "depth", "normal"}) {
     Image frame = wall(40, 24);
@@ -54,8 +55,9 @@ TEST(Filter, NothingCrossesAnEdge) {
   }
 }
 
-/// Light that changes evenly is a plane everywhere, also where the window is cut at the picture's border (a mean of 15 pixels would be off
-/// by .05 to .1 there). The pull on slopes takes .02 / .27 of them at a border: .011 of the widest window.
+/// Light that changes evenly is a plane everywhere, also where the window is cut at the picture's border (a mean of 15
+/// pixels would be off by .05 to .1 there). The pull on slopes takes .02 / .27 of them at a border: .011 of the widest
+/// window.
 TEST(Filter, ARampStaysUpToItsBorder) {
   Image frame = wall(40, 24);
   const auto ramp = [](int x, int y) { return 1 + 0.01f * float(x) - 0.02f * float(y); };
@@ -66,9 +68,9 @@ TEST(Filter, ARampStaysUpToItsBorder) {
     for (int x = 0; x < 40; ++x) EXPECT_NEAR(at(out, "G", x, y), ramp(x, y), 0.015f) << x << " " << y;
 }
 
-/// A step of light, 1 to 2, that moves by four pixels a frame over a wall that stands. Noise of .1: every column's mean error over 60 lines
-/// is within 4 sigma of the noise that was there, .1 / sqrt(60). (Without comparing values the columns it passes in five frames are off by
-/// .2 to .8.) Without noise, and told so, the picture stays.
+/// A step of light, 1 to 2, that moves by four pixels a frame over a wall that stands. Noise of .1: every column's mean
+/// error over 60 lines is within 4 sigma of the noise that was there, .1 / sqrt(60). (Without comparing values the
+/// columns it passes in five frames are off by .2 to .8.) Without noise, and told so, the picture stays.
 TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
   for (const float deviation : {0.0f, 0.1f}) {
     Noise noise(1);
@@ -92,8 +94,9 @@ TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
   }
 }
 
-/// A pattern that moves with its wall by (3, -2) pixels a frame, v up: followed the right way five frames average its noise to 1/sqrt(5) of
-/// it; 2000 pixels know that to 1.6 %. A wrong sign mixes what differs by twenty times the noise, and is left out: nothing is gained.
+/// A pattern that moves with its wall by (3, -2) pixels a frame, v up: followed the right way five frames average its
+/// noise to 1/sqrt(5) of it; 2000 pixels know that to 1.6 %. A wrong sign mixes what differs by twenty times the noise,
+/// and is left out: nothing is gained.
 TEST(Filter, TheFlowIsFollowedTheRightWay) {
   const auto pattern = [](int x, int y) { return float((x * 7 + y * 13) % 5); };
   for (const float sign : {1.0f, -1.0f}) {
@@ -114,11 +117,10 @@ TEST(Filter, TheFlowIsFollowedTheRightWay) {
     const Image out = filtered(frames, options);
     double square = 0;
     for (int y = 10; y < 54; ++y)
-      for (int x = 10; x < 54; ++x) square += std::pow(double(at(out, "G", x, y)) - double(10 * pattern(x + 100, y + 100)), 2) / (44 * 44);
-    if (sign > 0)
-      EXPECT_NEAR(std::sqrt(square), 0.1 / std::sqrt(5), 0.07 * 0.1 / std::sqrt(5));
-    else
-      EXPECT_GT(std::sqrt(square), 0.08);
+      for (int x = 10; x < 54; ++x)
+        square += std::pow(double(at(out, "G", x, y)) - double(10 * pattern(x + 100, y + 100)), 2) / (44 * 44);
+    if (sign > 0) EXPECT_NEAR(std::sqrt(square), 0.1 / std::sqrt(5), 0.07 * 0.1 / std::sqrt(5));
+    else EXPECT_GT(std::sqrt(square), 0.08);
   }
 }
 
@@ -140,7 +142,8 @@ Image layered_frame(Noise& noise) {
   for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect"}) {
     grey(frame, layer, [&](int, int) { return std::abs(noise()); });
     for (const char* c : {"R", "G", "B"})
-      for (std::size_t p = 0; p < frame.pixel_count(); ++p) frame.find(c)->values[p] += frame.find(layer + std::string(".") + c)->values[p];
+      for (std::size_t p = 0; p < frame.pixel_count(); ++p)
+        frame.find(c)->values[p] += frame.find(layer + std::string(".") + c)->values[p];
   }
   tell_variance(frame, 0.1f);
   return frame;
@@ -163,8 +166,8 @@ TEST(Filter, EmissionAndSpecularPassAndLayersSumToTheImage) {
   }
 }
 
-/// Light of smoke passes and stays in the picture. Of a frame that has some layers alone the picture changes as they do, and keeps the
-/// rest: here 5.
+/// Light of smoke passes and stays in the picture. Of a frame that has some layers alone the picture changes as they
+/// do, and keeps the rest: here 5.
 TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
   Noise noise(1);
   Image smoky = layered_frame(noise);
@@ -179,20 +182,22 @@ TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
     EXPECT_EQ(of_smoky.find("G")->values[p], sum);
   }
   Image some = layered_frame(noise);
-  std::erase_if(some.channels,
-                [](const Channel& channel) { return channel.name.starts_with("emission") || channel.name.starts_with("specular"); });
+  std::erase_if(some.channels, [](const Channel& channel) {
+    return channel.name.starts_with("emission") || channel.name.starts_with("specular");
+  });
   for (std::size_t p = 0; p < 32 * 24; ++p)  // R and B hold what was taken out
     some.find("G")->values[p] =
         some.find("direct.G")->values[p] + some.find("caustic.G")->values[p] + some.find("indirect.G")->values[p] + 5;
   const Image of_some = filtered({some});
   for (std::size_t p = 0; p < 32 * 24; ++p)  // of numbers up to about 15: some roundings of 2^-21
     EXPECT_NEAR(of_some.find("G")->values[p],
-                of_some.find("direct.G")->values[p] + of_some.find("caustic.G")->values[p] + of_some.find("indirect.G")->values[p] + 5,
+                of_some.find("direct.G")->values[p] + of_some.find("caustic.G")->values[p] +
+                    of_some.find("indirect.G")->values[p] + 5,
                 1e-5f);
 }
 
-/// A quarter of the pixels in column 20 is what column 19 shows. Their own sample is of either side, and their halves say so; what comes
-/// out is the mixture, from both sides' other pixels; emission likewise.
+/// A quarter of the pixels in column 20 is what column 19 shows. Their own sample is of either side, and their halves
+/// say so; what comes out is the mixture, from both sides' other pixels; emission likewise.
 TEST(Filter, EdgesArePutTogetherByCoverage) {
   Image frame = wall(40, 64);
   const auto mixed = [](int x, int y) { return x < 20 ? 4.0f : x > 20 ? 1.0f : y % 4 == 0 ? 4.0f : 1.0f; };
@@ -215,7 +220,8 @@ TEST(Filter, EdgesArePutTogetherByCoverage) {
     }
 }
 
-/// Of a frame that has albedo and says nothing of noise pixels at edges keep their values: what they see of which surface is not known.
+/// Of a frame that has albedo and says nothing of noise pixels at edges keep their values: what they see of which
+/// surface is not known.
 TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
   Image frame = wall(40, 24);
   Noise noise(0.1f);
@@ -230,7 +236,8 @@ TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
   for (int y = 0; y < 24; ++y) {
     EXPECT_EQ(at(out, "direct.G", 20, y), at(frame, "direct.G", 20, y));
     for (int x = 22; x < 38; ++x)
-      before += std::pow(double(at(frame, "direct.G", x, y)) - 1, 2), after += std::pow(double(at(out, "direct.G", x, y)) - 1, 2);
+      before += std::pow(double(at(frame, "direct.G", x, y)) - 1, 2),
+          after += std::pow(double(at(out, "direct.G", x, y)) - 1, 2);
   }
   EXPECT_LT(after, before / 4);
 }
@@ -252,7 +259,8 @@ TEST(Filter, StrangePixelsAreLeftOutAndFilled) {
     for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 0.05f) << x;  // made-up halves have noise of .1
     EXPECT_EQ(at(out, "G", 3, 12), 1e30f);
     for (const Channel& channel : out.channels)
-      for (const float v : channel.values) EXPECT_TRUE(std::isfinite(v) || (channel.name == "Z" && v > 0)) << channel.name;
+      for (const float v : channel.values)
+        EXPECT_TRUE(std::isfinite(v) || (channel.name == "Z" && v > 0)) << channel.name;
   }
   Image one = wall(1, 1);
   grey(one, "", everywhere(0));

@@ -45,9 +45,9 @@ double squared_error(const Image& image, const OfPixel& light) {
   return sum / (kSide * kSide);
 }
 
-/// 169 pixels of a plane leave 1 / 169 of the variance in the middle, up to 4 times that at the borders; the choice is off by a few percent
-/// of w, which leaves (.1)^2 of it. The small window leaves 1 / 25 where it is taken. Less than a tenth in all; the mean over the wall is
-/// that of the samples, to 1 / 10 of its own error.
+/// 169 pixels of a plane leave 1 / 169 of the variance in the middle, up to 4 times that at the borders; the choice is
+/// off by a few percent of w, which leaves (.1)^2 of it. The small window leaves 1 / 25 where it is taken. Less than a
+/// tenth in all; the mean over the wall is that of the samples, to 1 / 10 of its own error.
 TEST(FilterHalves, NoiseOnAWallGoes) {
   const float sigma = 0.2f;
   const OfPixel light = [](int x, int y) { return 1 + 0.004f * float(x) - 0.002f * float(y); };
@@ -55,8 +55,8 @@ TEST(FilterHalves, NoiseOnAWallGoes) {
     EXPECT_LT(squared_error(filtered(noisy(layer, light, sigma)), light), 0.1 * double(sigma) * double(sigma) / 2);
 }
 
-/// What is seen in mirrors is filtered by what they show (seen.*): here two walls in a mirror that meet at column 40. Without the channels
-/// light crosses the border, or the halves see to it that none is filtered there.
+/// What is seen in mirrors is filtered by what they show (seen.*): here two walls in a mirror that meet at column 40.
+/// Without the channels light crosses the border, or the halves see to it that none is filtered there.
 TEST(FilterHalves, LightInAMirrorIsFilteredByWhatItShows) {
   const float sigma = 0.2f;
   const OfPixel light = [](int x, int) { return x < 40 ? 1.0f : 3.0f; };

@@ -22,7 +22,8 @@ const Lights& no_lights(const SceneFrame& frame) {
   return *kept.emplace_back(std::make_unique<Lights>(frame, EmissionTable{}));
 }
 
-/// A square patch of 1 m, which one point stands for (spacing 1 m, R = 0.564 m), at height h over a floor, radiance 1 downwards.
+/// A square patch of 1 m, which one point stands for (spacing 1 m, R = 0.564 m), at height h over a floor, radiance 1
+/// downwards.
 struct Patch {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -49,9 +50,9 @@ struct Patch {
   }
 };
 
-/// Patch to point, asked: 1 % for l >= 5 R, 5 % across the fade from 4 R to 6 R. Sixteen sites know the patch to a fraction of a per
-/// cent. In the fade rays bring a part: of 300 gathers x 2000 rays some 600000 x (form factor / pi) = 10000 meet the patch at 5 R,
-/// which is 1 %, less for being stratified by cells.
+/// Patch to point, asked: 1 % for l >= 5 R, 5 % across the fade from 4 R to 6 R. Sixteen sites know the patch to a
+/// fraction of a per cent. In the fade rays bring a part: of 300 gathers x 2000 rays some 600000 x (form factor / pi) =
+/// 10000 meet the patch at 5 R, which is 1 %, less for being stratified by cells.
 TEST(BrightPoints, FormFactorOfAPatch) {
   const double R = 1 / std::sqrt(M_PI);
   for (const double l : {4.2, 4.6, 5.0, 5.5, 6.5, 10.0})
@@ -68,16 +69,19 @@ TEST(BrightPoints, FormFactorOfAPatch) {
         ASSERT_EQ(bright.spot_count(), 1u);
         GatherCounts counts;
         if (l < 6)
-          with_rays += double(FinalGather(tracer, lights, lookup, {.seed = std::uint64_t(r), .rays = 2000, .bright = &bright, .bright_samples = 16})
-                                  .gather(from, {0, 1, 0}, counts).irradiance.g) / kGathers;
-        alone += bright.arriving({from, {0, 1, 0}}, 16, PathRandom(1, std::uint64_t(r)), counts).irradiance.g / kGathers;
+          with_rays +=
+              double(FinalGather(tracer, lights, lookup,
+                                 {.seed = std::uint64_t(r), .rays = 2000, .bright = &bright, .bright_samples = 16})
+                         .gather(from, {0, 1, 0}, counts)
+                         .irradiance.g) /
+              kGathers;
+        alone +=
+            bright.arriving({from, {0, 1, 0}}, 16, PathRandom(1, std::uint64_t(r)), counts).irradiance.g / kGathers;
       }
       const double exact = patch.exact(x);
       if (l < 6) {
         EXPECT_NEAR(with_rays / exact, 1, l < 5 ? 0.05 : 0.01) << l << " R, aside " << x;
-        if (x == 0) {
-          EXPECT_LT(alone, exact);
-        }
+        if (x == 0) { EXPECT_LT(alone, exact); }
       } else {
         EXPECT_NEAR(alone / exact, 1, 0.01) << l << " R, aside " << x;
       }
@@ -99,19 +103,21 @@ struct Groups {
   }
 };
 
-/// A box with a block in it: corners, near hits, a thing in the way. Points of random light and random high shares: whatever they are,
-/// what rays leave and explicit samples bring is what rays bring alone. Twelve sets of sites, 12 gathers with each; the difference is
-/// within 5 standard errors at each of 5 places (of 11 degrees of freedom: 1 in 2000), with shares of 0 to 1, and of 1 alone. Explicit
-/// samples that left out the near hits, or counted them in full, are off by 8 and 12 of them in the corner.
+/// A box with a block in it: corners, near hits, a thing in the way. Points of random light and random high shares:
+/// whatever they are, what rays leave and explicit samples bring is what rays bring alone. Twelve sets of sites, 12
+/// gathers with each; the difference is within 5 standard errors at each of 5 places (of 11 degrees of freedom: 1 in
+/// 2000), with shares of 0 to 1, and of 1 alone. Explicit samples that left out the near hits, or counted them in full,
+/// are off by 8 and 12 of them in the corner.
 TEST(BrightPoints, PartsAddUpToTheWhole) {
   HandMadeScene scene;
   scene.add_room({0, 0, 0}, {2, 1, 1}, matte(Rgb(0.7f)));
-  scene.add_room({1.3f, 0.6f, 0.7f}, {0.9f, 0.2f, 0.3f}, matte(Rgb(0.4f, 0.5f, 0.6f)));   // corners the other way round: fronts outwards
+  scene.add_room({1.3f, 0.6f, 0.7f}, {0.9f, 0.2f, 0.3f},
+                 matte(Rgb(0.4f, 0.5f, 0.6f)));  // corners the other way round: fronts outwards
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
   const Lights& lights = no_lights(frame);
   PlacedPoints placed = place_points(frame, {.seed = 3, .count = 600});
-  std::array<std::vector<float>, 3> shares;   // none, some, all
+  std::array<std::vector<float>, 3> shares;  // none, some, all
   for (std::uint32_t i = 0; i < placed.points.size(); ++i) {
     const PathRandom random(17, i);
     IrradiancePoint& point = placed.points[i];
@@ -121,8 +127,11 @@ TEST(BrightPoints, PartsAddUpToTheWhole) {
     shares[2].push_back(1);
   }
   const PointLookup lookup(placed.points, placed.spacing, point_clearance(tracer));
-  const std::vector<std::pair<Vec3, Vec3>> places{{{0.3f, 0, 0.5f}, {0, 1, 0}}, {{0.02f, 0, 0.03f}, {0, 1, 0}}, {{2, 0.5f, 0.5f}, {-1, 0, 0}},
-                                                  {{1.1f, 0.601f, 0.5f}, {0, 1, 0}}, {{1.6f, 1, 0.9f}, {0, -1, 0}}};
+  const std::vector<std::pair<Vec3, Vec3>> places{{{0.3f, 0, 0.5f}, {0, 1, 0}},
+                                                  {{0.02f, 0, 0.03f}, {0, 1, 0}},
+                                                  {{2, 0.5f, 0.5f}, {-1, 0, 0}},
+                                                  {{1.1f, 0.601f, 0.5f}, {0, 1, 0}},
+                                                  {{1.6f, 1, 0.9f}, {0, -1, 0}}};
   constexpr int kGroups = 12, kGathers = 12;
   std::vector<std::array<Groups, 3>> found(places.size());
   for (int g = 0; g < kGroups; ++g)
@@ -132,20 +141,24 @@ TEST(BrightPoints, PartsAddUpToTheWhole) {
       for (std::size_t p = 0; p < places.size(); ++p) {
         double sum = 0;
         for (int r = 0; r < kGathers; ++r) {
-          const FinalGather gather(tracer, lights, lookup, {.seed = std::uint64_t(g * kGathers + r), .rays = 200, .bright = bright ? &*bright : nullptr});
+          const FinalGather gather(
+              tracer, lights, lookup,
+              {.seed = std::uint64_t(g * kGathers + r), .rays = 200, .bright = bright ? &*bright : nullptr});
           GatherCounts counts;
-          sum += double(gather.gather(place_at(places[p].first, places[p].second), places[p].second, counts).irradiance.g);
+          sum +=
+              double(gather.gather(place_at(places[p].first, places[p].second), places[p].second, counts).irradiance.g);
         }
         found[p][k].means.push_back(sum / kGathers);
       }
     }
   for (std::size_t p = 0; p < places.size(); ++p)
     for (std::size_t k = 1; k < 3; ++k)
-      EXPECT_NEAR(found[p][k].mean(), found[p][0].mean(), 5 * std::sqrt(found[p][0].error2() + found[p][k].error2())) << p << " " << k;
+      EXPECT_NEAR(found[p][k].mean(), found[p][0].mean(), 5 * std::sqrt(found[p][0].error2() + found[p][k].error2()))
+          << p << " " << k;
 }
 
-/// One spot is drawn with certainty, by the same sites for the same numbers: the differences are those of the integrand. Steps of 1 mm
-/// at 4 m: errors of second order are 1e-3.
+/// One spot is drawn with certainty, by the same sites for the same numbers: the differences are those of the
+/// integrand. Steps of 1 mm at 4 m: errors of second order are 1e-3.
 TEST(BrightPoints, GradientsAreDifferences) {
   Patch patch(4);
   const Tracer tracer(patch.scene.frame());
@@ -159,7 +172,8 @@ TEST(BrightPoints, GradientsAreDifferences) {
   const BrightLight here = at(x, up);
   constexpr float h = 1e-2f;
   for (const Vec3 along : {Vec3{1, 0, 0}, Vec3{0, 0, 1}}) {
-    const double difference = (at(x + along * h, up).irradiance.g - at(x - along * h, up).irradiance.g) / (2 * double(h));
+    const double difference =
+        (at(x + along * h, up).irradiance.g - at(x - along * h, up).irradiance.g) / (2 * double(h));
     EXPECT_NEAR(dot(here.translational[1], Vec3d(along)), difference, 2e-3 * here.irradiance.g);
     const Vec3 tilted = normalize(up + along * h), other = normalize(up - along * h);
     const double turned = (at(x, tilted).irradiance.g - at(x, other).irradiance.g) / (2 * double(h));
@@ -179,7 +193,8 @@ TEST(BrightPoints, NothingHighAndNothingSeen) {
     const SurfacePoint from = place_at({0, 0, 0}, {0, 1, 0});
     GatherCounts counts;
     const IrradianceRecord plain = FinalGather(tracer, lights, lookup, {.rays = 100}).gather(from, {0, 1, 0}, counts);
-    const IrradianceRecord same = FinalGather(tracer, lights, lookup, {.rays = 100, .bright = &none}).gather(from, {0, 1, 0}, counts);
+    const IrradianceRecord same =
+        FinalGather(tracer, lights, lookup, {.rays = 100, .bright = &none}).gather(from, {0, 1, 0}, counts);
     EXPECT_EQ(plain.irradiance.g, same.irradiance.g);
     EXPECT_EQ(plain.translational[1].x, same.translational[1].x);
   }
@@ -189,7 +204,7 @@ TEST(BrightPoints, NothingHighAndNothingSeen) {
   const BrightPoints bright(tracer, lights, lookup, {1.0f}, {});
   GatherCounts counts;
   EXPECT_EQ(bright.arriving({place_at({0, 0, 0}, {0, 1, 0}), {0, 1, 0}}, 64, PathRandom(1, 2), counts).irradiance.g, 0);
-  EXPECT_EQ(counts.shadow_rays, 64u);   // each drew the one spot
+  EXPECT_EQ(counts.shadow_rays, 64u);  // each drew the one spot
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ Means gather_many(HalfPlane& plane, int rays, int repeats) {
     means.irradiance += double(record.irradiance.g) / repeats;
     means.dx += double(record.translational[1].x) / repeats;
     means.dz += double(record.translational[1].z) / repeats;
-    // Normal tilted by a small angle towards +x: E(n) = E + (n_i x n) . g, n_i x n = (0,1,0) x (sin a, cos a, 0) = (0, 0, -sin a).
+    // Normal tilted by a small angle towards +x: E(n) = E + (n_i x n) . g, n_i x n = (0,1,0) x (sin a, cos a, 0) = (0,
+    // 0, -sin a).
     means.tilt += double(-record.rotational[1].z) / repeats;
   }
   return means;
@@ -68,8 +69,8 @@ Means gather_many(HalfPlane& plane, int rays, int repeats) {
 
 /// A square of radiance 1 and half-width a straight above at height 1, in the dark: about one of 50 cells. From its
 /// quarters, E = 4 a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)). Its border gets further rays; were cells to call for
-/// them by what their own first ray brought, more than half of the light would be lost. One gather scatters by half: 0.35 %
-/// in the mean of 20000.
+/// them by what their own first ray brought, more than half of the light would be lost. One gather scatters by half:
+/// 0.35 % in the mean of 20000.
 TEST(FinalGather, FurtherRaysKeepTheMean) {
   constexpr float a = 0.15f;
   HandMadeScene scene;
@@ -91,16 +92,17 @@ TEST(FinalGather, FurtherRaysKeepTheMean) {
   constexpr int kGathers = 20000;
   for (int r = 0; r < kGathers; ++r) {
     const GatherOptions options{.seed = std::uint64_t(r), .rays = 50};
-    mean += double(FinalGather(tracer, lights, lookup, options).gather(from, {0, 1, 0}, counts).irradiance.g) / kGathers;
+    mean +=
+        double(FinalGather(tracer, lights, lookup, options).gather(from, {0, 1, 0}, counts).irradiance.g) / kGathers;
   }
   const double side = double(a) / std::hypot(1.0, double(a));
   EXPECT_NEAR(mean / (4 * side * std::atan(side)), 1, 0.012);
-  EXPECT_GT(double(counts.rays), 1.1 * 50 * kGathers);   // there were some
+  EXPECT_GT(double(counts.rays), 1.1 * 50 * kGathers);  // there were some
 }
 
-/// A coated floor under a small bright patch seen at the angle of cosine c: the coat reflects of light from there what it
-/// does, so that arrival_weight(c) of what a matte floor would gather counts. Both follow the same rays: what is left is
-/// how the weight changes over the patch, 4 degrees wide: below 2 %.
+/// A coated floor under a small bright patch seen at the angle of cosine c: the coat reflects of light from there what
+/// it does, so that arrival_weight(c) of what a matte floor would gather counts. Both follow the same rays: what is
+/// left is how the weight changes over the patch, 4 degrees wide: below 2 %.
 TEST(FinalGather, LightCountsByWhatTheCoatLetsIn) {
   Material coated = matte(Rgb(0.5f));
   coated.specular = 1;
@@ -113,7 +115,8 @@ TEST(FinalGather, LightCountsByWhatTheCoatLetsIn) {
       HandMadeScene scene;
       scene.add_quad(towards - side * a - up * a, towards + side * a - up * a, towards + side * a + up * a,
                      towards - side * a + up * a, matte(Rgb(1.0f)));
-      const std::uint32_t floor = scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, k ? coated : matte(Rgb(0.5f)));
+      const std::uint32_t floor =
+          scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, k ? coated : matte(Rgb(0.5f)));
       IrradiancePoint point;
       point.position = towards;
       point.normal = -towards;
@@ -157,7 +160,7 @@ TEST(FinalGather, UniformRoomIsUniform) {
   const SceneFrame& frame = scene.frame();
   std::vector<IrradiancePoint> points;
   for (Vec3 n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
-    for (const float aside : {-0.5f, 0.0f, 0.5f}) {   // three on a wall: one alone would not be believed
+    for (const float aside : {-0.5f, 0.0f, 0.5f}) {  // three on a wall: one alone would not be believed
       IrradiancePoint point;
       point.position = Vec3{n.y, n.z, n.x} * aside - n;
       point.normal = n;
@@ -175,7 +178,7 @@ TEST(FinalGather, UniformRoomIsUniform) {
   from.offset = 1e-6f;
   GatherCounts counts;
   const IrradianceRecord record = gather.gather(from, {0, 1, 0}, counts);
-  EXPECT_NEAR(record.irradiance.r, 1.0f, 1e-5f);   // 0.5 x (1 + 1), exactly: every ray reads the same
+  EXPECT_NEAR(record.irradiance.r, 1.0f, 1e-5f);  // 0.5 x (1 + 1), exactly: every ray reads the same
   EXPECT_NEAR(length(record.translational[0]), 0, 1e-5f);
   EXPECT_NEAR(length(record.rotational[0]), 0, 1e-4f);
   EXPECT_EQ(counts.unanswered, 0u);
@@ -202,12 +205,12 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   EXPECT_EQ(record.radius_unclamped, INFINITY);
 }
 
-/// A plate of half-width 0.5, 0.25 above a wide floor, under a light so far off that it is a sun of irradiance 1: what its
-/// underside sees of the floor is in its own shadow but for a rim. From the middle the share of the hemisphere in a square
-/// floor of half-width w straight below is 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)), X = w / h: of the lit rim
-/// 0.998 - 0.831. The points of the floor, 0.25 apart, are lit from 0.01 outside of the shadow: read as they stand, they would
-/// bring light from 0.12 inside of it, half as much again at least. 4 gathers of 4000 rays, one shadow ray each in the shadow's edge:
-/// 0.5 %; the light's height moves the shadow's edge by 0.01 %.
+/// A plate of half-width 0.5, 0.25 above a wide floor, under a light so far off that it is a sun of irradiance 1: what
+/// its underside sees of the floor is in its own shadow but for a rim. From the middle the share of the hemisphere in a
+/// square floor of half-width w straight below is 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)), X = w / h: of
+/// the lit rim 0.998 - 0.831. The points of the floor, 0.25 apart, are lit from 0.01 outside of the shadow: read as
+/// they stand, they would bring light from 0.12 inside of it, half as much again at least. 4 gathers of 4000 rays, one
+/// shadow ray each in the shadow's edge: 0.5 %; the light's height moves the shadow's edge by 0.01 %.
 TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   constexpr float h = 0.25f, half = 0.5f, wide = 5, step = 0.25f, distance = 2000, rho = 0.5f;
   HandMadeScene scene;
@@ -251,11 +254,12 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   EXPECT_NEAR(mean / exact, 1, 0.02);
 }
 
-/// A black plate of half-width 0.5, 0.01 above a wide floor. The points of the floor, 0.25 apart, say that indirect light of 1 arrives
-/// under the plate and none elsewhere, as a lamp does that hangs close below a ceiling. From 1 above one sees only floor on which
-/// none arrives: 0. Were points read where they change, light would come from 0.12 around the plate, of a share
-/// share(0.62) - share(0.5) = 0.10 of the hemisphere. From between plate and floor all that is seen is lit: rho, exactly, but for
-/// 0.04 % of the rays that come out beyond 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or near there are traced on.
+/// A black plate of half-width 0.5, 0.01 above a wide floor. The points of the floor, 0.25 apart, say that indirect
+/// light of 1 arrives under the plate and none elsewhere, as a lamp does that hangs close below a ceiling. From 1 above
+/// one sees only floor on which none arrives: 0. Were points read where they change, light would come from 0.12 around
+/// the plate, of a share share(0.62) - share(0.5) = 0.10 of the hemisphere. From between plate and floor all that is
+/// seen is lit: rho, exactly, but for 0.04 % of the rays that come out beyond 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or near
+/// there are traced on.
 TEST(FinalGather, LightInAGapStaysThere) {
   constexpr float gap = 0.01f, half = 0.5f, wide = 5, step = 0.25f, rho = 0.5f;
   HandMadeScene scene;
@@ -271,7 +275,7 @@ TEST(FinalGather, LightInAGapStaysThere) {
         point.normal = {0, 1, 0};
         point.object = frame.surfaces[1].object;
         const bool lit = x < half && z < half;
-        point.radius = lit ? 1e-4f : 1e-3f;   // none of many photons
+        point.radius = lit ? 1e-4f : 1e-3f;  // none of many photons
         point.indirect = Rgb(lit ? 1.0f : 0.0f);
         points.push_back(point);
       }

@@ -22,8 +22,7 @@ using test::Shape;
 
 /// Photons of a uniform light on every surface (both sides): flux = irradiance 1 x 2 area / count each, at
 /// uniform random places. What a furnace sends, without its noise of directions.
-std::vector<formats::Photon> uniform_photons(const SceneFrame& frame, std::uint32_t count,
-                                             std::uint64_t seed) {
+std::vector<formats::Photon> uniform_photons(const SceneFrame& frame, std::uint32_t count, std::uint64_t seed) {
   const test::AreaSampler area(frame);
   const PathRandom random(seed, 9);
   std::vector<std::uint32_t> object;
@@ -126,15 +125,13 @@ TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
   room.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   const Surface& walls = room.frame().surfaces[0];
   std::vector<std::array<std::uint32_t, 3>> triangles = walls.primitive->triangles;
-  for (std::size_t t = 0; GetParam() && t < triangles.size(); t += 2)
-    std::swap(triangles[t][1], triangles[t][2]);
+  for (std::size_t t = 0; GetParam() && t < triangles.size(); t += 2) std::swap(triangles[t][1], triangles[t][2]);
   scene.add({walls.positions.begin(), walls.positions.end()}, triangles, matte(Rgb(0.5f)));
   Stage stage(scene);
   Mean all, strip, corner;
   std::map<int, Mean> wall;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
-    for (const IrradiancePoint& p :
-         stage.estimate(uniform_photons(stage.frame, 40000, seed), few(5000, seed))) {
+    for (const IrradiancePoint& p : stage.estimate(uniform_photons(stage.frame, 40000, seed), few(5000, seed))) {
       if (dot(p.normal, p.position) > 0) continue;
       const double e = double(p.indirect.g);
       all.add(e);
@@ -214,8 +211,7 @@ TEST(IrradiancePoints, ABoxOnAFloorShadesOnlyWhatItCovers) {
     for (const IrradiancePoint& p : stage.estimate(photons, few(5000, seed))) {
       const double e = double(p.indirect.g);
       if (p.object == 0 && p.normal.y > 0) {
-        if (covered(p.position))
-          under += e;
+        if (covered(p.position)) under += e;
         else {
           around.add(e);
           if (std::max(std::abs(p.position.x), std::abs(p.position.z)) < 0.4f) beside.add(e);
@@ -296,8 +292,7 @@ TEST_P(Curved, UniformLightStaysUniform) {
       // to edge.
       const float plane = std::abs(dot(p.position, p.normal)),
                   off = std::sqrt(std::max(0.0f, length2(p.position) - plane * plane));
-      if (n > 0)
-        bands[outside][std::min(4, int(off / (0.75f * 1.6f / float(n)) * 5))].add(double(p.indirect.g));
+      if (n > 0) bands[outside][std::min(4, int(off / (0.75f * 1.6f / float(n)) * 5))].add(double(p.indirect.g));
     }
   }
   // 4 x 50k photons a side, 0.23 %, and what is left of the area's noise.
@@ -305,9 +300,7 @@ TEST_P(Curved, UniformLightStaysUniform) {
   EXPECT_NEAR(out.value(), 1, 0.01);
   for (int side = 0; side < 2 && n > 0; ++side)
     for (int band = 0; band < 5; ++band)
-      if (bands[side][band].count > 1000) {
-        EXPECT_NEAR(bands[side][band].value(), 1, 0.02) << side << " " << band;
-      }
+      if (bands[side][band].count > 1000) { EXPECT_NEAR(bands[side][band].value(), 1, 0.02) << side << " " << band; }
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, Curved, testing::Values(4, 8, 11, 0));
@@ -316,20 +309,13 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Curved, testing::Values(4, 8, 11, 0));
 TEST(IrradiancePoints, AStepLosesNothing) {
   HandMadeScene scene;
   const Material material = matte(Rgb(0.5f));
-  scene.add({{-1, 0, 1},
-             {0, 0, 1},
-             {0, 0, -1},
-             {-1, 0, -1},
-             {0, 0.03f, 1},
-             {0, 0.03f, -1},
-             {1, 0.03f, 1},
-             {1, 0.03f, -1}},
-            {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}, {4, 6, 7}, {4, 7, 5}}, material);
+  scene.add(
+      {{-1, 0, 1}, {0, 0, 1}, {0, 0, -1}, {-1, 0, -1}, {0, 0.03f, 1}, {0, 0.03f, -1}, {1, 0.03f, 1}, {1, 0.03f, -1}},
+      {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}, {4, 6, 7}, {4, 7, 5}}, material);
   Stage stage(scene);
   Mean low, high;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
-    for (const IrradiancePoint& p :
-         stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
+    for (const IrradiancePoint& p : stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
       if (p.normal.y < 0.5f || std::abs(p.position.x) > 0.1f) continue;
       (p.position.x < 0 ? low : high).add(double(p.indirect.g));
     }
@@ -358,8 +344,7 @@ TEST(IrradiancePoints, FoldsLoseNothing) {
   Stage stage(scene);
   Mean mean;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
-    for (const IrradiancePoint& q :
-         stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
+    for (const IrradiancePoint& q : stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
       const float off = std::abs(q.position.x / kWidth - std::round(q.position.x / kWidth)) * kWidth;
       if (off < 0.03f && q.position.x > kWidth / 2 && q.position.x < kWidth * (kFolds - 0.5f))
         mean.add(double(q.indirect.g));
@@ -385,10 +370,8 @@ TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
       return formats::decode_normal(photon.normal)[1] * photon.position[1] < 0;
     });
     for (const IrradiancePoint& q : stage.estimate(photons, few(3000, seed))) {
-      if (q.normal.y * q.position.y < 0)
-        inside += double(q.indirect.g);
-      else
-        outside.add(double(q.indirect.g));
+      if (q.normal.y * q.position.y < 0) inside += double(q.indirect.g);
+      else outside.add(double(q.indirect.g));
     }
   }
   EXPECT_EQ(inside, 0);
@@ -421,11 +404,13 @@ TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
   }
 }
 
-/// Direct light counts by the shading normal, as photons and eyes count it: a floor whose normals lean 30 degrees to the
-/// right, lamps of 1 W/sr 100 m away (of 1/10^4 W/m^2 upright): at the zenith cos 30, at 30 degrees on the right 1, and from
-/// 65 degrees on the left, behind that normal, nothing. Their directions change by 0.02 over the floor.
+/// Direct light counts by the shading normal, as photons and eyes count it: a floor whose normals lean 30 degrees to
+/// the right, lamps of 1 W/sr 100 m away (of 1/10^4 W/m^2 upright): at the zenith cos 30, at 30 degrees on the right 1,
+/// and from 65 degrees on the left, behind that normal, nothing. Their directions change by 0.02 over the floor.
 TEST(IrradiancePoints, DirectLightCountsByTheShadingNormal) {
-  const auto direction = [](float degrees) { return Vec3{std::sin(degrees * kPi / 180), std::cos(degrees * kPi / 180), 0}; };
+  const auto direction = [](float degrees) {
+    return Vec3{std::sin(degrees * kPi / 180), std::cos(degrees * kPi / 180), 0};
+  };
   for (const auto& [lamp, expected] : {std::pair{0.0f, 0.8660f}, {30.0f, 1.0f}, {-65.0f, 0.0f}}) {
     HandMadeScene scene;
     scene.add({{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, {{0, 1, 2}, {0, 2, 3}}, matte(Rgb(0.5f)), false,
@@ -438,9 +423,7 @@ TEST(IrradiancePoints, DirectLightCountsByTheShadingNormal) {
     std::vector<IrradiancePoint> points = place_points(frame, options).points;
     estimate_points(tracer, lights, {}, {}, options, points);
     for (const IrradiancePoint& point : points) {
-      if (point.normal.y > 0) {
-        EXPECT_NEAR(point.direct.g, expected, 0.03f) << "lamp at " << lamp;
-      }
+      if (point.normal.y > 0) { EXPECT_NEAR(point.direct.g, expected, 0.03f) << "lamp at " << lamp; }
     }
   }
 }

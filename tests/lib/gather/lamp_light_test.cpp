@@ -1,4 +1,5 @@
-// Light that lamps throw on surfaces beside them: photons found, the division between rays and explicit samples, its noise.
+// Light that lamps throw on surfaces beside them: photons found, the division between rays and explicit samples, its
+// noise.
 #include "lib/gather/lamp_light.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ using test::place_at;
 
 constexpr float kReflectance = 0.5f, kSpacing = 0.5f;
 
-/// A ceiling of 40 m at the height 1 m, a point lamp of 1 W/sr a distance d below it, points every half metre around, none of them above the lamp.
+/// A ceiling of 40 m at the height 1 m, a point lamp of 1 W/sr a distance d below it, points every half metre around,
+/// none of them above the lamp.
 struct Ceiling {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -39,8 +41,8 @@ struct Ceiling {
         points.push_back(point);
       }
   }
-  /// Irradiance at (x, 0, 0), normal up: over the directions (phi from the ceiling's normal, psi) in which the lamp shines, sin phi dphi dpsi of flux each,
-  /// reflectance / pi cos cos / l^2.
+  /// Irradiance at (x, 0, 0), normal up: over the directions (phi from the ceiling's normal, psi) in which the lamp
+  /// shines, sin phi dphi dpsi of flux each, reflectance / pi cos cos / l^2.
   double exact(double x) const {
     constexpr int n = 400;
     double sum = 0;
@@ -54,8 +56,8 @@ struct Ceiling {
   }
 };
 
-/// Of the lamp's 4 pi W those between straight up and the angle whose distance is the reach 2 s: 2 pi (1 - d / 2 s). Sobol's points of 2^15 know a
-/// share of the sphere to 1e-3.
+/// Of the lamp's 4 pi W those between straight up and the angle whose distance is the reach 2 s: 2 pi (1 - d / 2 s).
+/// Sobol's points of 2^15 know a share of the sphere to 1e-3.
 TEST(LampLight, PhotonsBesideALamp) {
   for (const double d : {0.01, 0.3, 0.9}) {
     Ceiling ceiling(d);
@@ -74,17 +76,19 @@ TEST(LampLight, PhotonsBesideALamp) {
     const Vec3 far{2.75f, 1, 2.75f};
     EXPECT_FALSE(lookup.find(far, {0, -1, 0})->beside_lamp);
   }
-  Ceiling away(1.01);   // farther than two spacings: nothing to do
+  Ceiling away(1.01);  // farther than two spacings: nothing to do
   const SceneFrame& frame = away.scene.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
-  EXPECT_TRUE(photons_beside_lamps(tracer, lights, PointLookup(away.points, kSpacing, point_clearance(tracer))).empty());
+  EXPECT_TRUE(
+      photons_beside_lamps(tracer, lights, PointLookup(away.points, kSpacing, point_clearance(tracer))).empty());
 }
 
-/// A floor under it, by 500 rays and 100 explicit samples: the mean of 60 gathers within 1 % of the integral; one gather errs by less than
-/// 6 % (RMS): most by what rays meet of the spot nearer than 6 d, which some 20 of them do.
-/// The spot of a lamp at 1 cm fills 1e-4 of the hemisphere: one ray of 500 meets it in one gather of 20, and would be all of its light.
-/// Seen to fail: rays that bring all of the light (2.05 and 2.03 at 1 cm), points read in place of samples (.97 to .85).
+/// A floor under it, by 500 rays and 100 explicit samples: the mean of 60 gathers within 1 % of the integral; one
+/// gather errs by less than 6 % (RMS): most by what rays meet of the spot nearer than 6 d, which some 20 of them do.
+/// The spot of a lamp at 1 cm fills 1e-4 of the hemisphere: one ray of 500 meets it in one gather of 20, and would be
+/// all of its light. Seen to fail: rays that bring all of the light (2.05 and 2.03 at 1 cm), points read in place of
+/// samples (.97 to .85).
 TEST(LampLight, FloorUnderALampBesideACeiling) {
   for (const double d : {0.01, 0.03, 0.1, 0.3})
     for (const double x : {0.0, 0.8}) {
@@ -101,7 +105,8 @@ TEST(LampLight, FloorUnderALampBesideACeiling) {
       for (int g = 0; g < kGathers; ++g) {
         GatherCounts counts;
         const FinalGather gather(tracer, lights, lookup, {.seed = std::uint64_t(g), .rays = 500, .bright = &bright});
-        const double e = double(gather.gather(place_at({float(x), 0, 0}, {0, 1, 0}), {0, 1, 0}, counts).irradiance.g) / exact;
+        const double e =
+            double(gather.gather(place_at({float(x), 0, 0}, {0, 1, 0}), {0, 1, 0}, counts).irradiance.g) / exact;
         sum += e / kGathers;
         squares += (e - 1) * (e - 1) / kGathers;
       }
@@ -110,14 +115,16 @@ TEST(LampLight, FloorUnderALampBesideACeiling) {
     }
 }
 
-/// A room with a point lamp 12 cm from a wall, a small lamp that shines at the ceiling 8 cm above it, and a block near both: corners, near hits, fittings
-/// too small for points. With explicit samples the mean is what rays alone bring that sample direct light at the same hits: within 5 standard errors of the
-/// difference of 400 gathers each, themselves below 1.5 %.
+/// A room with a point lamp 12 cm from a wall, a small lamp that shines at the ceiling 8 cm above it, and a block near
+/// both: corners, near hits, fittings too small for points. With explicit samples the mean is what rays alone bring
+/// that sample direct light at the same hits: within 5 standard errors of the difference of 400 gathers each,
+/// themselves below 1.5 %.
 TEST(LampLight, PartsAddUpToTheWhole) {
   HandMadeScene scene;
   scene.add_room({-1, 0, -1}, {1, 2, 1}, matte(Rgb(0.5f)));
   scene.add_quad({0.6f, 1, -0.1f}, {0.8f, 1, -0.1f}, {0.8f, 1, 0.1f}, {0.6f, 1, 0.1f}, matte(Rgb(0.6f)));
-  scene.add_quad({-0.3f, 1.92f, -0.3f}, {-0.25f, 1.92f, -0.3f}, {-0.25f, 1.92f, -0.25f}, {-0.3f, 1.92f, -0.25f}, matte(Rgb(0.0f), Rgb(50.0f)));
+  scene.add_quad({-0.3f, 1.92f, -0.3f}, {-0.25f, 1.92f, -0.3f}, {-0.25f, 1.92f, -0.25f}, {-0.3f, 1.92f, -0.25f},
+                 matte(Rgb(0.0f), Rgb(50.0f)));
   scene.add_point_light({0.88f, 1.1f, 0}, Rgb(1.0f));
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
@@ -136,7 +143,8 @@ TEST(LampLight, PartsAddUpToTheWhole) {
     for (int g = 0; g < kGathers; ++g)
       for (const bool divided : {false, true}) {
         GatherCounts counts;
-        const FinalGather gather(tracer, lights, lookup, {.seed = std::uint64_t(g), .rays = 300, .bright = divided ? &bright : nullptr});
+        const FinalGather gather(tracer, lights, lookup,
+                                 {.seed = std::uint64_t(g), .rays = 300, .bright = divided ? &bright : nullptr});
         const double e = double(gather.gather(place_at(at, {0, 1, 0}), {0, 1, 0}, counts).irradiance.g);
         mean[divided] += e / kGathers;
         squares[divided] += e * e / kGathers;

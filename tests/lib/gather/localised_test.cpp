@@ -116,7 +116,7 @@ TEST(Influence, FieldIsRelativeUnlessAskedOtherwise) {
   EXPECT_NEAR(relative.at(kMiddle, kUp), 0.1f, 1e-6f);
   EXPECT_NEAR(absolute.at(kMiddle, kUp), 0.5f, 1e-6f);
   EXPECT_EQ(relative.at({0.2f, 0, 0.2f}, kUp), 0);
-  EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));   // nothing is known there
+  EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));  // nothing is known there
   EXPECT_EQ(relative.gathered_share({0.2f, 0, 0.2f}, kUp), 0);
 }
 

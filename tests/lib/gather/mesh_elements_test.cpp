@@ -1,4 +1,5 @@
-// Light textures: even light stays even to the last element of a wall, walls do not mix, flux is kept, sums have no order.
+// Light textures: even light stays even to the last element of a wall, walls do not mix, flux is kept, sums have no
+// order.
 #include "lib/gather/mesh_elements.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,8 @@
 namespace tempolux {
 namespace {
 
-/// A room of 2 m, and photons in it: one in the middle of each element of the inner sides, worth `irradiance(position)` over its area.
+/// A room of 2 m, and photons in it: one in the middle of each element of the inner sides, worth `irradiance(position)`
+/// over its area.
 class LightTexture : public testing::Test {
  protected:
   static constexpr double kCell = 0.21;
@@ -66,10 +68,11 @@ class LightTexture : public testing::Test {
 };
 
 TEST_F(LightTexture, EvenLightStaysEvenAndWallsDoNotMix) {
-  const auto irradiance = [](Vec3 p) { return p.y < -0.999f ? 2.0f : 1.0f; };   // the floor has twice as much
+  const auto irradiance = [](Vec3 p) { return p.y < -0.999f ? 2.0f : 1.0f; };  // the floor has twice as much
   const auto even = photons(irradiance);
   ASSERT_GT(even.size(), 1000u);
-  for (const auto kind : {MeshFilter::Kind::none, MeshFilter::Kind::box, MeshFilter::Kind::gaussian, MeshFilter::Kind::bilateral})
+  for (const auto kind :
+       {MeshFilter::Kind::none, MeshFilter::Kind::box, MeshFilter::Kind::gaussian, MeshFilter::Kind::bilateral})
     for (const formats::MeshElement& e : texture(even, {kind, 0.3, 0.5f}))
       EXPECT_NEAR(e.irradiance[1], irradiance({e.position[0], e.position[1], e.position[2]}), 1e-4) << int(kind);
 }
@@ -85,7 +88,7 @@ TEST_F(LightTexture, TheBilateralFilterKeepsFluxAndEdges) {
     for (const formats::MeshElement& e : texture(uneven, {kind, 0.3, 0.5f})) {
       flux += double(e.irradiance[0] * e.area);
       if (std::abs(e.position[1]) < 0.999f || e.position[0] > -0.2f || e.position[0] < -0.4f) continue;
-      sum += double(e.irradiance[0] * e.area);   // of floor and ceiling, a width beside the step
+      sum += double(e.irradiance[0] * e.area);  // of floor and ceiling, a width beside the step
       area += double(e.area);
     }
     return sum / area;
@@ -93,12 +96,13 @@ TEST_F(LightTexture, TheBilateralFilterKeepsFluxAndEdges) {
   double flux = 0;
   EXPECT_LT(middle(MeshFilter::Kind::bilateral, flux), 1.25);
   EXPECT_NEAR(flux, wanted, 1e-4 * wanted);
-  EXPECT_GT(middle(MeshFilter::Kind::gaussian, flux), 1.35);   // 1 + 3 x share of a Gaussian beyond its deviation, .16
+  EXPECT_GT(middle(MeshFilter::Kind::gaussian, flux), 1.35);  // 1 + 3 x share of a Gaussian beyond its deviation, .16
 }
 
 TEST_F(LightTexture, SumsHaveNoOrder) {
   const auto all = photons([](Vec3 p) { return 1 + p.x * p.y; });
-  const std::span<const formats::Photon> some(all.data(), all.size() / 3), rest(all.data() + some.size(), all.size() - some.size());
+  const std::span<const formats::Photon> some(all.data(), all.size() / 3),
+      rest(all.data() + some.size(), all.size() - some.size());
   MeshSums at_once(*tracer_, cuts_, 1e-12), in_turn(*tracer_, cuts_, 1e-12);
   at_once.add(all, {});
   in_turn.add(rest, {});
@@ -113,8 +117,9 @@ TEST_F(LightTexture, SumsHaveNoOrder) {
     }
 }
 
-/// Light that is linear along the walls is read as it was put in: corners inside a wall have the mean of elements that lie symmetrically around
-/// them, and between them reading is linear, too. At the rim of a wall a corner has the mean of one side's elements alone.
+/// Light that is linear along the walls is read as it was put in: corners inside a wall have the mean of elements that
+/// lie symmetrically around them, and between them reading is linear, too. At the rim of a wall a corner has the mean
+/// of one side's elements alone.
 TEST_F(LightTexture, IsReadWhereItWasMade) {
   formats::MeshirradFile file;
   file.header.cell = kCell;
@@ -127,7 +132,8 @@ TEST_F(LightTexture, IsReadWhereItWasMade) {
     Hit hit;
     ASSERT_TRUE(tracer_->intersect({p + normal * 0.01f, -normal, 0, 1}, hit));
     const float irradiance = light.irradiance(tracer_->surface_point(hit), normal).r;
-    const bool rim = std::max({std::abs(p.x) * (1 - std::abs(normal.x)), std::abs(p.y) * (1 - std::abs(normal.y)), std::abs(p.z) * (1 - std::abs(normal.z))}) > 0.7f;
+    const bool rim = std::max({std::abs(p.x) * (1 - std::abs(normal.x)), std::abs(p.y) * (1 - std::abs(normal.y)),
+                               std::abs(p.z) * (1 - std::abs(normal.z))}) > 0.7f;
     EXPECT_NEAR(irradiance, e.irradiance[0], rim ? 0.3 : 1e-3);
     inside += !rim;
     EXPECT_EQ(light.irradiance(tracer_->surface_point(hit), -normal).r, 0);

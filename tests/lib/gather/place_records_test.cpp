@@ -49,7 +49,8 @@ struct Room {
 
   std::optional<SeenPoint> see(float x, float y, int width, int height) const {
     const Vec3 eye{0.9f, 0.7f, 0.9f};
-    const Vec3 forward = normalize(Vec3{-0.9f, -1, -0.9f}), right = normalize(cross(forward, Vec3{0, 1, 0})), up = cross(right, forward);
+    const Vec3 forward = normalize(Vec3{-0.9f, -1, -0.9f}), right = normalize(cross(forward, Vec3{0, 1, 0})),
+               up = cross(right, forward);
     const float u = 2 * x / float(width) - 1, v = 1 - 2 * y / float(height);
     const Vec3 direction = normalize(forward + right * u + up * (v * float(height) / float(width)));
     Hit hit;
@@ -59,8 +60,10 @@ struct Room {
     return SeenPoint{point, n, hit.t * 2 / float(width), false};
   }
 
-  std::size_t place(int width, int height, RecordStore& store, GatherCounts& counts, const PlacementOptions& options = {}) const {
-    const PixelView views = pixel_by_pixel([&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); });
+  std::size_t place(int width, int height, RecordStore& store, GatherCounts& counts,
+                    const PlacementOptions& options = {}) const {
+    const PixelView views =
+        pixel_by_pixel([&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); });
     return place_records(*gather, views, width, height, options, store, counts);
   }
 };
@@ -84,10 +87,11 @@ TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
   EXPECT_EQ(room.place(96, 64, store, counts), 0u);
 }
 
-/// Below a small bright patch of radiance 1 one of 300 gather rays meets it, aside one of 3000. Were radii what each record's own
-/// hits tell, records that missed the patch would reach farthest: the floor came out half dark. Its mean irradiance, against
-/// 4 a^2 h^2 / (h^2 + d^2)^2 (exact to a^2 = 0.3 %): interpolation leaves -2.5 %. One or two of a record's 500 rays meet the patch, so that
-/// it errs by 80 %; the dozen records of each of 400 runs err by 1.2 % together.
+/// Below a small bright patch of radiance 1 one of 300 gather rays meets it, aside one of 3000. Were radii what each
+/// record's own hits tell, records that missed the patch would reach farthest: the floor came out half dark. Its mean
+/// irradiance, against 4 a^2 h^2 / (h^2 + d^2)^2 (exact to a^2 = 0.3 %): interpolation leaves -2.5 %. One or two of a
+/// record's 500 rays meet the patch, so that it errs by 80 %; the dozen records of each of 400 runs err by 1.2 %
+/// together.
 TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
   constexpr float a = 0.05f, kHalf = 1.5f;
   constexpr int kSize = 48, kRuns = 400;
@@ -139,8 +143,8 @@ TEST(PlaceRecords, TheSameRecordsForAnyNumberOfThreads) {
     ASSERT_EQ(store.records().size(), first.size()) << threads;
     for (std::size_t i = 0; i < first.size(); ++i) {
       const IrradianceRecord &a = first[i], &b = store.records()[i];
-      ASSERT_TRUE(a.position == b.position && a.normal == b.normal && a.irradiance == b.irradiance && a.radius == b.radius &&
-                  a.rotational == b.rotational && a.translational == b.translational)
+      ASSERT_TRUE(a.position == b.position && a.normal == b.normal && a.irradiance == b.irradiance &&
+                  a.radius == b.radius && a.rotational == b.rotational && a.translational == b.translational)
           << "record " << i << ", " << threads << " threads";
     }
   }
@@ -174,8 +178,8 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   EXPECT_EQ(drawn, 4 * 64);
 }
 
-/// Of the coarsest lattice's points, 625 here, the first 256 are gathered side by side, before there is any record; each
-/// of those covers all of this small patch, so that the batches after gather nothing.
+/// Of the coarsest lattice's points, 625 here, the first 256 are gathered side by side, before there is any record;
+/// each of those covers all of this small patch, so that the batches after gather nothing.
 TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
   const Room room;
   RecordStore store;
@@ -202,7 +206,8 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
     const PixelView view = pixel_by_pixel([&](float x, float y, const PathRandom* random) {
       within += random != nullptr;
       SeenPoint seen;
-      seen.surface.position = across * (0.01f * (x - kSize / 2)) + Vec3{0, 0, 1} * (0.01f * y) + Vec3{0, x < kSize / 2 ? step : 0, 0};
+      seen.surface.position =
+          across * (0.01f * (x - kSize / 2)) + Vec3{0, 0, 1} * (0.01f * y) + Vec3{0, x < kSize / 2 ? step : 0, 0};
       seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
       seen.footprint = 0.01f;
       return std::optional(seen);
@@ -211,8 +216,8 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
     place_records(*room.gather, view, kSize, kSize, {}, store, counts);
     return within;
   };
-  EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);   // the columns beside the step
-  EXPECT_EQ(looked_within(0.01f, {1, 0, 0}), 0);               // a footprint: the surface is rough, or seen aslant
+  EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);  // the columns beside the step
+  EXPECT_EQ(looked_within(0.01f, {1, 0, 0}), 0);              // a footprint: the surface is rough, or seen aslant
   EXPECT_EQ(looked_within(0, {8, 0, 0}), 0);
 }
 
@@ -228,15 +233,17 @@ IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic, float se
 
 TEST(RadiusOf, EachLimitDecidesWhereItIsTheSmallest) {
   const PlacementOptions options{.error_bound = 0.2f, .min_radius_px = 4, .unseen_radius_px = 500};
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);               // bound x harmonic mean
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY, 0), 1e-3f, options), 0.5f);     // nothing seen
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1, 20), 1e-3f, options), 2 / 7.0f);       // half known: 1 / (.5 / .2 + .5 / .5)
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);          // smallest: 4 pixels
-  IrradianceRecord near = gathered(1, {1, 0, 0}, 5e-3f);          // bound x R = 1 mm, widened fourfold: the gradient shrinks as much
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);            // bound x harmonic mean
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY, 0), 1e-3f, options), 0.5f);  // nothing seen
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1, 20), 1e-3f, options), 2 / 7.0f);  // half known: 1 / (.5 / .2 + .5 / .5)
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);     // smallest: 4 pixels
+  IrradianceRecord near =
+      gathered(1, {1, 0, 0}, 5e-3f);  // bound x R = 1 mm, widened fourfold: the gradient shrinks as much
   limit_radius(near, 1e-3f, options);
   EXPECT_FLOAT_EQ(near.translational[0].x, 0.25f);
   EXPECT_FLOAT_EQ(near.radius_unclamped, 1e-3f);
-  IrradianceRecord steep = gathered(1, {10, 0, 0}, 1);            // 3 channels of 1 W/m^2, 10 W/m^3 over 0.2 m: twice what there is
+  IrradianceRecord steep =
+      gathered(1, {10, 0, 0}, 1);  // 3 channels of 1 W/m^2, 10 W/m^3 over 0.2 m: twice what there is
   limit_radius(steep, 1e-3f, options);
   EXPECT_FLOAT_EQ(steep.translational[0].x, 5);
 }

@@ -31,9 +31,10 @@ double area_of(const std::vector<TrianglePiece>& pieces) {
   return sum;
 }
 
-/// A sphere of 2 m around a place of the ground covers 4 pi m^2. Right-angled pieces whose longest side is at most half a metre are counted
-/// by their middles: the outline is off by less than their middles are from their corners (.37 m) to either side and by much less in the mean.
-/// A piece is not smaller than half of that, 1/32 m^2, so there are at most (2.4 m)^2 pi / (1/32 m^2) = 580.
+/// A sphere of 2 m around a place of the ground covers 4 pi m^2. Right-angled pieces whose longest side is at most half
+/// a metre are counted by their middles: the outline is off by less than their middles are from their corners (.37 m)
+/// to either side and by much less in the mean. A piece is not smaller than half of that, 1/32 m^2, so there are at
+/// most (2.4 m)^2 pi / (1/32 m^2) = 580.
 TEST(PointRegion, TheOutlineFollowsTheSphere) {
   Plain plain;
   const AimSphere sphere{{300, 0, -200}, 2, 1};
@@ -64,12 +65,12 @@ TEST(PointRegion, TheDensestSpheresAreTaken) {
   const double areas[] = {100, 1, 10, 0};
   const std::vector<AimSphere> taken = spheres_with_points(spheres, areas);
   ASSERT_EQ(taken.size(), 2u);
-  EXPECT_EQ(taken[0].weight, 10);   // 10 / m^2
-  EXPECT_EQ(taken[1].weight, 86);   // 8.6 / m^2: 96 of 100 together
+  EXPECT_EQ(taken[0].weight, 10);  // 10 / m^2
+  EXPECT_EQ(taken[1].weight, 86);  // 8.6 / m^2: 96 of 100 together
 }
 
-/// 4000 points per side in the spheres instead of on 4 km^2: they are sqrt(area / 4000) apart, 6 cm instead of 32 m. The wide sphere
-/// holds less than 5 % of the weight and most of the area: none lie there.
+/// 4000 points per side in the spheres instead of on 4 km^2: they are sqrt(area / 4000) apart, 6 cm instead of 32 m.
+/// The wide sphere holds less than 5 % of the weight and most of the area: none lie there.
 TEST(PointRegion, PointsLieWhereCamerasLook) {
   Plain plain;
   PointOptions options;
@@ -91,8 +92,8 @@ TEST(PointRegion, PointsLieWhereCamerasLook) {
   EXPECT_NEAR(small, 8000 * 0.04 / area, 3);
 }
 
-/// Every place of a piece is drawn: the mean of the points is the middle of the disc, to 3 standard errors of 4000 places over a
-/// disc of 2 m (1 m / sqrt(4000) in each coordinate; Sobol's are closer), and no two are the same.
+/// Every place of a piece is drawn: the mean of the points is the middle of the disc, to 3 standard errors of 4000
+/// places over a disc of 2 m (1 m / sqrt(4000) in each coordinate; Sobol's are closer), and no two are the same.
 TEST(PointRegion, PointsFillTheirPieces) {
   Plain plain;
   PointOptions options;
@@ -109,7 +110,7 @@ TEST(PointRegion, PointsFillTheirPieces) {
   }
   EXPECT_NEAR(sum.x / count, 300, 3 / std::sqrt(4000.0));
   EXPECT_NEAR(sum.z / count, -200, 3 / std::sqrt(4000.0));
-  EXPECT_GT(int(places.size()), count - 10);   // floats of 300 m: 3e-5 m apart, a pair in 4000 of them now and then
+  EXPECT_GT(int(places.size()), count - 10);  // floats of 300 m: 3e-5 m apart, a pair in 4000 of them now and then
 }
 
 }  // namespace

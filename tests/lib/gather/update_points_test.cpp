@@ -15,7 +15,8 @@ namespace {
 
 using formats::Photon;
 
-/// A room of 4 x 3 x 4 m with a lamp under its ceiling and a box of .6 m that moves; what is needed to update its points.
+/// A room of 4 x 3 x 4 m with a lamp under its ceiling and a box of .6 m that moves; what is needed to update its
+/// points.
 struct Room {
   test::HandMadeScene scene;
   SceneFrame frame, standing;
@@ -28,10 +29,27 @@ struct Room {
     scene.add_quad({1.7f, 2.95f, 1.7f}, {2.3f, 2.95f, 1.7f}, {2.3f, 2.95f, 2.3f}, {1.7f, 2.95f, 2.3f},
                    test::matte(Rgb(0.0f), Rgb(10.0f)), lamp_moves);
     const Vec3 u = at + Vec3{0.6f, 0.6f, 0.6f};
-    scene.add({{at.x, at.y, at.z}, {u.x, at.y, at.z}, {u.x, u.y, at.z}, {at.x, u.y, at.z},
-               {at.x, at.y, u.z}, {u.x, at.y, u.z}, {u.x, u.y, u.z}, {at.x, u.y, u.z}},
-              {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
-               {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}}, test::matte(Rgb(0.3f)), true);
+    scene.add({{at.x, at.y, at.z},
+               {u.x, at.y, at.z},
+               {u.x, u.y, at.z},
+               {at.x, u.y, at.z},
+               {at.x, at.y, u.z},
+               {u.x, at.y, u.z},
+               {u.x, u.y, u.z},
+               {at.x, u.y, u.z}},
+              {{0, 2, 1},
+               {0, 3, 2},
+               {4, 5, 6},
+               {4, 6, 7},
+               {0, 1, 5},
+               {0, 5, 4},
+               {3, 6, 2},
+               {3, 7, 6},
+               {0, 7, 3},
+               {0, 4, 7},
+               {1, 2, 6},
+               {1, 6, 5}},
+              test::matte(Rgb(0.3f)), true);
     frame = scene.frame();
     standing = standing_scene(frame);
     table = build_emission_table(std::span(&frame, 1));
@@ -86,7 +104,7 @@ TEST(UpdatePoints, DirectLightIsThatOfFreshPointsToTheBit) {
   const auto fresh = room.fresh_points();
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(points[i].direct, fresh[i].direct) << i;
   EXPECT_GT(counts.direct, 0u);
-  EXPECT_LT(counts.direct, points.size() / 4);   // most see the lamp past the box
+  EXPECT_LT(counts.direct, points.size() / 4);  // most see the lamp past the box
 }
 
 TEST(UpdatePoints, IndirectLightIsThatOfFreshPointsWithinNoise) {
@@ -111,7 +129,7 @@ TEST(UpdatePoints, IndirectLightIsThatOfFreshPointsWithinNoise) {
 }
 
 TEST(UpdatePoints, WithoutDynamicPhotonsAndMoversNothingChanges) {
-  Room room({10, 0, 10});   // outside the room
+  Room room({10, 0, 10});  // outside the room
   ASSERT_TRUE(room.dynamic.empty());
   const std::vector<IrradiancePoint> before = room.standing_points();
   std::vector<IrradiancePoint> points = before;
@@ -127,7 +145,7 @@ TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
   // Static light 1 everywhere and dynamic photons that take away all of it: noise about 0, never below.
   const Room room({1.5f, 0, 1.5f}, true);
   std::vector<IrradiancePoint> points = room.standing_points();
-  for (const IrradiancePoint& point : points) ASSERT_EQ(point.indirect, Rgb(0.0f));   // the lamp moves: nothing stands
+  for (const IrradiancePoint& point : points) ASSERT_EQ(point.indirect, Rgb(0.0f));  // the lamp moves: nothing stands
   room.update(points);
   const auto fresh = room.fresh_points();
   double sum = 0, fresh_sum = 0;
@@ -140,9 +158,12 @@ TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
   EXPECT_NEAR(sum / fresh_sum, 1, 0.02);
 }
 
-/// Directions stay with their photons: of what stands two photons, of which the change takes away the first and brings a third.
+/// Directions stay with their photons: of what stands two photons, of which the change takes away the first and brings
+/// a third.
 TEST(WholePhotons, DirectionsStayWithTheirPhotons) {
-  const auto photon = [](float x, float flux) { return Photon{{x, 0, 0}, {flux, flux, flux}, {}, 1, formats::PathKind::caustic, 1}; };
+  const auto photon = [](float x, float flux) {
+    return Photon{{x, 0, 0}, {flux, flux, flux}, {}, 1, formats::PathKind::caustic, 1};
+  };
   formats::PhotonBlock fixed, dynamic;
   fixed.photons = {photon(1, 1), photon(2, 1)};
   fixed.directions = {{1, 1}, {2, 2}};

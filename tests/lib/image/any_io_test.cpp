@@ -59,8 +59,7 @@ TEST(AnyImage, SixteenBitPngKeepsItsDigits) {
   const Folder folder;
   put_bytes(folder / "a.png", png(1, 16, 0, "\x12\x34"));
   const double encoded = 0x1234 / 65535.0;  // 0.0711: above the linear foot
-  EXPECT_NEAR(load_image(folder / "a.png").find("G")->values[0], std::pow((encoded + 0.055) / 1.055, 2.4),
-              1e-8);
+  EXPECT_NEAR(load_image(folder / "a.png").find("G")->values[0], std::pow((encoded + 0.055) / 1.055, 2.4), 1e-8);
   // A gAMA chunk of 1 says the samples are linear.
   put_bytes(folder / "a.png", png(1, 16, 0, "\x12\x34", png_chunk("gAMA", big_endian(100000))));
   const Image image = load_image(folder / "a.png");
@@ -96,12 +95,10 @@ TEST(AnyImage, DamagedPngIsOneLineNeverACrash) {
     put_bytes(path, bytes);
     message_of<InputError>([&] { load_image(path); });
   }
-  put_bytes(path,
-            "\x89PNG\r\n\x1a\n" +
-                png_chunk("IHDR", big_endian(60000) + big_endian(8000) + "\x10\x06" + std::string(3, '\0')) +
-                png_chunk("IDAT", "x"));
-  EXPECT_NE(message_of<InputError>([&] { load_image(path); }).find("more pixels than its bytes"),
-            std::string::npos);
+  put_bytes(path, "\x89PNG\r\n\x1a\n" +
+                      png_chunk("IHDR", big_endian(60000) + big_endian(8000) + "\x10\x06" + std::string(3, '\0')) +
+                      png_chunk("IDAT", "x"));
+  EXPECT_NE(message_of<InputError>([&] { load_image(path); }).find("more pixels than its bytes"), std::string::npos);
 }
 
 TEST(AnyImage, UnknownFormatsAreRefusedByName) {

@@ -92,7 +92,7 @@ TEST(EncodedImage, PngKeepsItsCodesAndChannels) {
 
 TEST(EncodedImage, EveryTruncationIsRefused) {
   for (const std::string_view whole : {kJpeg, kProgressive})
-    for (std::size_t size = 0; size < whole.size() - 2; ++size)   // all but the end marker
+    for (std::size_t size = 0; size < whole.size() - 2; ++size)  // all but the end marker
       EXPECT_NE(error_of(whole.substr(0, size)), "") << size;
   const std::string png = test::png_bytes(2, 2, 3, std::vector<std::uint8_t>(12));
   for (std::size_t size = 0; size < png.size(); ++size) EXPECT_NE(error_of(png.substr(0, size)), "") << size;
@@ -104,7 +104,7 @@ TEST(EncodedImage, ChangedBytesNeverCrash) {
       for (const int change : {1, 0x80, 0xff}) {
         std::string bytes(whole);
         bytes[at] = char(bytes[at] ^ change);
-        error_of(bytes);   // an error, or other pixels
+        error_of(bytes);  // an error, or other pixels
       }
 }
 

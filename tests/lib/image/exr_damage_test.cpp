@@ -35,8 +35,7 @@ void expect_good_message(const std::string& message, const std::string& file) {
 
 class ExrDamage : public testing::TestWithParam<ExrWriteOptions::Compression> {};
 INSTANTIATE_TEST_SUITE_P(Compressions, ExrDamage,
-                         testing::Values(ExrWriteOptions::Compression::none,
-                                         ExrWriteOptions::Compression::zip));
+                         testing::Values(ExrWriteOptions::Compression::none, ExrWriteOptions::Compression::zip));
 
 TEST_P(ExrDamage, EveryTruncationIsAnError) {
   const Folder folder;
@@ -121,8 +120,7 @@ TEST(ExrClaims, LyingHeadersAreRefusedBeforeMemoryIsTaken) {
   says(exr::magic() + exr::header(rgb, one, big(60000, 60000), 3) + '\0', "over the limit");
   says(exr::magic() + exr::header(rgb, one, big(20000, 20000), 3) + '\0', "crop the display window");
   says(exr::magic() + exr::header(rgb, big(70000, 2), one, 3) + '\0', "at most 65536 a side");
-  says(exr::magic() + exr::header(rgb, exr::box(-2147483647, 0, 2147483647, 0), one, 3) + '\0',
-       "out of range");
+  says(exr::magic() + exr::header(rgb, exr::box(-2147483647, 0, 2147483647, 0), one, 3) + '\0', "out of range");
   says(exr::magic() + exr::header(rgb, exr::box(1, 0, 0, 0), one) + '\0', "empty");
   says(exr::magic() + exr::header(rgb, big(20000, 1000), one, 3) + '\0', "can hold");  // 240 MB from 4.5 kB
   says(exr::magic() + exr::header(rgb, big(1, 60000), one, 2) + '\0', "chunks");
@@ -138,12 +136,11 @@ TEST(ExrClaims, LyingHeadersAreRefusedBeforeMemoryIsTaken) {
        "shorter than it says");
   says(exr::magic() + exr::header(rgb, one, one) + exr::attribute("small", "preview", raw(20000) + raw(20000)) + '\0',
        "a preview of 20000 x 20000 pixels in 8 bytes");
-  says(exr::magic(0x1000) + exr::header(rgb, one, one) +
-           exr::attribute("chunkCount", "int", raw(0x7fffffff)) + '\0' + '\0',
+  says(exr::magic(0x1000) + exr::header(rgb, one, one) + exr::attribute("chunkCount", "int", raw(0x7fffffff)) + '\0' +
+           '\0',
        "chunks");
   says(exr::magic() + exr::header(exr::channel("RY", 2, 2), one, one) + '\0', "subsampled");
-  says(exr::magic(0x800) + exr::header(rgb, one, one) + exr::attribute("type", "string", "deepscanline") +
-           '\0',
+  says(exr::magic(0x800) + exr::header(rgb, one, one) + exr::attribute("type", "string", "deepscanline") + '\0',
        "deep");
   says(exr::magic() + exr::header("", one, one) + '\0', "no channels");
   says(exr::magic() + exr::header(rgb, one, one, 17) + '\0', "compression");

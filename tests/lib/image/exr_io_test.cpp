@@ -28,8 +28,7 @@ Image random_image(int width, int height) {
     for (float& value : image.add(name).values) do
         value = std::bit_cast<float>(std::uint32_t(random.bits(0, Purpose::test, extra++)));
       while (!std::isfinite(value));
-  for (std::uint32_t& id : image.add_ids("id.object").ids)
-    id = std::uint32_t(random.bits(0, Purpose::test, extra++));
+  for (std::uint32_t& id : image.add_ids("id.object").ids) id = std::uint32_t(random.bits(0, Purpose::test, extra++));
   image.find("Z")->values[0] = INFINITY;
   image.find("R")->values[0] = -0.0f;
   image.find("G")->values[0] = std::numeric_limits<float>::denorm_min();
@@ -52,8 +51,7 @@ TEST(Exr, FloatsAndIdsComeBackToTheBit) {
       EXPECT_EQ(back.channels[c].ids, image.channels[c].ids);
       ASSERT_EQ(back.channels[c].values.size(), image.channels[c].values.size());
       if (!image.channels[c].values.empty()) {
-        EXPECT_EQ(std::memcmp(back.channels[c].values.data(), image.channels[c].values.data(),
-                              4 * image.pixel_count()),
+        EXPECT_EQ(std::memcmp(back.channels[c].values.data(), image.channels[c].values.data(), 4 * image.pixel_count()),
                   0)
             << image.channels[c].name;
       }
@@ -70,7 +68,8 @@ TEST(Exr, ColourAloneIsRead) {
   ASSERT_EQ(back.channels.size(), 3u);
   for (const char* name : {"B", "G", "R"}) {
     ASSERT_NE(back.find(name), nullptr);
-    EXPECT_EQ(std::memcmp(back.find(name)->values.data(), image.find(name)->values.data(), 4 * image.pixel_count()), 0) << name;
+    EXPECT_EQ(std::memcmp(back.find(name)->values.data(), image.find(name)->values.data(), 4 * image.pixel_count()), 0)
+        << name;
   }
   // Without one of them there is no colour: all is read.
   std::erase_if(image.channels, [](const Channel& channel) { return channel.name == "G"; });
@@ -140,8 +139,7 @@ TEST(Exr, HalvesRoundToNearestEvenAndOnlyColourIsHalved) {
   const Image back = load_exr(folder / "a.exr");
   for (const char* name : {"R", "indirect.G", "A"})
     EXPECT_EQ(back.find(name)->values, (std::vector<float>{1, 1 + 0x1p-9f, 65504, -65504})) << name;
-  for (const char* name : {"Z", "N.X", "P.Z", "forward.u", "mask"})
-    EXPECT_EQ(back.find(name)->values, values) << name;
+  for (const char* name : {"Z", "N.X", "P.Z", "forward.u", "mask"}) EXPECT_EQ(back.find(name)->values, values) << name;
 }
 
 TEST(Exr, ValuesAboveHalfAreRefusedWithTheirPlace) {
@@ -166,16 +164,14 @@ TEST(Exr, NotANumberIsNeitherWrittenNorRead) {
     Image bad = image;
     bad.find(name)->values[5] = NAN;
     const std::string message = message_of<InputError>([&] { save_exr(folder / "a.exr", bad); });
-    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (2, 1): not a number"),
-              std::string::npos)
+    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (2, 1): not a number"), std::string::npos)
         << message;
   }
   for (const char* name : {"R", "N.Z"}) {
     Image bad = image;
     bad.find(name)->values[3] = -INFINITY;
     const std::string message = message_of<InputError>([&] { save_exr(folder / "a.exr", bad); });
-    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (0, 1): infinite"), std::string::npos)
-        << message;
+    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (0, 1): infinite"), std::string::npos) << message;
   }
   image.find("Z")->values[0] = -INFINITY;
   EXPECT_THROW(save_exr(folder / "a.exr", image), InputError);
@@ -184,8 +180,7 @@ TEST(Exr, NotANumberIsNeitherWrittenNorRead) {
   // A stranger's file: one pixel of R whose four bytes say NaN.
   const std::string head =
       exr::magic() + exr::header(exr::channel("R", 2), exr::box(0, 0, 0, 0), exr::box(0, 0, 0, 0)) + '\0';
-  put_bytes(folder / "nan.exr",
-            head + raw(std::uint64_t(head.size() + 8)) + raw(0) + raw(4) + raw(std::nanf("")));
+  put_bytes(folder / "nan.exr", head + raw(std::uint64_t(head.size() + 8)) + raw(0) + raw(4) + raw(std::nanf("")));
   const std::string message = message_of<InputError>([&] { load_exr(folder / "nan.exr"); });
   EXPECT_NE(message.find("nan.exr: channel R: pixel (0, 0): not a number"), std::string::npos) << message;
   EXPECT_TRUE(std::isnan(load_exr(folder / "nan.exr", {1, true}).find("R")->values[0]));
@@ -194,10 +189,11 @@ TEST(Exr, NotANumberIsNeitherWrittenNorRead) {
 TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   const Folder folder;
   // Display 3 x 2 at (10, 20); data 3 x 2 at (9, 21): its left column and lower line fall outside.
-  const std::string head = exr::magic() +
-                           exr::header(exr::channel("Y", 2) + exr::channel("Z", 2) + exr::channel("id", 0) + exr::channel("id.object", 0),
-                                       exr::box(9, 21, 11, 22), exr::box(10, 20, 12, 21)) +
-                           '\0';
+  const std::string head =
+      exr::magic() +
+      exr::header(exr::channel("Y", 2) + exr::channel("Z", 2) + exr::channel("id", 0) + exr::channel("id.object", 0),
+                  exr::box(9, 21, 11, 22), exr::box(10, 20, 12, 21)) +
+      '\0';
   std::string table, chunks;
   for (int line = 0; line < 2; ++line) {
     table += raw(std::uint64_t(head.size() + 16 + chunks.size()));
@@ -219,26 +215,30 @@ TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   EXPECT_EQ(image.find("id.object")->ids, (std::vector<std::uint32_t>{none, none, none, 2, 3, none}));
 }
 
-/// Lines without compression are copied, past channels of halves too. A file whose line says that it is another one, or whose
-/// halves are wanted, is OpenEXR's to read.
+/// Lines without compression are copied, past channels of halves too. A file whose line says that it is another one, or
+/// whose halves are wanted, is OpenEXR's to read.
 TEST(Exr, LinesWithoutCompressionAreFoundByTheTable) {
   const Folder folder;
-  const std::string head = exr::magic() + exr::header(exr::channel("H", 1) + exr::channel("Y", 2) + exr::channel("id", 0), exr::box(0, 0, 1, 1), exr::box(0, 0, 1, 1)) + '\0';
-  const auto line = [](int y) {   // two pixels: 0x3c00 is 1, 0x4000 is 2
-    return raw(y) + raw(std::int32_t(20)) + raw(std::uint16_t(0x3c00)) + raw(std::uint16_t(0x4000)) + raw(float(10 * y + 1)) + raw(float(10 * y + 2)) + raw(7u) + raw(std::uint32_t(8 + y));
+  const std::string head = exr::magic() +
+                           exr::header(exr::channel("H", 1) + exr::channel("Y", 2) + exr::channel("id", 0),
+                                       exr::box(0, 0, 1, 1), exr::box(0, 0, 1, 1)) +
+                           '\0';
+  const auto line = [](int y) {  // two pixels: 0x3c00 is 1, 0x4000 is 2
+    return raw(y) + raw(std::int32_t(20)) + raw(std::uint16_t(0x3c00)) + raw(std::uint16_t(0x4000)) +
+           raw(float(10 * y + 1)) + raw(float(10 * y + 2)) + raw(7u) + raw(std::uint32_t(8 + y));
   };
   const std::uint64_t first = head.size() + 16, second = first + line(0).size();
   put_bytes(folder / "a.exr", head + raw(first) + raw(second) + line(0) + line(1));
   for (const bool halves : {false, true}) {
-    const Image image = load_exr(folder / "a.exr", {.wanted = [&](const std::string& name) { return halves || name != "H"; }});
+    const Image image =
+        load_exr(folder / "a.exr", {.wanted = [&](const std::string& name) { return halves || name != "H"; }});
     EXPECT_EQ(image.channels.size(), halves ? 3u : 2u);
     EXPECT_EQ(image.find("Y")->values, (std::vector<float>{1, 2, 11, 12}));
     EXPECT_EQ(image.find("id")->ids, (std::vector<std::uint32_t>{7, 8, 7, 9}));
-    if (halves) {
-      EXPECT_EQ(image.find("H")->values, (std::vector<float>{1, 2, 1, 2}));
-    }
+    if (halves) { EXPECT_EQ(image.find("H")->values, (std::vector<float>{1, 2, 1, 2})); }
   }
-  put_bytes(folder / "b.exr", head + raw(second) + raw(first) + line(0) + line(1));   // each entry leads to the other line
+  put_bytes(folder / "b.exr",
+            head + raw(second) + raw(first) + line(0) + line(1));  // each entry leads to the other line
   EXPECT_THROW(load_exr(folder / "b.exr", {.wanted = [](const std::string& name) { return name == "Y"; }}), InputError);
 }
 
@@ -269,8 +269,8 @@ TEST(Exr, OfAMultiPartFileTheFirstPartIsRead) {
             exr::attribute("type", "string", "scanlineimage") + '\0';
   head += '\0';
   const auto chunk = [](int part, float value) { return raw(part) + raw(0) + raw(4) + raw(value); };
-  put_bytes(folder / "a.exr", head + raw(std::uint64_t(head.size() + 16)) +
-                                  raw(std::uint64_t(head.size() + 32)) + chunk(0, 5) + chunk(1, 6));
+  put_bytes(folder / "a.exr", head + raw(std::uint64_t(head.size() + 16)) + raw(std::uint64_t(head.size() + 32)) +
+                                  chunk(0, 5) + chunk(1, 6));
   EXPECT_EQ(load_exr(folder / "a.exr").find("R")->values, std::vector<float>{5});
 }
 

@@ -52,7 +52,8 @@ TEST(FlowPage, TheWorkedExampleIsWhatWeWrite) {
 
 TEST(MaskPage, TheWorkedExampleIsWhatWeWrite) {
   Image image = image_of(4, 1);
-  image.add_ids("why").ids = {0, formats::why_specular, formats::why_occlusion | formats::why_edge, formats::why_border};
+  image.add_ids("why").ids = {0, formats::why_specular, formats::why_occlusion | formats::why_edge,
+                              formats::why_border};
   EXPECT_EQ(written(image), bytes_of(kFormats + "mask/accept/worked-example.exr"));
 }
 
@@ -93,8 +94,8 @@ TEST(MaskPage, EveryPixelIsCountedOnceUnderItsFirstCause) {
   std::uint64_t sum = 0;
   for (const WhyCount& count : counts) sum += count.first;
   EXPECT_EQ(sum, 4u);
-  EXPECT_EQ(counts[0].first, 1u);                   // specular
-  EXPECT_EQ(counts[6].pixels, 2u);                  // edge
+  EXPECT_EQ(counts[0].first, 1u);   // specular
+  EXPECT_EQ(counts[6].pixels, 2u);  // edge
   EXPECT_EQ(counts[6].first, 1u);
   EXPECT_EQ(counts.back().name, "unknown");
   EXPECT_EQ(counts.back().pixels, 2u);

@@ -20,26 +20,34 @@ float value_of(const Image& image, const char* name) {
 }
 
 TEST(ForeignNames, AreThoseOfThePage) {
-  for (const auto& [theirs, ours] : {std::pair{"ViewLayer.Combined.R", "R"}, {"Combined.A", "A"}, {"View Layer.Depth.Z", "Z"}, {"depth.Z", "Z"},
-                                     {"ViewLayer.Z.Z", "Z"}, {"a.b.Normal.X", "N.X"}, {"ViewLayer.Vector.Y", "backward.v"},
-                                     {"ViewLayer.Denoising Albedo.G", "albedo.G"}, {"ViewLayer.Denoising Normal.X", "N.X"},
+  for (const auto& [theirs, ours] : {std::pair{"ViewLayer.Combined.R", "R"},
+                                     {"Combined.A", "A"},
+                                     {"View Layer.Depth.Z", "Z"},
+                                     {"depth.Z", "Z"},
+                                     {"ViewLayer.Z.Z", "Z"},
+                                     {"a.b.Normal.X", "N.X"},
+                                     {"ViewLayer.Vector.Y", "backward.v"},
+                                     {"ViewLayer.Denoising Albedo.G", "albedo.G"},
+                                     {"ViewLayer.Denoising Normal.X", "N.X"},
                                      {"ViewLayer.Denoising Depth.Z", "Z"}})
     EXPECT_EQ(our_name(theirs), ours);
   // Ours, and passes that only sound alike.
-  for (const char* name : {"R", "Z", "N.X", "direct.R", "forward.u", "ViewLayer.Noisy Image.R", "ViewLayer.DiffDir.R", "Depth.V", ".Z", "", "Combined"})
+  for (const char* name : {"R", "Z", "N.X", "direct.R", "forward.u", "ViewLayer.Noisy Image.R", "ViewLayer.DiffDir.R",
+                           "Depth.V", ".Z", "", "Combined"})
     EXPECT_EQ(our_name(name), name);
 }
 
 /// The motion that formats/frames/frames.md 7 measured: (+2, +1) from frame 1 to 2, (+4, +3) from 2 to 3.
 TEST(ForeignNames, DepthAndMotionMeanWhatOursMean) {
-  Image image = with({{"V.Depth.Z", 1e10f}, {"V.Vector.X", -2}, {"V.Vector.Y", -1}, {"V.Vector.Z", -4}, {"V.Vector.W", -3}});
+  Image image =
+      with({{"V.Depth.Z", 1e10f}, {"V.Vector.X", -2}, {"V.Vector.Y", -1}, {"V.Vector.Z", -4}, {"V.Vector.W", -3}});
   name_as_ours(image);
   EXPECT_EQ(value_of(image, "Z"), INFINITY);
   EXPECT_EQ(value_of(image, "backward.u"), -2);
   EXPECT_EQ(value_of(image, "backward.v"), -1);
   EXPECT_EQ(value_of(image, "forward.u"), 4);
   EXPECT_EQ(value_of(image, "forward.v"), 3);
-  EXPECT_EQ(image.channels.front().name, "Z");   // sorted by name, capitals first
+  EXPECT_EQ(image.channels.front().name, "Z");  // sorted by name, capitals first
 }
 
 TEST(ForeignNames, PlainPassesComeBeforeThoseOfDenoisers) {

@@ -8,7 +8,7 @@ namespace {
 TEST(FrameIdentity, ComesBackByConcern) {
   Image image;
   set_identity(image, {"g", "m", "a", "", "v", 7, 7});
-  EXPECT_EQ(image.text.at("tempolux:identity.static_geometry"), "g");   // frames.md 3
+  EXPECT_EQ(image.text.at("tempolux:identity.static_geometry"), "g");  // frames.md 3
   EXPECT_EQ(image.text.at("tempolux:identity.lights"), "");
   EXPECT_EQ(identity_in(image), (formats::Identity{"g", "m", "a", "", "v", 0, 0}));
 }

@@ -41,7 +41,8 @@ TEST(RadianceHdr, PlanesRunsAndPixelsSayTheSame) {
   const std::string planes = header("-Y 1 +X 8") + std::string("\x02\x02\x00\x08", 4) + "\x88\x80" +
                              "\x08\x01\x02\x03\x04\x05\x06\x07\x08" + "\x86\x10\x02\x20\x30" + "\x88\x88";
   std::string flat = header("-Y 1 +X 8");
-  for (int x = 0; x < 8; ++x) flat += std::string("\x80") + char(x + 1) + (x < 6 ? "\x10" : x == 6 ? "\x20" : "\x30") + "\x88";
+  for (int x = 0; x < 8; ++x)
+    flat += std::string("\x80") + char(x + 1) + (x < 6 ? "\x10" : x == 6 ? "\x20" : "\x30") + "\x88";
   EXPECT_EQ(load(planes).channels, load(flat).channels);
   EXPECT_EQ(load(planes).find("G")->values[7], 8);
   // Old runs: a pixel, then (1, 1, 1, 2) and (1, 1, 1, 1): 2 + 256 more of it.
@@ -67,9 +68,9 @@ TEST(RadianceHdr, DamageIsOneLineNeverACrash) {
   EXPECT_NE(message(header("+Y 1 +X 1") + "abcd").find("save it upright"), std::string::npos);
   EXPECT_NE(message("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd").find("xyze"), std::string::npos);
   EXPECT_NE(message(header("-Y 1 +X 1", "EXPOSURE=0\n") + "abcd").find("not an exposure"), std::string::npos);
-  message(header("-Y 1 +X 8") + std::string("\x02\x02\x00\x08\x89\x01", 6));   // a run of 9 in a line of 8
-  message(header("-Y 1 +X 8") + std::string("\x02\x02\x00\x09\x88\x01", 6));   // a line of 9
-  message(header("-Y 1 +X 8") + "\x01\x01\x01\x01");                           // a run of nothing before it
+  message(header("-Y 1 +X 8") + std::string("\x02\x02\x00\x08\x89\x01", 6));  // a run of 9 in a line of 8
+  message(header("-Y 1 +X 8") + std::string("\x02\x02\x00\x09\x88\x01", 6));  // a line of 9
+  message(header("-Y 1 +X 8") + "\x01\x01\x01\x01");                          // a run of nothing before it
 }
 
 }  // namespace

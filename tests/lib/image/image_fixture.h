@@ -48,9 +48,7 @@ template <class Error, class Run>
 std::string message_of(Run run) {
   try {
     run();
-  } catch (const Error& error) {
-    return error.what();
-  }
+  } catch (const Error& error) { return error.what(); }
   return "";
 }
 
@@ -75,9 +73,8 @@ inline std::string channel(const std::string& name, int type, int sampling = 1) 
 inline std::string header(const std::string& channels, const std::string& data, const std::string& display,
                           char compression = 0) {
   return attribute("channels", "chlist", channels + '\0') +
-         attribute("compression", "compression", std::string(1, compression)) +
-         attribute("dataWindow", "box2i", data) + attribute("displayWindow", "box2i", display) +
-         attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
+         attribute("compression", "compression", std::string(1, compression)) + attribute("dataWindow", "box2i", data) +
+         attribute("displayWindow", "box2i", display) + attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
          attribute("pixelAspectRatio", "float", raw(1.0f)) +
          attribute("screenWindowCenter", "v2f", raw(0.0f) + raw(0.0f)) +
          attribute("screenWindowWidth", "float", raw(1.0f));

@@ -45,8 +45,9 @@ TEST(ImagesByModule, ColourIsThatOfTheChannels) {
   image.add("R").values = {0.5f, -1};
   image.add("Z").values = {9, 9};
   save_exr(folder / "two.exr", image);
-  EXPECT_TRUE(message_of<InputError>([&] { load_by_module(folder / "two.exr", 100); })
-                  .starts_with(folder / "two.exr: no colour layer"));  // no G
+  EXPECT_TRUE(message_of<InputError>([&] {
+                load_by_module(folder / "two.exr", 100);
+              }).starts_with(folder / "two.exr: no colour layer"));  // no G
   image.add("G").values = {1e10f, 3};
   save_exr(folder / "three.exr", image);
   const LinearPixels read = load_by_module(folder / "three.exr", 100);

@@ -24,7 +24,8 @@ Image picture(int width, int height, const Depth& z) {
   return image;
 }
 
-/// A floor that runs to the horizon, 1/Z linear in lines: depth doubles from line to line at its far end, and it is one surface.
+/// A floor that runs to the horizon, 1/Z linear in lines: depth doubles from line to line at its far end, and it is one
+/// surface.
 TEST(PixelSurfaces, APlaneIsOneSurfaceHoweverGrazing) {
   const PixelSurfaces surfaces(picture(16, 64, [](int, int y) { return 10.0f / float(y + 1); }));
   for (const std::uint8_t edge : surfaces.edges()) EXPECT_EQ(edge, 0);
@@ -40,7 +41,7 @@ TEST(PixelSurfaces, AStepOfDepthIsAnEdgeWithinOneObject) {
 TEST(PixelSurfaces, ObjectsAndNormalsSeparate) {
   Image image = picture(8, 8, [](int, int) { return 1.0f; });
   image.find("id.object")->ids[3 * 8 + 3] = 7;
-  image.find("N.Z")->values[5 * 8 + 5] = std::cos(0.5f);   // 29 degrees; 26 are allowed
+  image.find("N.Z")->values[5 * 8 + 5] = std::cos(0.5f);  // 29 degrees; 26 are allowed
   image.find("N.X")->values[5 * 8 + 5] = std::sin(0.5f);
   const PixelSurfaces surfaces(image);
   EXPECT_FALSE(surfaces.same(3 * 8 + 2, 1, 0));
@@ -48,7 +49,8 @@ TEST(PixelSurfaces, ObjectsAndNormalsSeparate) {
   EXPECT_TRUE(surfaces.same(0, 1, 1));
 }
 
-/// Nothing but colour: all is one surface. Depth 0, infinite, negative, not a number: no number comes out of it that is not one.
+/// Nothing but colour: all is one surface. Depth 0, infinite, negative, not a number: no number comes out of it that is
+/// not one.
 TEST(PixelSurfaces, WhatIsNotKnownAgrees) {
   const PixelSurfaces none(Image{4, 4, {}, {}, {}, {}});
   for (const std::uint8_t edge : none.edges()) EXPECT_EQ(edge, 0);

@@ -18,9 +18,7 @@ Image row(std::vector<std::pair<std::string, std::vector<float>>> channels) {
   for (auto& [name, values] : channels) image.add(name).values = values;
   return image;
 }
-Image grey_row(const std::vector<float>& values) {
-  return row({{"R", values}, {"G", values}, {"B", values}});
-}
+Image grey_row(const std::vector<float>& values) { return row({{"R", values}, {"G", values}, {"B", values}}); }
 
 std::vector<int> pixel(const Picture& picture, int x, int y = 0) {
   const std::uint8_t* p = picture.rgb.data() + 3 * (y * picture.width + x);
@@ -60,8 +58,8 @@ TEST(Preview, AutoExposureMapsThe98thPercentileTo09) {
 
 TEST(Preview, SignedLayersAreGreyRedAndBlue) {
   // The largest component decides: red up and green down by less is still "above".
-  const Picture picture = make_picture(
-      row({{"d.R", {0, 1, 0, 0.5f}}, {"d.G", {0, 0, -1, -0.25f}}, {"d.B", {0, 0, 0, 0}}}), {"d", 0.0});
+  const Picture picture =
+      make_picture(row({{"d.R", {0, 1, 0, 0.5f}}, {"d.G", {0, 0, -1, -0.25f}}, {"d.B", {0, 0, 0, 0}}}), {"d", 0.0});
   EXPECT_EQ(pixel(picture, 0), (std::vector<int>{128, 128, 128}));
   EXPECT_EQ(pixel(picture, 1), (std::vector<int>{255, 51, 0}));
   EXPECT_EQ(pixel(picture, 2), (std::vector<int>{0, 64, 255}));
@@ -128,11 +126,12 @@ TEST(ContactSheet, CellsGapsAndColumns) {
 }
 
 TEST(ContactSheet, AMarkIsABorder) {
-  Picture picture = plain(120, 40, 200);   // 120 / 40 = 3 pixels
+  Picture picture = plain(120, 40, 200);  // 120 / 40 = 3 pixels
   mark(picture);
   for (const auto& [x, y] : {std::pair{0, 0}, {2, 20}, {60, 2}, {119, 39}, {117, 20}, {60, 37}})
     EXPECT_EQ(pixel(picture, x, y), (std::vector<int>{255, 176, 0})) << x << " " << y;
-  for (const auto& [x, y] : {std::pair{3, 3}, {60, 20}, {116, 36}}) EXPECT_EQ(pixel(picture, x, y), (std::vector<int>{200, 200, 200})) << x << " " << y;
+  for (const auto& [x, y] : {std::pair{3, 3}, {60, 20}, {116, 36}})
+    EXPECT_EQ(pixel(picture, x, y), (std::vector<int>{200, 200, 200})) << x << " " << y;
 }
 
 TEST(ContactSheet, ShrinkingAveragesLight) {

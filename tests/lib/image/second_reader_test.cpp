@@ -60,7 +60,8 @@ TEST(FramesPage, TheSecondReaderFindsTheSameSamples) {
   const PathRandom random(7, 8);
   for (const char* name : {"R", "G", "B", "indirect.R", "Z"}) {
     auto& values = image.add(name).values;
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::floor(16 * random.get1(std::uint32_t(i / 9), Purpose::test)) / 16;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = std::floor(16 * random.get1(std::uint32_t(i / 9), Purpose::test)) / 16;
   }
   auto& ids = image.add_ids("id.object").ids;
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = std::uint32_t(i / 50);
@@ -74,10 +75,8 @@ TEST(FramesPage, TheSecondReaderFindsTheSameSamples) {
       for (const char* name : {"B", "G", "R", "Z", "id.object", "indirect.R"}) {  // order of the names
         const Channel& channel = *image.find(name);
         char line[64];
-        if (channel.ids.empty())
-          std::snprintf(line, sizeof line, "%s %.9g\n", name, double(channel.values[at]));
-        else
-          std::snprintf(line, sizeof line, "%s %u\n", name, channel.ids[at]);
+        if (channel.ids.empty()) std::snprintf(line, sizeof line, "%s %.9g\n", name, double(channel.values[at]));
+        else std::snprintf(line, sizeof line, "%s %u\n", name, channel.ids[at]);
         expected += line;
       }
       EXPECT_EQ(output_of(kReader + (folder / "a.exr") + " " + std::to_string(x) + " " + std::to_string(y)), expected);

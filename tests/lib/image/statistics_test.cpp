@@ -52,8 +52,7 @@ TEST(ChannelDifferences, NameTheFirstPixelOfTheLargest) {
 }
 
 TEST(ChannelDifferences, NanEqualsNanAndNothingElse) {
-  const auto all =
-      channel_differences(two_by_two({kNan, kNan, kInfinity, 0}), two_by_two({kNan, 1, 5, -0.0f}));
+  const auto all = channel_differences(two_by_two({kNan, kNan, kInfinity, 0}), two_by_two({kNan, 1, 5, -0.0f}));
   EXPECT_EQ(all[0].differing, 2u);
   EXPECT_EQ(all[0].largest, 0) << "only finite differences have a size";
 }

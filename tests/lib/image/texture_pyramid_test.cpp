@@ -43,7 +43,7 @@ TEST(TexturePyramid, WrapModes) {
   for (const float beyond : {1.375f, -0.625f, 7.375f}) EXPECT_NEAR(at(texture, beyond, kRepeat), 0.2f, 1e-6);
   EXPECT_FLOAT_EQ(at(texture, 1.375f, kClamp), 1);
   EXPECT_FLOAT_EQ(at(texture, -0.625f, kClamp), 0);
-  EXPECT_FLOAT_EQ(at(texture, 1.375f, kMirrored), 0.4f);    // 2 - 1.375 = 0.625
+  EXPECT_FLOAT_EQ(at(texture, 1.375f, kMirrored), 0.4f);  // 2 - 1.375 = 0.625
   EXPECT_FLOAT_EQ(at(texture, -0.375f, kMirrored), 0.2f);
   EXPECT_FLOAT_EQ(at(texture, 2.375f, kMirrored), 0.2f);
   for (const float bad : {INFINITY, -INFINITY, NAN, 1e30f, -1e30f}) {
@@ -69,7 +69,7 @@ TEST(TexturePyramid, ColoursAreDecodedFromSrgbAndAlphaIsNot) {
   EXPECT_FLOAT_EQ(value[2], 1);
   EXPECT_FLOAT_EQ(value[3], 128.0f / 255);
   const TexturePyramid numbers{CodedPixels{1, 1, 2, 8, {188, 128}}, TextureTransfer::linear, 1024};
-  EXPECT_FLOAT_EQ(numbers.texel(0, 0, 0)[2], 188.0f / 255);   // grey on all three
+  EXPECT_FLOAT_EQ(numbers.texel(0, 0, 0)[2], 188.0f / 255);  // grey on all three
   EXPECT_FLOAT_EQ(numbers.texel(0, 0, 0)[3], 128.0f / 255);
 }
 
@@ -87,13 +87,14 @@ TEST(TexturePyramid, LevelsAreMeansOfLinearLight) {
   // Black and white in a checker: half the light, which is code 188 in sRGB (127 would be a mean of codes).
   const TexturePyramid texture{CodedPixels{2, 2, 1, 8, {0, 255, 255, 0}}, TextureTransfer::srgb, 1024};
   ASSERT_EQ(texture.level_count(), 2);
-  EXPECT_NEAR(texture.texel(1, 0, 0)[0], 0.5f, 0.003f);   // half a code of sRGB at 188
-  EXPECT_FLOAT_EQ(at(row(), 0.3f, kRepeat, false, 9), 102.0f / 255);   // the mean of the row, 0.4
-  EXPECT_NEAR(at(row(), 0.25f, kClamp, false, 1), 0.1f, 0.51f / 255);  // (0 + 0.2) / 2 and half a code
-  EXPECT_NEAR(at(row(), 0.25f, kClamp, false, 0.5f), 0.1f, 0.26f / 255);   // half way between levels
+  EXPECT_NEAR(texture.texel(1, 0, 0)[0], 0.5f, 0.003f);                   // half a code of sRGB at 188
+  EXPECT_FLOAT_EQ(at(row(), 0.3f, kRepeat, false, 9), 102.0f / 255);      // the mean of the row, 0.4
+  EXPECT_NEAR(at(row(), 0.25f, kClamp, false, 1), 0.1f, 0.51f / 255);     // (0 + 0.2) / 2 and half a code
+  EXPECT_NEAR(at(row(), 0.25f, kClamp, false, 0.5f), 0.1f, 0.26f / 255);  // half way between levels
 }
 
-/// White where it is shown (alpha 1 and 1/3), green where it is hidden: means of a cutout are white, a third of it is shown.
+/// White where it is shown (alpha 1 and 1/3), green where it is hidden: means of a cutout are white, a third of it is
+/// shown.
 TEST(TexturePyramid, WhatACutoutHidesHasNoShareInItsMeans) {
   const std::vector<std::uint8_t> codes{255, 255, 255, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255, 85};
   const TexturePyramid cutout{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb_cutout, 1024};
@@ -148,14 +149,15 @@ TEST(TexturePyramid, ATexelIsBlackOnlyIfAllItCoversIs) {
 TEST(TextureImages, NothingIsDecodedBeforeItIsLookedAt) {
   std::vector<EncodedImage> list{test::png_image(2, 2, 3, std::vector<std::uint8_t>(12, 128)),
                                  test::png_image(1, 1, 3, {1, 2, 3})};
-  list[1].bytes.resize(40);   // damaged, but no one looks
+  list[1].bytes.resize(40);  // damaged, but no one looks
   const TextureImages images(std::move(list));
   EXPECT_EQ(images.decoded_count(), 0u);
   const TexturePyramid& first = images.pyramid(0, TextureTransfer::srgb);
   EXPECT_EQ(&first, &images.pyramid(0, TextureTransfer::srgb));
   EXPECT_EQ(images.decoded_count(), 1u);
-  EXPECT_EQ(images.decoded_bytes(), 15u);   // 4 texels and 1, three channels
-  EXPECT_NE(message_of<InputError>([&] { images.pyramid(1, TextureTransfer::srgb); }).find("test.png"), std::string::npos);
+  EXPECT_EQ(images.decoded_bytes(), 15u);  // 4 texels and 1, three channels
+  EXPECT_NE(message_of<InputError>([&] { images.pyramid(1, TextureTransfer::srgb); }).find("test.png"),
+            std::string::npos);
 }
 
 TEST(TextureImages, LimitsOfBytesAndSide) {
@@ -168,7 +170,7 @@ TEST(TextureImages, LimitsOfBytesAndSide) {
   const TextureImages small = make({.reduce_to = 2});
   EXPECT_EQ(small.pyramid(0, TextureTransfer::linear).width(), 2);
   EXPECT_EQ(small.decoded_bytes(), 5u);
-  EXPECT_NE(error({.max_bytes = 80}).find("--reduce-textures"), std::string::npos);   // 64 + 16 + 4 + 1 bytes
+  EXPECT_NE(error({.max_bytes = 80}).find("--reduce-textures"), std::string::npos);  // 64 + 16 + 4 + 1 bytes
   EXPECT_NE(error({.max_pixels = 63}).find("limit of 63"), std::string::npos);
 }
 

@@ -27,14 +27,16 @@ Clearance look(const Inside& inside) {
   return seen;
 }
 
-/// Straight walls at any distance and angle: nothing beyond is inside. Of what is in front rounding of the spokes takes up to
-/// 1/255 of the reach and the flat ends between them 3 % to 5 % of the area at the reach: more than .93 is inside.
+/// Straight walls at any distance and angle: nothing beyond is inside. Of what is in front rounding of the spokes takes
+/// up to 1/255 of the reach and the flat ends between them 3 % to 5 % of the area at the reach: more than .93 is
+/// inside.
 TEST(Clearance, EndsAtStraightWalls) {
   const Frame frame(kNormal);
   const PathRandom random(1, 1);
   int in_front = 0, known = 0;
   for (std::uint32_t i = 0; i < 300; ++i) {
-    const float phi = 2 * kPi * random.get1(3 * i, Purpose::test), far = 0.1f + 0.8f * random.get1(3 * i + 1, Purpose::test);
+    const float phi = 2 * kPi * random.get1(3 * i, Purpose::test),
+                far = 0.1f + 0.8f * random.get1(3 * i + 1, Purpose::test);
     const auto is_in_front = [&](float x, float y) { return x * std::cos(phi) + y * std::sin(phi) < far; };
     const Clearance seen = look(is_in_front);
     for (std::uint32_t j = 0; j < 300; ++j) {

@@ -50,21 +50,23 @@ TEST(PointLookup, ReadsAPointNotMuchFartherThanTheNearest) {
   }
 }
 
-/// Points known by a few shadow rays: of those in the light half say 0.1, half 1.9, drawn for each; all beside the shadow of a
-/// grid are dark, and so are those of a sheet 1 mm below, which faces the same way. Hits at marked points sample their light, 0 or
-/// 1: in the mean hits in the light must get 1. Of 10000 points at most all are read, 0.9 / sqrt(10000) = 0.9 % is their
-/// standard deviation. Were points marked by what they say themselves (brighter than the mean, with a dark one beside), those of
-/// 1.9 would be sampled and those of 0.1 read: 0.55.
+/// Points known by a few shadow rays: of those in the light half say 0.1, half 1.9, drawn for each; all beside the
+/// shadow of a grid are dark, and so are those of a sheet 1 mm below, which faces the same way. Hits at marked points
+/// sample their light, 0 or 1: in the mean hits in the light must get 1. Of 10000 points at most all are read, 0.9 /
+/// sqrt(10000) = 0.9 % is their standard deviation. Were points marked by what they say themselves (brighter than the
+/// mean, with a dark one beside), those of 1.9 would be sampled and those of 0.1 read: 0.55.
 TEST(PointLookup, APointsOwnLightHasNoSayInWhetherItIsRead) {
   constexpr float kSpacing = 0.01f;
   const PathRandom random(7, 7);
   for (const bool sheets : {false, true}) {
     std::vector<IrradiancePoint> points = square(10000);
     const auto is_lit = [&](const IrradiancePoint& p) {
-      return p.position.y == 0 && (sheets || (int(p.position.x / (5 * kSpacing)) + int(p.position.z / (5 * kSpacing))) % 2 == 0);
+      return p.position.y == 0 &&
+             (sheets || (int(p.position.x / (5 * kSpacing)) + int(p.position.z / (5 * kSpacing))) % 2 == 0);
     };
     if (sheets)
-      for (std::size_t i = 0; i < 10000; ++i) points.push_back(point_at(points[i].position - Vec3{0, 0.001f, 0}, {0, 1, 0}, 0, 0));
+      for (std::size_t i = 0; i < 10000; ++i)
+        points.push_back(point_at(points[i].position - Vec3{0, 0.001f, 0}, {0, 1, 0}, 0, 0));
     double mean = 0, lit = 0, marked = 0;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
       points[i].indirect = Rgb(0.0f);
@@ -75,13 +77,13 @@ TEST(PointLookup, APointsOwnLightHasNoSayInWhetherItIsRead) {
       if (!is_lit(p)) continue;
       const PointLookup::Light* read = lookup.find(p.position, {0, 1, 0});
       ASSERT_NE(read, nullptr);
-      if (!is_lit(points[read->point])) continue;   // another's cell
+      if (!is_lit(points[read->point])) continue;  // another's cell
       ++lit;
       marked += !lookup.is_even(*read);
       mean += !lookup.is_even(*read) ? 1.0 : double(read->all.g);
     }
     EXPECT_NEAR(mean / lit, 1, 0.03) << sheets;
-    EXPECT_GT(marked, 0.3 * lit) << sheets;   // there are such edges
+    EXPECT_GT(marked, 0.3 * lit) << sheets;  // there are such edges
   }
 }
 
@@ -97,9 +99,7 @@ TEST(PointLookup, SidesAreNeverMixedUp) {
     EXPECT_GE(lookup.find({u.x, 0, u.y}, {0, 1, 0})->all.g, 0);
     EXPECT_EQ(lookup.find({u.x, -0.001f, u.y}, {0, -1, 0})->all.g, -1);
   }
-  EXPECT_EQ(PointLookup(std::span(points).first(400), 0.05f)
-                .find({0.5f, 0, 0.5f}, {0, -1, 0}),
-            nullptr);
+  EXPECT_EQ(PointLookup(std::span(points).first(400), 0.05f).find({0.5f, 0, 0.5f}, {0, -1, 0}), nullptr);
 }
 
 /// Normals all around a sphere: a direction's bin and its middle are less than 60 degrees apart, so that a
@@ -115,13 +115,13 @@ TEST(PointLookup, EveryDirectionFindsAPointThatFacesIt) {
   }
 }
 
-/// A wall at x = 0.5 between a bright and a dark room on one floor, and a patch of floor under a box: hits near it read points
-/// of their own side or none, and most read one.
+/// A wall at x = 0.5 between a bright and a dark room on one floor, and a patch of floor under a box: hits near it read
+/// points of their own side or none, and most read one.
 TEST(PointLookup, NoHitReadsThroughAWall) {
   std::vector<IrradiancePoint> points = square(2000);
   const auto room = [](Vec3 p) { return p.x < 0.5f ? 0.0f : p.x > 0.8f && p.z > 0.8f ? 2.0f : 1.0f; };
   for (IrradiancePoint& p : points) p.indirect = Rgb(room(p.position));
-  const auto look = [room](Vec3 from, Vec3 normal, float reach) {   // in steps of a thousandth of the reach
+  const auto look = [room](Vec3 from, Vec3 normal, float reach) {  // in steps of a thousandth of the reach
     const Frame frame(normal);
     Clearance seen;
     seen.reach = reach;
@@ -151,12 +151,14 @@ TEST(PointLookup, NoHitReadsThroughAWall) {
   EXPECT_LT(none, 400);        // of 20000: a strip of a tenth of the spacing on either side of the wall at most
 }
 
-/// Two floors 3 mm apart that face alike, the lower one dark, points 1 cm apart: with nothing else known of what is between,
-/// only what lies within the angle of the spokes is read, so a hit on one never reads the other nearer than 3 mm / 0.05.
+/// Two floors 3 mm apart that face alike, the lower one dark, points 1 cm apart: with nothing else known of what is
+/// between, only what lies within the angle of the spokes is read, so a hit on one never reads the other nearer than 3
+/// mm / 0.05.
 TEST(PointLookup, SheetsThatFaceAlikeAreNotMixedUp) {
   std::vector<IrradiancePoint> points = square(10000);
   for (IrradiancePoint& p : points) p.indirect = Rgb(1.0f);
-  for (std::uint32_t i = 0; i < 10000; ++i) points.push_back(point_at(points[i].position - Vec3{0, 0.003f, 0}, {0, 1, 0}, 0, 0));
+  for (std::uint32_t i = 0; i < 10000; ++i)
+    points.push_back(point_at(points[i].position - Vec3{0, 0.003f, 0}, {0, 1, 0}, 0, 0));
   const PointLookup lookup(points, 0.01f, [](Vec3, Vec3, float reach) { return Clearance{reach}; });
   const PathRandom random(3, 4);
   int found = 0;
@@ -181,8 +183,7 @@ TEST(PointLookup, AnswersDoNotDependOnThreadsOrOrder) {
   constexpr std::size_t kHits = 50000;
   std::vector<std::uint32_t> expected(kHits), answers(kHits);
   const PointLookup forwards(points, 0.014f), backwards(points, 0.014f);
-  for (std::size_t i = 0; i < kHits; ++i)
-    expected[i] = forwards.find(hit(i), {0, 1, 0})->point;
+  for (std::size_t i = 0; i < kHits; ++i) expected[i] = forwards.find(hit(i), {0, 1, 0})->point;
   parallel_chunks(kHits, 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t j = kHits - 1 - i;
@@ -204,8 +205,8 @@ TEST(PointLookup, OddInputsAreAnswered) {
   EXPECT_EQ(PointLookup({}, 1).find({0, 0, 0}, {0, 1, 0}), nullptr);
 }
 
-/// Estimates of 50 photons err by 14 %. With E_bright = 1, in e = (r_bright / r_dark)^2 / 50 of one photon at the dark place, beside it 1 - 32 E_dark:
-/// three standard errors are 3 sqrt(0.02 + 1024 (E_dark e + e^2)).
+/// Estimates of 50 photons err by 14 %. With E_bright = 1, in e = (r_bright / r_dark)^2 / 50 of one photon at the dark
+/// place, beside it 1 - 32 E_dark: three standard errors are 3 sqrt(0.02 + 1024 (E_dark e + e^2)).
 TEST(Points, ContrastCountsWhereItIsMoreThanNoiseOfPhotons) {
   const auto apart = [](float bright_radius, float dark, float dark_radius, float widest = 10) {
     std::vector<IrradiancePoint> points(3);
@@ -218,16 +219,16 @@ TEST(Points, ContrastCountsWhereItIsMoreThanNoiseOfPhotons) {
     points[1].indirect = Rgb(dark);
     return PointLookup(points, 1).apart(points[0], points[1]);
   };
-  EXPECT_TRUE(apart(1, 0, 2));             // e = 0.005: 0.64 < 1
-  EXPECT_FALSE(apart(1, 0, 1));            // e = 0.02: 1.97
-  EXPECT_FALSE(apart(1, 0.0125f, 2));      // 0.99 > 0.6
-  EXPECT_TRUE(apart(1, 0.0125f, 8));       // e = 0.0003: 0.47 < 0.6
-  EXPECT_FALSE(apart(1, 0.03125f, 9));     // 32 times, not more
-  EXPECT_FALSE(apart(10, 0, 10));          // of nobody knows how few photons
+  EXPECT_TRUE(apart(1, 0, 2));          // e = 0.005: 0.64 < 1
+  EXPECT_FALSE(apart(1, 0, 1));         // e = 0.02: 1.97
+  EXPECT_FALSE(apart(1, 0.0125f, 2));   // 0.99 > 0.6
+  EXPECT_TRUE(apart(1, 0.0125f, 8));    // e = 0.0003: 0.47 < 0.6
+  EXPECT_FALSE(apart(1, 0.03125f, 9));  // 32 times, not more
+  EXPECT_FALSE(apart(10, 0, 10));       // of nobody knows how few photons
 }
 
-/// Bright points, and dark ones close behind them that face the same way: of another object they are the outer leaf of a double wall, of the same
-/// one they are where its light ends.
+/// Bright points, and dark ones close behind them that face the same way: of another object they are the outer leaf of
+/// a double wall, of the same one they are where its light ends.
 TEST(Points, TheOtherLeafOfADoubleWallIsNoContrast) {
   for (const bool other : {true, false}) {
     std::vector<IrradiancePoint> points;
@@ -246,8 +247,9 @@ TEST(Points, TheOtherLeafOfADoubleWallIsNoContrast) {
   }
 }
 
-/// A wide surface has 7 points beside each. One alone, or with one beside it, may be the only one of a wall that is half in the shadow: its direct light is
-/// sampled by who meets the wall. Seen to fail without: a hut's wall of one point in shadow, the ground before it 80 % dark.
+/// A wide surface has 7 points beside each. One alone, or with one beside it, may be the only one of a wall that is
+/// half in the shadow: its direct light is sampled by who meets the wall. Seen to fail without: a hut's wall of one
+/// point in shadow, the ground before it 80 % dark.
 TEST(Points, APointAloneShowsNothing) {
   for (const int count : {1, 2, 3, 4}) {
     std::vector<IrradiancePoint> points;

@@ -79,7 +79,8 @@ void expect_brute_force(Vec3 centre, float far) {
     ASSERT_EQ(again.weight, found.weight) << i;
     ASSERT_EQ(again.irradiance, found.irradiance) << i;
     // The same sum in the same order, stopped early.
-    for (const float weight : {0.3f, 0.9f}) ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
+    for (const float weight : {0.3f, 0.9f})
+      ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
     const float tolerance = lost / std::max(1e-4f, r.radius);
     if (tolerance > 0.1f || std::min(found.weight, wanted.weight) < 10 * tolerance) continue;
     // 1 - cosine is exact to 6e-8 only: sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
@@ -107,7 +108,7 @@ TEST(RecordStore, NoCellIsForgotten) {
     for (Vec3 axis : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
       // The farthest point whose distance in float is below the radius.
       Vec3 q = p + axis * (radius * 0.9999f);
-      if (!(length(q - p) < radius)) continue;   // float spacing is wider than the sphere
+      if (!(length(q - p) < radius)) continue;  // float spacing is wider than the sphere
       EXPECT_EQ(store.interpolate(q, {0, 0, 1}).count, 1) << radius;
     }
   }
@@ -136,7 +137,8 @@ TEST(RecordStore, LinearFieldIsExact) {
   for (std::uint32_t i = 0; i < 200; ++i) {
     const Vec2 u = random.get2(i, Purpose::gather);
     const Vec3 position{u.x, 0, u.y};
-    IrradianceRecord r = record_at(position, {0, 1, 0}, 0.1f + 0.2f * random.get1(i, Purpose::roulette), Rgb(1 + dot(slope, position)));
+    IrradianceRecord r =
+        record_at(position, {0, 1, 0}, 0.1f + 0.2f * random.get1(i, Purpose::roulette), Rgb(1 + dot(slope, position)));
     r.translational = {slope, slope, slope};
     store.add(r);
   }
@@ -176,7 +178,7 @@ TEST(RecordStore, WeightIsAHat) {
   EXPECT_EQ(store.interpolate({}, {0, 1, 0}).weight, 1);
   EXPECT_NEAR(store.interpolate({0.25f, 0, 0}, {0, 1, 0}).weight, 0.5f, 1e-6f);
   EXPECT_EQ(store.interpolate({0.5f, 0, 0}, {0, 1, 0}).count, 0);
-  const float cosine = 0.985f;   // sqrt(0.015 / 0.06) = 0.5
+  const float cosine = 0.985f;  // sqrt(0.015 / 0.06) = 0.5
   EXPECT_NEAR(store.interpolate({}, {std::sqrt(1 - cosine * cosine), cosine, 0}).weight, 0.5f, 1e-4f);
   EXPECT_EQ(store.interpolate({}, {0.7f, 0.7f, 0}).count, 0);
 }
@@ -190,8 +192,8 @@ TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
   EXPECT_FLOAT_EQ(least_cosine_of(1e-3f), 0.99625f);
 }
 
-/// A normal 16 degrees off is beyond 10: covered only as far as a record that close is as fine as they may be, by the weight it has
-/// in 20 degrees with that radius, and interpolated there with its own.
+/// A normal 16 degrees off is beyond 10: covered only as far as a record that close is as fine as they may be, by the
+/// weight it has in 20 degrees with that radius, and interpolated there with its own.
 TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
   RecordStore store({.least_cosine = 0.985f});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
@@ -201,7 +203,7 @@ TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
   EXPECT_FALSE(store.covers(beside, normal, 0.01f, 0.04f));
   EXPECT_TRUE(store.covers(beside, normal, 0.99f * 0.75f * turn, 0.2f));
   EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.75f * turn, 0.2f));
-  EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.9f * turn, 10.0f));   // never more than its own radius
+  EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.9f * turn, 10.0f));  // never more than its own radius
   EXPECT_NEAR(store.interpolate(beside, normal).weight, 0.9f * turn, 1e-4f);
 }
 
@@ -221,13 +223,13 @@ TEST(RecordStore, CanBeNarrowed) {
   store.narrow(0.985f);
   store.add(record_at({}, {0, 0.96f, 0.28f}, 0.5f, Rgb(1.0f)));
   EXPECT_EQ(count_at(0.999f), 1);
-  EXPECT_EQ(count_at(0.95f), 1);   // the first; the second is 0.91 off
+  EXPECT_EQ(count_at(0.95f), 1);  // the first; the second is 0.91 off
 }
 
 TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
   RecordStore store;
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
-  EXPECT_EQ(store.interpolate({0, -0.02f, 0}, {0, 1, 0}).count, 1);    // within 0.05 x 0.5
+  EXPECT_EQ(store.interpolate({0, -0.02f, 0}, {0, 1, 0}).count, 1);  // within 0.05 x 0.5
   EXPECT_EQ(store.interpolate({0, -0.03f, 0}, {0, 1, 0}).count, 0);
   EXPECT_EQ(store.interpolate({0, 0.1f, 0}, {0, -1, 0}).count, 0);
 }
@@ -264,8 +266,9 @@ TEST(RecordStore, RadiiAtBothEnds) {
   EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);
 }
 
-/// The ground below the rim of a plate and the top of the plate, 2 cm above: neither's records of 10 cm count on the other.
-/// Along a bowl's and a ball's great circle of 1 m records of 20 cm count 10 cm away, where the normal is 5.7 degrees off.
+/// The ground below the rim of a plate and the top of the plate, 2 cm above: neither's records of 10 cm count on the
+/// other. Along a bowl's and a ball's great circle of 1 m records of 20 cm count 10 cm away, where the normal is 5.7
+/// degrees off.
 TEST(RecordStore, ParallelPlanesKeepTheirLight) {
   RecordStore store;
   store.add(record_at({0, 0, 0}, {0, 1, 0}, 0.1f, Rgb(9.0f)));
@@ -273,7 +276,7 @@ TEST(RecordStore, ParallelPlanesKeepTheirLight) {
   EXPECT_EQ(store.interpolate({0.01f, -0.02f, 0}, {0, 1, 0}).count, 0);
   EXPECT_EQ(store.interpolate({0.01f, 0.004f, 0}, {0, 1, 0}).count, 1);
   const float s = std::sin(0.1f), c = std::cos(0.1f);
-  for (const float side : {1.0f, -1.0f}) {   // ball: normals outwards; bowl: inwards
+  for (const float side : {1.0f, -1.0f}) {  // ball: normals outwards; bowl: inwards
     RecordStore round;
     round.add(record_at({0, 1, 0}, {0, side, 0}, 0.2f, Rgb(1.0f)));
     EXPECT_EQ(round.interpolate({s, c, 0}, {side * s, side * c, 0}).count, 1);

@@ -57,8 +57,9 @@ TEST(Aim, SpheresBeyondTheSceneAddNothing) {
   EXPECT_NEAR(total.mean, 1, 3 * total.error);
 }
 
-/// Through a window of radius a that faces the light goes a^2 / R^2 of it, wherever the window is: in one sphere, in two, at
-/// the rim of one, in none. In a sphere half a million photons say so to 2 %, where uniform ones would need a hundred million.
+/// Through a window of radius a that faces the light goes a^2 / R^2 of it, wherever the window is: in one sphere, in
+/// two, at the rim of one, in none. In a sphere half a million photons say so to 2 %, where uniform ones would need a
+/// hundred million.
 TEST(Aim, ThroughAnyWindowGoesItsShare) {
   const Vec3 centre{1, 2, 3};
   const Aim aim(kSpheres, centre, 100), wide;
@@ -77,7 +78,7 @@ TEST(Aim, ThroughAnyWindowGoesItsShare) {
       return dot(off, off) < a * a ? start.flux : 0;
     });
     const double exact = double(a) * a / 1e4;
-    EXPECT_NEAR(through.mean, exact, 3 * through.error + 1e-5 * exact) << middle.x;   // floats of 100 m
+    EXPECT_NEAR(through.mean, exact, 3 * through.error + 1e-5 * exact) << middle.x;  // floats of 100 m
     EXPECT_LT(through.error, (inside ? 0.02 : 1) * exact) << middle.x;
   }
 }
@@ -89,8 +90,8 @@ TEST(Aim, HoldsWhatLiesInASphere) {
   EXPECT_FALSE(aim.holds({-60, 20.6f, 0}));
 }
 
-/// A hut of 4 m with a hole of 1 m x 1 m in its roof, z = 3, in a scene of 1000 m: what sun and sky send through the hole,
-/// E cos A and pi L A (of the half sphere above). The aim's directions are those of the light, all of them.
+/// A hut of 4 m with a hole of 1 m x 1 m in its roof, z = 3, in a scene of 1000 m: what sun and sky send through the
+/// hole, E cos A and pi L A (of the half sphere above). The aim's directions are those of the light, all of them.
 class ThroughTheRoof : public testing::Test {
  protected:
   LightScene scene_{500};
@@ -132,8 +133,8 @@ TEST_F(ThroughTheRoof, OfTheSky) {
   EXPECT_LT(aimed.error, 0.05 * aimed.mean);
 }
 
-/// Ways into spheres: of one the density is 1 / (2 pi (1 - sqrt(1 - r^2 / d^2))) everywhere in its cone; of several the mean of
-/// 1 / density over the ways is the solid angle of all cones together, here of the wider of two about one axis.
+/// Ways into spheres: of one the density is 1 / (2 pi (1 - sqrt(1 - r^2 / d^2))) everywhere in its cone; of several the
+/// mean of 1 / density over the ways is the solid angle of all cones together, here of the wider of two about one axis.
 TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
   const Vec3 place{40, -30, 20};
   const auto solid_angle = [](double r, double d) { return 2 * kPiD * (1 - std::sqrt(1 - r * r / (d * d))); };
@@ -147,7 +148,7 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
     EXPECT_LE(length(cross(to, way.direction)), 4 * (1 + 1e-5f));
   }
   const Aim two(std::vector<AimSphere>{{{40, -30, 0}, 3, 1}, {{40, -30, -20}, 2, 4}}, {1, 2, 3}, 100);
-  int other = 0;   // ways at a rim, where rounding decides
+  int other = 0;  // ways at a rim, where rounding decides
   const Estimate angle = estimate(1 << 16, [&](const auto& u) {
     const Aim::Way way = two.towards(place, {float(u[0]), float(u[1])});
     other += std::abs(two.density_towards(place, way.direction) / way.density - 1) > 1e-4;

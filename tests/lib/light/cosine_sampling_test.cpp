@@ -1,4 +1,5 @@
-// Light is drawn by the cosine as well: maps of the square against their densities, triangles and skies against closed forms.
+// Light is drawn by the cosine as well: maps of the square against their densities, triangles and skies against closed
+// forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +15,9 @@
 namespace tempolux {
 namespace {
 
-/// The map takes a share of the square to where its density has it: of the quarter u.x, u.y < 1/2 the integral of the bilinear
-/// density is known (its corner values 1, 2, 3, 6 have the means 1, 1.5, 2, 3 at the quarter's corners: 7.5 / 4 / 3 of a fourth).
+/// The map takes a share of the square to where its density has it: of the quarter u.x, u.y < 1/2 the integral of the
+/// bilinear density is known (its corner values 1, 2, 3, 6 have the means 1, 1.5, 2, 3 at the quarter's corners: 7.5 /
+/// 4 / 3 of a fourth).
 TEST(BilinearWarp, FollowsItsDensity) {
   const BilinearWarp warp({1, 2, 3, 6});
   int inside = 0;
@@ -26,7 +28,8 @@ TEST(BilinearWarp, FollowsItsDensity) {
     inside += u.x < 0.5f && u.y < 0.5f;
     inverse += 1 / warp.density(u) / kCount;
   }
-  EXPECT_NEAR(double(inside) / kCount, 7.5 / 4 / 3 / 4, 1e-3);   // Sobol points: some of their number's root on the border
+  EXPECT_NEAR(double(inside) / kCount, 7.5 / 4 / 3 / 4,
+              1e-3);  // Sobol points: some of their number's root on the border
   EXPECT_NEAR(inverse, 1, 1e-3);
 }
 
@@ -37,24 +40,25 @@ double solid_angle(Vec3d a, Vec3d b, Vec3d c) {
 }
 
 TEST(SphericalTriangle, FindsTheNumbersOfADirection) {
-  for (const auto& [a, b, c] : {std::array<Vec3, 3>{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {Vec3{-3, 1, 2}, {2, 2, 1}, {0, -1, 4}}}) {
+  for (const auto& [a, b, c] :
+       {std::array<Vec3, 3>{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {Vec3{-3, 1, 2}, {2, 2, 1}, {0, -1, 4}}}) {
     const SphericalTriangle t = as_seen(a, b, c);
     const double omega = solid_angle(Vec3d(a), Vec3d(b), Vec3d(c));
     for (std::uint32_t i = 0; i < 1000; ++i) {
       const Vec2 u = sobol_owen_2d(i, 1);
       const Vec2 back = find_in_spherical_triangle(t, omega, sample_spherical_triangle(t, omega, u));
       EXPECT_NEAR(back.y, u.y, 1e-6);
-      if (u.y > 1e-3f) {
-        EXPECT_NEAR(back.x, u.x, 1e-5);
-      }
+      if (u.y > 1e-3f) { EXPECT_NEAR(back.x, u.x, 1e-5); }
     }
   }
 }
 
-/// A triangle overhead, by a wall, small and far: the density that sample() says is that of pdf_solid_angle(), and where nothing
-/// hides the lamp the samples differ little: their deviation was .15 to .6 of the mean by solid angle or area alone.
+/// A triangle overhead, by a wall, small and far: the density that sample() says is that of pdf_solid_angle(), and
+/// where nothing hides the lamp the samples differ little: their deviation was .15 to .6 of the mean by solid angle or
+/// area alone.
 TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
-  for (const auto& [normal, height, half] : {std::tuple{Vec3{0, 0, 1}, 1.0f, 0.5f}, {Vec3{0.8f, 0, 0.6f}, 1.0f, 0.5f}, {Vec3{0.6f, 0, 0.8f}, 5.0f, 0.2f}}) {
+  for (const auto& [normal, height, half] :
+       {std::tuple{Vec3{0, 0, 1}, 1.0f, 0.5f}, {Vec3{0.8f, 0, 0.6f}, 1.0f, 0.5f}, {Vec3{0.6f, 0, 0.8f}, 5.0f, 0.2f}}) {
     LightScene scene;
     auto corners = square_facing_down({1.5f, 0.2f, height}, half);
     corners.pop_back();
@@ -65,7 +69,9 @@ TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
     for (std::uint32_t i = 0; i < kCount; ++i) {
       LightSample s;
       ASSERT_TRUE(lights.sample({0, 0, 0}, normal, sobol_owen_2d(i, 5), s));
-      EXPECT_NEAR(double(lights.pdf_solid_angle({0, 0, 0}, normal, 0, 0, s.position, {0, 0, -1})) / double(s.pdf_solid_angle), 1, 2e-3);
+      EXPECT_NEAR(
+          double(lights.pdf_solid_angle({0, 0, 0}, normal, 0, 0, s.position, {0, 0, -1})) / double(s.pdf_solid_angle),
+          1, 2e-3);
       const double e = double(s.radiance.r) * double(dot(normal, s.wi));
       sum += e / kCount;
       square += e * e / kCount;
@@ -76,10 +82,11 @@ TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
   }
 }
 
-/// A sky that is bright on one side, with a sun: the density integrates to 1 (the mean of 1 / density over its own samples is the
-/// sphere), and is that of pdf_solid_angle() but on borders of parts. A uniform sky of radiance 1 gives pi; its samples' deviation is
-/// 1.29 of the mean by radiance alone (E[(4 cos)^2] = 8/3 over the half above); by the cosine too it is .3 for the one sample in 10 that is
-/// kept for parts below and for the slack of a normal's bin, and the cosine inside of a part: below .45.
+/// A sky that is bright on one side, with a sun: the density integrates to 1 (the mean of 1 / density over its own
+/// samples is the sphere), and is that of pdf_solid_angle() but on borders of parts. A uniform sky of radiance 1 gives
+/// pi; its samples' deviation is 1.29 of the mean by radiance alone (E[(4 cos)^2] = 8/3 over the half above); by the
+/// cosine too it is .3 for the one sample in 10 that is kept for parts below and for the slack of a normal's bin, and
+/// the cosine inside of a part: below .45.
 TEST(SkyByNormal, SamplesHaveTheirDensityAndDifferLittle) {
   Environment sky;
   sky.width = 64;
@@ -107,7 +114,8 @@ TEST(SkyByNormal, SamplesHaveTheirDensityAndDifferLittle) {
         sum += e / kCount;
         square += e * e / kCount;
       }
-      EXPECT_NEAR(sphere, 4 * std::numbers::pi, 0.02 * 4 * std::numbers::pi);   // parts below are drawn one in 20 to 40 times
+      EXPECT_NEAR(sphere, 4 * std::numbers::pi,
+                  0.02 * 4 * std::numbers::pi);  // parts below are drawn one in 20 to 40 times
       EXPECT_LT(apart, int(kCount / 200));
       if (even) {
         EXPECT_NEAR(sum, std::numbers::pi, 3e-3);

@@ -97,7 +97,7 @@ TEST(Emission, SlotsAreChosenByTheirPartOfTheUnitInterval) {
   scene.add(PunctualLight::Kind::point, Rgb(2.0f), {0, 0, 4}, {0, 0, -1});
   scene.add(PunctualLight::Kind::point, Rgb(0.0f), {0, 0, 5}, {0, 0, -1});
   const Lights lights = scene.lights();
-  ASSERT_EQ(lights.slots().size(), 6u);   // triangles that emit nothing have no slot
+  ASSERT_EQ(lights.slots().size(), 6u);  // triangles that emit nothing have no slot
   std::vector<std::array<double, 4>> u;
   std::vector<std::size_t> expected;
   double below = 0;
@@ -148,7 +148,7 @@ TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
     EXPECT_NEAR(square, 0.25, 1e-3);  // sin^2 cos^2(phi): half of the mean sin^2, 1/2
     EXPECT_NEAR(down / kCount, two_sided ? 0.5 : 1, 1e-3);
     EXPECT_NEAR(travel.z, two_sided ? 0 : -2.0 / 3, 2e-3);
-    EXPECT_NEAR(from_front.x, 0, 1e-3);   // either side shines all around
+    EXPECT_NEAR(from_front.x, 0, 1e-3);  // either side shines all around
     EXPECT_NEAR(from_front.y, 0, 1e-3);
   }
 }
@@ -273,7 +273,7 @@ TEST(Emission, TableKnowsTheLargestSizeOfAnAnimatedEmitter) {
 
 TEST(Emission, FluxBeyondFloatIsRefusedNotDropped) {
   LightScene scene(1e6f);
-  scene.add(square_facing_down({0, 0, 1}, 1e6f), Rgb(1e30f));   // pi 1e30 4e12 = 1.3e43 W
+  scene.add(square_facing_down({0, 0, 1}, 1e6f), Rgb(1e30f));  // pi 1e30 4e12 = 1.3e43 W
   const Lights lights = scene.lights();
   EXPECT_NEAR(lights.total_flux().r, kPiD * 4e42, 1e37);
   const std::array<double, 4> u = {0.5, 0.5, 0.5, 0.5};

@@ -57,9 +57,9 @@ TEST(EnvironmentAxes, TheMiddleIsPlusZItsLeftIsPlusXTheTopIsPlusY) {
     int x, y;
     Vec3 axis;
   };
-  for (const auto& [x, y, axis] : {Case{31, 15, {0, 0, 1}}, Case{32, 16, {0, 0, 1}}, Case{15, 15, {1, 0, 0}},
-                                   Case{16, 16, {1, 0, 0}}, Case{47, 15, {-1, 0, 0}}, Case{0, 16, {0, 0, -1}},
-                                   Case{63, 15, {0, 0, -1}}}) {
+  for (const auto& [x, y, axis] :
+       {Case{31, 15, {0, 0, 1}}, Case{32, 16, {0, 0, 1}}, Case{15, 15, {1, 0, 0}}, Case{16, 16, {1, 0, 0}},
+        Case{47, 15, {-1, 0, 0}}, Case{0, 16, {0, 0, -1}}, Case{63, 15, {0, 0, -1}}}) {
     const Environment map = painted(64, 32, one_bright(x, y));
     EXPECT_NEAR(EnvironmentLight(map).radiance(axis).g, 0.25, 1e-5) << x << ' ' << y;  // of four pixels around it
   }
@@ -133,9 +133,7 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
     // L / pdf is constant but for the sine within a cell (12 rows: +-2 %), so Halton points leave 1e-4 of the sum.
     EXPECT_NEAR(sum / kCount, luminance(light.integral()), 3e-4 * luminance(light.integral())) << m;
     // The area rests on the samples where L is small: with a sun that takes nearly all of them, on too few.
-    if (m != 1) {
-      EXPECT_NEAR(area / kCount, maps[m].second, 0.03 * maps[m].second) << m;
-    }
+    if (m != 1) { EXPECT_NEAR(area / kCount, maps[m].second, 0.03 * maps[m].second) << m; }
   }
 }
 
@@ -193,8 +191,8 @@ TEST(EnvironmentSampling, ASunOfTenThousandGivesNoFireflies) {
   double sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
   const double count = double(x.size()), slope = (count * sxy - sx * sy) / (count * sxx - sx * sx);
-  std::printf("error %.4f at 4 samples, %.4f at 256; slope %.3f; largest of 4096 means of 4: %.2f\n", std::exp2(y.front()),
-              std::exp2(y.back()), slope, greatest);
+  std::printf("error %.4f at 4 samples, %.4f at 256; slope %.3f; largest of 4096 means of 4: %.2f\n",
+              std::exp2(y.front()), std::exp2(y.back()), slope, greatest);
   EXPECT_GT(slope, -0.6);
   EXPECT_LT(slope, -0.45);
   EXPECT_LT(greatest, 2);
@@ -232,7 +230,7 @@ TEST(EnvironmentEmission, MeanFluxAndDisc) {
   const double expected = EnvironmentLight(map).integral().g * disc + kPiD * 0.04;
   EXPECT_NEAR(lights.total_flux().g, expected, 1e-4 * expected);
   ASSERT_EQ(lights.slots().back().kind, EmissionSlot::Kind::environment);
-  EXPECT_NEAR(lights.slots().back().probability, 0.8, 1e-12);   // the lamp's least share is a fifth
+  EXPECT_NEAR(lights.slots().back().probability, 0.8, 1e-12);  // the lamp's least share is a fifth
   const PhotonHalton halton(1);
   constexpr int kCount = 1 << 16;
   double sum = 0;

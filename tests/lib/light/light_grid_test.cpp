@@ -1,4 +1,5 @@
-// Cells of the grid are found again, directions of the sky have the density they are drawn with, numbers and directions agree.
+// Cells of the grid are found again, directions of the sky have the density they are drawn with, numbers and directions
+// agree.
 #include "lib/light/light_grid.h"
 
 #include <gtest/gtest.h>
@@ -34,8 +35,8 @@ LightGrid::Cell uneven_cell() {
   return cell;
 }
 
-/// numbers_of() is the inverse of sample(). Angles of directions hold to 1e-7, which the sun's pixel, 1e-3 of the sky that fills a
-/// quarter of the numbers, turns into 1e-4.
+/// numbers_of() is the inverse of sample(). Angles of directions hold to 1e-7, which the sun's pixel, 1e-3 of the sky
+/// that fills a quarter of the numbers, turns into 1e-4.
 TEST(EnvironmentNumbers, AreTheInverseOfSampling) {
   const Environment sky = sunny();
   const EnvironmentLight light(sky, 1);
@@ -50,7 +51,8 @@ TEST(EnvironmentNumbers, AreTheInverseOfSampling) {
   }
 }
 
-/// density is that of sky_density() but where a direction lies on the border of two parts, which rounding decides: 1 in 500.
+/// density is that of sky_density() but where a direction lies on the border of two parts, which rounding decides: 1 in
+/// 500.
 TEST(LightGrid, SamplesHaveTheirDensity) {
   const Environment sky = sunny();
   const LightGrid grid(1, &sky);

@@ -131,11 +131,9 @@ TEST(PunctualLights, SpotsFallOffAsGltfSays) {
   scene.add(PunctualLight::Kind::spot, Rgb(10.0f), {0, 0, 2}, {0, 0, -1}, 0.2f, 0.4f);
   const Lights lights = scene.lights();
   for (float angle : {0.0f, 0.19f, 0.25f, 0.3f, 0.39f, 0.41f, 1.0f}) {
-    const double s =
-        std::clamp((std::cos(angle) - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
+    const double s = std::clamp((std::cos(angle) - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
     const double d2 = 4 / (std::cos(angle) * std::cos(angle));
-    EXPECT_NEAR(irradiance(lights, {2 * std::tan(angle), 0, 0}, kUp, 4).r, 10 * s * s / d2 * std::cos(angle),
-                2e-5);
+    EXPECT_NEAR(irradiance(lights, {2 * std::tan(angle), 0, 0}, kUp, 4).r, 10 * s * s / d2 * std::cos(angle), 2e-5);
   }
 }
 
@@ -169,13 +167,11 @@ LightScene crowd(int count, bool suns) {
     const Vec2 place = random.get2(i, Purpose::test, 1), size = random.get2(i, Purpose::test, 2);
     const Vec3 at = Vec3{place.x, place.y, size.x} * 6.0f - Vec3{3, 3, 3};
     const Rgb emission = Rgb(0.1f + place.x, 0.2f, size.y);
-    if (i % 5 == 3)
-      scene.add(PunctualLight::Kind::point, emission, at, n);
-    else if (i % 5 == 4)
-      scene.add(PunctualLight::Kind::spot, emission, at, n, 0.3f, 0.3f + size.x);
+    if (i % 5 == 3) scene.add(PunctualLight::Kind::point, emission, at, n);
+    else if (i % 5 == 4) scene.add(PunctualLight::Kind::spot, emission, at, n, 0.3f, 0.3f + size.x);
     else
-      scene.add({at, at + Vec3{0.2f * n.y, 0.3f * n.z, 0.1f}, at + Vec3{0.1f, 0.2f * n.x, -0.3f * n.y}},
-                emission, i % 5 == 2);
+      scene.add({at, at + Vec3{0.2f * n.y, 0.3f * n.z, 0.1f}, at + Vec3{0.1f, 0.2f * n.x, -0.3f * n.y}}, emission,
+                i % 5 == 2);
   }
   if (suns) {
     scene.add(PunctualLight::Kind::directional, Rgb(0.01f), {}, {0, 0, -1});
@@ -192,14 +188,13 @@ TEST(Lights, PdfIsThatOfTheSample) {
   const PathRandom random(2, 2);
   int found = 0;
   for (std::uint32_t i = 0; i < 20000; ++i) {
-    const Vec3 point = (Vec3{random.get1(i, Purpose::place, 0), random.get1(i, Purpose::place, 1),
-                             random.get1(i, Purpose::place, 2)} -
-                        Vec3{0.5f, 0.5f, 0.5f}) *
-                       8.0f;
+    const Vec3 point =
+        (Vec3{random.get1(i, Purpose::place, 0), random.get1(i, Purpose::place, 1), random.get1(i, Purpose::place, 2)} -
+         Vec3{0.5f, 0.5f, 0.5f}) *
+        8.0f;
     const Vec3 normal = i % 3 ? sample_sphere(random.get2(i, Purpose::test)) : Vec3{};
     LightSample s;
-    if (!lights.sample(point, normal, random.get1(i, Purpose::light_choice),
-                       random.get2(i, Purpose::light_point), s))
+    if (!lights.sample(point, normal, random.get1(i, Purpose::light_choice), random.get2(i, Purpose::light_point), s))
       continue;
     if (s.delta) continue;
     // The triangle is the one whose density agrees; there must be one.
@@ -208,10 +203,8 @@ TEST(Lights, PdfIsThatOfTheSample) {
       if (slot.kind != EmissionSlot::Kind::triangle) continue;
       const TriangleLight t(scene.frame.surfaces[slot.surface], slot.triangle,
                             scene.frame.materials[scene.frame.surfaces[slot.surface].material]);
-      if (std::abs(dot(t.normal, s.position - t.corner)) > 1e-4f || length(s.position - t.corner) > 0.6f)
-        continue;
-      const double pdf =
-          lights.pdf_solid_angle(point, normal, slot.surface, slot.triangle, s.position, t.normal);
+      if (std::abs(dot(t.normal, s.position - t.corner)) > 1e-4f || length(s.position - t.corner) > 0.6f) continue;
+      const double pdf = lights.pdf_solid_angle(point, normal, slot.surface, slot.triangle, s.position, t.normal);
       best = std::min(best, std::abs(pdf / s.pdf_solid_angle - 1));
     }
     EXPECT_LT(best, 2e-4) << i;
@@ -231,13 +224,10 @@ TEST(Lights, ManyTogetherGiveTheSumOfEach) {
       SceneFrame one = scene.frame;
       one.lights.clear();
       for (Material& m : one.materials) m.emission = Rgb(0.0f);
-      if (i < one.surfaces.size())
-        one.materials[i] = scene.frame.materials[i];
-      else
-        one.lights.push_back(scene.frame.lights[i - one.surfaces.size()]);
-      sum += irradiance(Lights(one, build_emission_table(std::span<const SceneFrame>(&one, 1))), point,
-                        normal, 1 << 12)
-                 .r;
+      if (i < one.surfaces.size()) one.materials[i] = scene.frame.materials[i];
+      else one.lights.push_back(scene.frame.lights[i - one.surfaces.size()]);
+      sum +=
+          irradiance(Lights(one, build_emission_table(std::span<const SceneFrame>(&one, 1))), point, normal, 1 << 12).r;
     }
     const Rgbd e = irradiance(all, point, normal, 1 << 18, &sigma);
     EXPECT_NEAR(e.r, sum, 4 * sigma + 1e-3 * sum) << sigma / sum;
@@ -262,10 +252,10 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
   }
   const LightTree tree(bounds);
   for (std::uint32_t k = 0; k < 20; ++k) {
-    const Vec3 point = Vec3{random.get1(k, Purpose::place, 0), random.get1(k, Purpose::place, 1),
-                            random.get1(k, Purpose::place, 2)} *
-                           8.0f -
-                       Vec3{2, 2, 3};
+    const Vec3 point =
+        Vec3{random.get1(k, Purpose::place, 0), random.get1(k, Purpose::place, 1), random.get1(k, Purpose::place, 2)} *
+            8.0f -
+        Vec3{2, 2, 3};
     const Vec3 normal = k % 2 ? sample_sphere(random.get2(k, Purpose::test, 9)) : Vec3{};
     std::vector<double> count(bounds.size(), 0);
     double lost = 0, sum = 0;
@@ -285,9 +275,7 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
       sum += p;
     }
     EXPECT_NEAR(sum + lost / kSteps, 1, 300.0 / kSteps);
-    if (lost == 0) {
-      EXPECT_NEAR(sum, 1, 1e-9);
-    }
+    if (lost == 0) { EXPECT_NEAR(sum, 1, 1e-9); }
   }
 }
 
@@ -315,7 +303,7 @@ TEST(Lights, SurviveExtremeNumbers) {
       EXPECT_TRUE(std::isfinite(
           lights.pdf_solid_angle(point, {}, surface, 0, scene.frame.surfaces[surface].positions[1], kUp)));
     const std::array<double, 4> u = {random.get1(i, Purpose::emit, 1), random.get1(i, Purpose::emit, 2),
-                         random.get1(i, Purpose::emit, 3), random.get1(i, Purpose::emit, 4)};
+                                     random.get1(i, Purpose::emit, 3), random.get1(i, Purpose::emit, 4)};
     const PhotonEmission e = lights.emit(u);
     EXPECT_TRUE(is_finite(e.flux) && is_finite(e.origin) && is_finite(e.travel));
   }

@@ -21,8 +21,7 @@ struct LightScene {
     frame.bounds.add(Vec3{half, half, half});
   }
   /// Fan over the corners, counter-clockwise seen from the front.
-  std::uint32_t add(const std::vector<Vec3>& corners, Rgb emission, bool double_sided = false,
-                    bool flipped = false) {
+  std::uint32_t add(const std::vector<Vec3>& corners, Rgb emission, bool double_sided = false, bool flipped = false) {
     Material material;
     material.emission = emission;
     material.double_sided = double_sided;

@@ -34,8 +34,7 @@ Albedo node(int row, int column, const GaussLegendre& rule) {
   const double s = at * (kColumns - 1) - (kColumns - 4), s1 = s - 1, s2 = s - 2, s3 = s - 3;
   const double weight[4] = {-s1 * s2 * s3 / 6, s * s2 * s3 / 2, -s * s1 * s3 / 2, s * s1 * s2 / 6};
   double rest = entry(row, at, rule).b;
-  for (int i = 0; i < 3; ++i)
-    rest -= weight[i] * entry(row, double(kColumns - 4 + i) / (kColumns - 1), rule).b;
+  for (int i = 0; i < 3; ++i) rest -= weight[i] * entry(row, double(kColumns - 4 + i) / (kColumns - 1), rule).b;
   e.b = rest / weight[3];
   return e;
 }
@@ -57,8 +56,7 @@ TEST(GgxAlbedoTable, HoldsTheIntegrals) {
     EXPECT_NEAR(kCosine[row][column], e.b, 2e-4) << row << ' ' << column;
   }
   for (int row = 0; row < kRows; row += 5) {
-    const Albedo e =
-        reference::ggx_mean_albedo(alpha_of_row(double(row) / (kRows - 1)), outer, GaussLegendre(64));
+    const Albedo e = reference::ggx_mean_albedo(alpha_of_row(double(row) / (kRows - 1)), outer, GaussLegendre(64));
     EXPECT_NEAR(kMeanA[row], e.total - e.b, 1e-5) << row;
     EXPECT_NEAR(kMeanB[row], e.b, 1e-5) << row;
   }
@@ -130,8 +128,8 @@ TEST(GgxAlbedoTable, DISABLED_WriteTheTable) {
   for (const bool b : {false, true}) {
     std::fprintf(out, "\nconst float kMean%s[kRows] = {\n    ", b ? "B" : "A");
     for (int row = 0; row < kRows; ++row) {
-      const Albedo e = reference::ggx_mean_albedo(alpha_of_row(double(row) / (kRows - 1)), GaussLegendre(64),
-                                                  GaussLegendre(96));
+      const Albedo e =
+          reference::ggx_mean_albedo(alpha_of_row(double(row) / (kRows - 1)), GaussLegendre(64), GaussLegendre(96));
       std::fprintf(out, "%.8ff%s", b ? e.b : e.total - e.b,
                    row == kRows - 1 ? "};\n"
                    : row % 7 == 6   ? ",\n    "

@@ -39,8 +39,7 @@ Rgbd sampled_albedo(const Bsdf& bsdf, Vec3 wo, bool diffuse, int count, double* 
   Rgbd sum;
   double squares = 0;
   for (int i = 0; i < count; ++i) {
-    const Bsdf::Sample s =
-        bsdf.sample(wo, sobol_owen_1d(std::uint32_t(i), 7), sobol_owen_2d(std::uint32_t(i), 11));
+    const Bsdf::Sample s = bsdf.sample(wo, sobol_owen_1d(std::uint32_t(i), 7), sobol_owen_2d(std::uint32_t(i), 11));
     if (s.diffuse != diffuse) continue;
     sum += Rgbd(s.weight);
     squares += double(s.weight.r) * s.weight.r;
@@ -158,13 +157,10 @@ TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
           const reference::Albedo e = reference::ggx_albedo(c, alpha, rule);
           const AlbedoPair table = GgxAlbedo(float(alpha)).at(c);
           const double f90 = 1, f = metallic == 1 ? f0 : metallic + (1 - metallic) * f0;
-          const double corrected =
-              bsdf.specular_albedo(c).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);
+          const double corrected = bsdf.specular_albedo(c).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);
           const double total = corrected + bsdf.diffuse_reflectance(c).r;
           EXPECT_LE(total, 1 + 1e-4) << roughness << ' ' << metallic << ' ' << f0 << ' ' << c;
-          if (metallic == 1 && f0 == 1 && roughness >= 0.35f) {
-            EXPECT_NEAR(total, 1, 1e-4);
-          }
+          if (metallic == 1 && f0 == 1 && roughness >= 0.35f) { EXPECT_NEAR(total, 1, 1e-4); }
         }
       }
     }
@@ -173,8 +169,8 @@ TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
 
 TEST(Bsdf, IsReciprocal) {
   const PathRandom random(1, 0);
-  for (const Material& m : {dielectric({0.8f, 0.5f, 0.2f}, 0.3f), metal({0.9f, 0.6f, 0.2f}, 0.9f),
-                            dielectric(Rgb(1.0f), 0.05f)}) {
+  for (const Material& m :
+       {dielectric({0.8f, 0.5f, 0.2f}, 0.3f), metal({0.9f, 0.6f, 0.2f}, 0.9f), dielectric(Rgb(1.0f), 0.05f)}) {
     const Bsdf bsdf(m);
     for (std::uint32_t i = 0; i < 1000; ++i) {
       const Vec3 a = sample_hemisphere_cos(random.get2(i, Purpose::test, 1));
@@ -198,8 +194,7 @@ void check_distribution(const Material& m, float cos_o) {
   double inside = 0, lost = 0;
   for (int i = 0; i < kCos * kSub; ++i)
     for (int j = 0; j < kPhi * kSub; ++j) {
-      const Vec3 wi =
-          direction((float(i) + 0.5f) / (kCos * kSub), 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
+      const Vec3 wi = direction((float(i) + 0.5f) / (kCos * kSub), 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
       const double p = (double(bsdf.pdf_diffuse(wi, wo)) + bsdf.pdf_specular(wi, wo)) * 2 * std::numbers::pi /
                        (kCos * kSub * double(kPhi * kSub));
       expected[std::size_t(i / kSub * kPhi + j / kSub)] += p * kCount;
@@ -212,8 +207,7 @@ void check_distribution(const Material& m, float cos_o) {
       ++lost;
       continue;
     }
-    ASSERT_NEAR(s.pdf_solid_angle, bsdf.pdf_diffuse(s.wi, wo) + bsdf.pdf_specular(s.wi, wo),
-                2e-3f * s.pdf_solid_angle);
+    ASSERT_NEAR(s.pdf_solid_angle, bsdf.pdf_diffuse(s.wi, wo) + bsdf.pdf_specular(s.wi, wo), 2e-3f * s.pdf_solid_angle);
     float phi = std::atan2(s.wi.y, s.wi.x);
     if (phi < 0) phi += 2 * kPi;
     const int a = std::min(kCos - 1, int(s.wi.z * kCos)), b = std::min(kPhi - 1, int(phi / (2 * kPi) * kPhi));
@@ -236,8 +230,7 @@ void check_distribution(const Material& m, float cos_o) {
     chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
     ++cells;
   }
-  EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1)))
-      << m.roughness << ' ' << cos_o << ' ' << cells;
+  EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1))) << m.roughness << ' ' << cos_o << ' ' << cells;
 }
 
 TEST(Bsdf, SamplesFallWhereThePdfSays) {
@@ -275,8 +268,7 @@ TEST(Bsdf, IsFiniteAtEveryEdge) {
           for (float co : edges) {
             const Vec3 wo = direction(co, 0);
             for (float ci : edges)
-              for (const Vec3 wi :
-                   {direction(ci, 0), direction(ci, kPi), -wo, wo, Vec3{-wo.x, -wo.y, wo.z}}) {
+              for (const Vec3 wi : {direction(ci, 0), direction(ci, kPi), -wo, wo, Vec3{-wo.x, -wo.y, wo.z}}) {
                 ASSERT_TRUE(is_finite(bsdf.eval_diffuse(wi, wo)));
                 ASSERT_TRUE(is_finite(bsdf.eval_specular(wi, wo))) << roughness << ' ' << co << ' ' << ci;
                 ASSERT_TRUE(std::isfinite(bsdf.pdf_diffuse(wi, wo)));
@@ -286,11 +278,8 @@ TEST(Bsdf, IsFiniteAtEveryEdge) {
               for (float v : {0.0f, 0.5f, kOneMinusEpsilon}) {
                 const Bsdf::Sample s = bsdf.sample(wo, u, {v, u});
                 ASSERT_TRUE(is_finite(s.weight) && is_finite(s.wi) && std::isfinite(s.pdf_solid_angle));
-                ASSERT_LE(max_component(s.weight), 20.0f)
-                    << roughness << ' ' << base << ' ' << metallic << ' ' << co;
-                if (!is_black(s.weight)) {
-                  ASSERT_GT(s.wi.z, 0);
-                }
+                ASSERT_LE(max_component(s.weight), 20.0f) << roughness << ' ' << base << ' ' << metallic << ' ' << co;
+                if (!is_black(s.weight)) { ASSERT_GT(s.wi.z, 0); }
               }
           }
         }

@@ -35,8 +35,8 @@ double mean_of(const GlassLoss& loss, int side, const reference::GaussLegendre& 
 TEST(GlassReference, IsGgxForAPerfectReflector) {
   EXPECT_NEAR(glass_loss(1, 1, 1e-4, 400), std::log(2.0), 2e-3);
   for (double mu : {0.1, 0.4, 0.8})
-    EXPECT_NEAR(glass_loss(mu, 0.3, 1e-6, 400),
-                1 - reference::ggx_albedo(mu, 0.3, reference::GaussLegendre(96)).total, 2e-3);
+    EXPECT_NEAR(glass_loss(mu, 0.3, 1e-6, 400), 1 - reference::ggx_albedo(mu, 0.3, reference::GaussLegendre(96)).total,
+                2e-3);
 }
 
 // 48 x 24 normals differ from the generator's 256 x 128 by the cut at the horizon: one part in 48 of the rim.

@@ -19,7 +19,7 @@ namespace {
 using test::direction;
 using test::glass;
 
-class RoughGlassTest : public testing::TestWithParam<std::tuple<float, bool, bool>> {   // roughness, thin, front
+class RoughGlassTest : public testing::TestWithParam<std::tuple<float, bool, bool>> {  // roughness, thin, front
  protected:
   float roughness() const { return std::get<0>(GetParam()); }
   bool thin() const { return std::get<1>(GetParam()); }
@@ -54,7 +54,7 @@ TEST_P(RoughGlassTest, ReturnsAllLight) {
 // Directions counted in 16 x 12 cells of equal cos and phi over the sphere, and the mean of the weights there against
 // the integral of f cos. Chi-square: mean k - 1, variance 2 (k - 1); limit 5 sigma.
 TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
-  if (roughness() < 0.35f) return;   // narrower than a cell: the mean weights above check those
+  if (roughness() < 0.35f) return;  // narrower than a cell: the mean weights above check those
   const Bsdf bsdf(glass(roughness(), thin()), front());
   for (float cos_o : {0.95f, 0.5f, 0.1f}) {
     const Vec3 wo = direction(cos_o, 0.7f);

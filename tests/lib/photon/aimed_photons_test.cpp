@@ -1,4 +1,5 @@
-// In a hut on a wide ground, lit by sun and sky through its door, aimed photons bring the light that uniform ones bring.
+// In a hut on a wide ground, lit by sun and sky through its door, aimed photons bring the light that uniform ones
+// bring.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +69,8 @@ Inside inside(const Hut& hut, const EmissionTable& table, std::uint64_t count) {
       if (std::abs(p.position[0]) > 2.01f || std::abs(p.position[2]) > 2.01f || p.position[1] > 2.99f) continue;
       // Walls have photons on both sides: normals look to where they come from.
       const auto normal = formats::decode_normal(p.normal);
-      const float in = normal[0] * (0 - p.position[0]) + normal[1] * (1.5f - p.position[1]) + normal[2] * (0 - p.position[2]);
+      const float in =
+          normal[0] * (0 - p.position[0]) + normal[1] * (1.5f - p.position[1]) + normal[2] * (0 - p.position[2]);
       if (in < 0) continue;
       stored[p.kind == formats::PathKind::direct ? 0 : 1] += double(p.flux[1]);
       ++sum.photons;
@@ -81,7 +83,9 @@ Inside inside(const Hut& hut, const EmissionTable& table, std::uint64_t count) {
     squares[1] += stored[1] * stored[1];
     squares[2] += batch.emitted.g * batch.emitted.g;
   }
-  const auto error = [&](double total, double square) { return std::sqrt(std::max(0.0, square - total * total / batches)); };
+  const auto error = [&](double total, double square) {
+    return std::sqrt(std::max(0.0, square - total * total / batches));
+  };
   sum.direct_error = error(sum.direct, squares[0]);
   sum.indirect_error = error(sum.indirect, squares[1]);
   sum.emitted_error = error(sum.emitted, squares[2]);
@@ -104,11 +108,12 @@ TEST(AimedPhotons, BringTheLightOfUniformOnes) {
   EXPECT_EQ(uniform.seen, 0u);
 }
 
-/// A wall of 2 x 2 m on a ground of 600 x 600 m under a sun overhead, in a sphere: it gets rho E / 2 (1 - 4 d / pi) of light that the
-/// ground reflects, d = 1 / 300 its mean height over the ground's reach. Bounces outside of the sphere are aimed at it, so no photon
-/// on the wall carries much. The heaviest starts on the innermost of the eight discs around, of 3 m: 9 pi / (kAround / 8 x 100 000) = .009 W, and is multiplied by less
-/// than 1, as the sphere covers 2 sr and less from there. Unaimed bounces bring single photons of .1 W, and without the division by both
-/// densities the wall is far too bright.
+/// A wall of 2 x 2 m on a ground of 600 x 600 m under a sun overhead, in a sphere: it gets rho E / 2 (1 - 4 d / pi) of
+/// light that the ground reflects, d = 1 / 300 its mean height over the ground's reach. Bounces outside of the sphere
+/// are aimed at it, so no photon on the wall carries much. The heaviest starts on the innermost of the eight discs
+/// around, of 3 m: 9 pi / (kAround / 8 x 100 000) = .009 W, and is multiplied by less than 1, as the sphere covers 2 sr
+/// and less from there. Unaimed bounces bring single photons of .1 W, and without the division by both densities the
+/// wall is far too bright.
 TEST(AimedPhotons, LightOfFarGroundComesInSmallParts) {
   test::HandMadeScene scene;
   scene.add_quad({-300, 0, 300}, {300, 0, 300}, {300, 0, -300}, {-300, 0, -300}, test::matte(Rgb(0.5f)));
@@ -137,9 +142,10 @@ TEST(AimedPhotons, LightOfFarGroundComesInSmallParts) {
     sum += flux / kSeeds;
     squares += flux * flux / kSeeds;
   }
-  const double exact = 0.5 * 0.5 * 4 * (1 - 4 / (300 * 3.14159265)), error = std::sqrt((squares - sum * sum) / (kSeeds - 1));
+  const double exact = 0.5 * 0.5 * 4 * (1 - 4 / (300 * 3.14159265)),
+               error = std::sqrt((squares - sum * sum) / (kSeeds - 1));
   EXPECT_NEAR(sum, exact, 4 * error);
-  EXPECT_LT(error, 0.01);   // of 1.6 million paths
+  EXPECT_LT(error, 0.01);  // of 1.6 million paths
   EXPECT_LT(most, 0.009);
 }
 

@@ -24,12 +24,31 @@ Material glass(float roughness, Rgb color = Rgb(1.0f), float distance = INFINITY
   return m;
 }
 void add_box(HandMadeScene& scene, Vec3 l, Vec3 u, const Material& m) {
-  scene.add({{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z}, {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}},
-            {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}}, m);
+  scene.add({{l.x, l.y, l.z},
+             {u.x, l.y, l.z},
+             {u.x, u.y, l.z},
+             {l.x, u.y, l.z},
+             {l.x, l.y, u.z},
+             {u.x, l.y, u.z},
+             {u.x, u.y, u.z},
+             {l.x, u.y, u.z}},
+            {{0, 2, 1},
+             {0, 3, 2},
+             {4, 5, 6},
+             {4, 6, 7},
+             {0, 1, 5},
+             {0, 5, 4},
+             {3, 6, 2},
+             {3, 7, 6},
+             {0, 7, 3},
+             {0, 4, 7},
+             {1, 2, 6},
+             {1, 6, 5}},
+            m);
 }
 
 struct Stored {
-  double direct = 0, caustic = 0, indirect = 0, emitted = 0, gone = 0;   ///< W, green
+  double direct = 0, caustic = 0, indirect = 0, emitted = 0, gone = 0;  ///< W, green
   std::size_t caustic_count = 0;
   std::uint64_t specular_rays = 0;
 };
@@ -46,7 +65,9 @@ Stored trace(HandMadeScene& scene, std::uint64_t count, std::uint32_t object) {
     for (const formats::Photon& photon : batch.block.photons) {
       if (photon.object != object) continue;
       const double flux = double(photon.flux[1]);
-      (photon.kind == formats::PathKind::direct ? sum.direct : photon.kind == formats::PathKind::caustic ? sum.caustic : sum.indirect) += flux;
+      (photon.kind == formats::PathKind::direct    ? sum.direct
+       : photon.kind == formats::PathKind::caustic ? sum.caustic
+                                                   : sum.indirect) += flux;
       sum.caustic_count += photon.kind == formats::PathKind::caustic;
     }
     sum.emitted += batch.emitted.g;
@@ -63,14 +84,16 @@ TEST(Caustics, SlabPassesWhatFresnelSays) {
   for (float color : {1.0f, 0.4f}) {
     HandMadeScene scene;
     add_box(scene, {-40, -0.1f, -40}, {40, 0.1f, 40}, glass(0, Rgb(color), color < 1 ? 0.2f : INFINITY));
-    const std::uint32_t floor = scene.add_quad({-400, -2, 400}, {400, -2, 400}, {400, -2, -400}, {-400, -2, -400}, matte(Rgb(0.0f)));
+    const std::uint32_t floor =
+        scene.add_quad({-400, -2, 400}, {400, -2, 400}, {400, -2, -400}, {-400, -2, -400}, matte(Rgb(0.0f)));
     scene.add_point_light({0, 1.1f, 0}, Rgb(1.0f));
     // Flux 2 pi integral T(mu) dmu over the light downwards that the slab meets: to 40 m, mu from 0.025.
     double expected = 0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
       const double mu = 0.025 + 0.975 * (i + 0.5) / kSteps, c = std::sqrt(1 - (1 - mu * mu) / 2.25);
-      const double rs = (mu - 1.5 * c) / (mu + 1.5 * c), rp = (1.5 * mu - c) / (1.5 * mu + c), f = (rs * rs + rp * rp) / 2;
+      const double rs = (mu - 1.5 * c) / (mu + 1.5 * c), rp = (1.5 * mu - c) / (1.5 * mu + c),
+                   f = (rs * rs + rp * rp) / 2;
       const double a = color < 1 ? std::pow(double(color), 0.2 / c / 0.2) : 1;
       expected += 2 * M_PI * (1 - f) * (1 - f) * a / (1 - f * f * a * a) * 0.975 / kSteps;
     }
@@ -97,18 +120,20 @@ TEST(Caustics, RoughGlassLosesNoPhotons) {
   }
 }
 
-/// Flux through a glass ball of radius 1 onto the screen of radius 2.5 at y = -3, by quadrature over the light of a lamp of
-/// 1 W/sr at (0, d, 0). All angles within a sphere are one: of what enters, (1 - F) F^(p-1) (1 - F) leaves after p - 1
-/// reflections inside, p = 0 is F. In its plane the path turns by 2 (i - r) and by pi - 2 r at each reflection.
+/// Flux through a glass ball of radius 1 onto the screen of radius 2.5 at y = -3, by quadrature over the light of a
+/// lamp of 1 W/sr at (0, d, 0). All angles within a sphere are one: of what enters, (1 - F) F^(p-1) (1 - F) leaves
+/// after p - 1 reflections inside, p = 0 is F. In its plane the path turns by 2 (i - r) and by pi - 2 r at each
+/// reflection.
 double ball_onto_screen(double d) {
   constexpr int kSteps = 100000;
-  const double least = std::sqrt(1 - 1 / (d * d));   // mu of the grazing ray
+  const double least = std::sqrt(1 - 1 / (d * d));  // mu of the grazing ray
   double sum = 0;
   for (int k = 0; k < kSteps; ++k) {
     const double mu = least + (1 - least) * (k + 0.5) / kSteps, theta = std::acos(mu);
     const double i = std::asin(std::min(1.0, d * std::sin(theta))), r = std::asin(std::sin(i) / 1.5);
     const double ci = std::cos(i), cr = std::cos(r);
-    const double rs = (ci - 1.5 * cr) / (ci + 1.5 * cr), rp = (1.5 * ci - cr) / (1.5 * ci + cr), f = (rs * rs + rp * rp) / 2;
+    const double rs = (ci - 1.5 * cr) / (ci + 1.5 * cr), rp = (1.5 * ci - cr) / (1.5 * ci + cr),
+                 f = (rs * rs + rp * rp) / 2;
     // Of the place: the angle from +y where the ray meets the ball; it steps by pi - 2 r along each chord.
     for (int p = 0; p < 12; ++p) {
       const double at = (i - theta) + p * (M_PI - 2 * r), x = std::sin(at), y = std::cos(at);
@@ -116,14 +141,15 @@ double ball_onto_screen(double d) {
       const double out = at + i, dx = std::sin(out), dy = std::cos(out);
       if (!(dy < 0)) continue;
       const double t = (-3 - y) / dy, where = x + t * dx;
-      if (std::abs(where) < 2.5) sum += (p == 0 ? f : (1 - f) * (1 - f) * std::pow(f, p - 1)) * 2 * M_PI * (1 - least) / kSteps;
+      if (std::abs(where) < 2.5)
+        sum += (p == 0 ? f : (1 - f) * (1 - f) * std::pow(f, p - 1)) * 2 * M_PI * (1 - least) / kSteps;
     }
   }
   return sum;
 }
 
-/// A lamp 1.5 m from a ball of 32768 triangles: its beam comes out about parallel. 13 % of 400000 photons meet the ball:
-/// sigma 0.2 % (and triangles inscribed are 0.02 % less); asked 1 %.
+/// A lamp 1.5 m from a ball of 32768 triangles: its beam comes out about parallel. 13 % of 400000 photons meet the
+/// ball: sigma 0.2 % (and triangles inscribed are 0.02 % less); asked 1 %.
 TEST(Caustics, BallPassesWhatFresnelSays) {
   HandMadeScene scene;
   scene.add_sphere({0, 0, 0}, 1, 64, glass(0), false, false);
@@ -143,11 +169,12 @@ TEST(Caustics, BallPassesWhatFresnelSays) {
   EXPECT_NEAR(screen / ball_onto_screen(1.5), 1, 0.01);
 }
 
-/// A mirror whose shading normals n lean 40 degrees towards a lamp at 60 degrees on the same side. An eye that n looks at sees
-/// the lamp by n, 20 degrees from the upright, one that n looks away from by the upright itself (SeenSide), 60 degrees on the
-/// other side: light must go both ways. Of each, the flux that an eye sees of 1 W/sr: radiance times the eye's cosine to the
-/// triangle, so cos(wo) / cos(wi) of what arrives in the first case, all of it in the second; the integral over the mirror of
-/// cos / d^2 by 100 x 100 places. Of 2 million photons 8800 hit it, half of which go either way: 1.5 % of noise.
+/// A mirror whose shading normals n lean 40 degrees towards a lamp at 60 degrees on the same side. An eye that n looks
+/// at sees the lamp by n, 20 degrees from the upright, one that n looks away from by the upright itself (SeenSide), 60
+/// degrees on the other side: light must go both ways. Of each, the flux that an eye sees of 1 W/sr: radiance times the
+/// eye's cosine to the triangle, so cos(wo) / cos(wi) of what arrives in the first case, all of it in the second; the
+/// integral over the mirror of cos / d^2 by 100 x 100 places. Of 2 million photons 8800 hit it, half of which go either
+/// way: 1.5 % of noise.
 TEST(Caustics, BentNormalsSendLightAllWaysTheyAreSeenFrom) {
   Material mirror;
   mirror.base_color = Rgb(1.0f);

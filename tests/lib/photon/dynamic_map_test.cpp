@@ -38,13 +38,31 @@ struct Room {
     } else {
       scene.add_room({0, 0, 0}, {1, 1, 1}, grey);
     }
-    if (!sunny) scene.add_quad({0.4f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.6f}, {0.4f, 0.99f, 0.6f},
-                   test::matte(Rgb(0.0f), Rgb(5.0f)), lamp_moves);
+    if (!sunny)
+      scene.add_quad({0.4f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.6f}, {0.4f, 0.99f, 0.6f},
+                     test::matte(Rgb(0.0f), Rgb(5.0f)), lamp_moves);
     const Vec3 u = at + Vec3{0.2f, 0.2f, 0.2f};
-    scene.add({{at.x, at.y, at.z}, {u.x, at.y, at.z}, {u.x, u.y, at.z}, {at.x, u.y, at.z},
-               {at.x, at.y, u.z}, {u.x, at.y, u.z}, {u.x, u.y, u.z}, {at.x, u.y, u.z}},
-              {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
-               {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}}, box, true);
+    scene.add({{at.x, at.y, at.z},
+               {u.x, at.y, at.z},
+               {u.x, u.y, at.z},
+               {at.x, u.y, at.z},
+               {at.x, at.y, u.z},
+               {u.x, at.y, u.z},
+               {u.x, u.y, u.z},
+               {at.x, u.y, u.z}},
+              {{0, 2, 1},
+               {0, 3, 2},
+               {4, 5, 6},
+               {4, 6, 7},
+               {0, 1, 5},
+               {0, 5, 4},
+               {3, 6, 2},
+               {3, 7, 6},
+               {0, 7, 3},
+               {0, 4, 7},
+               {1, 2, 6},
+               {1, 6, 5}},
+              box, true);
     frame = scene.frame();
     if (sunny) {
       PlacedLight sun;
@@ -128,9 +146,9 @@ Maps maps_of(const Room& room, std::uint64_t count, bool all_paths = false) {
   formats::PhotonHeader header;
   header.map = "dynamic";
   std::string bytes;
-  maps.difference = write_dynamic_map(fixed, global, paths, options, header, [&](const void* data, std::size_t size) {
-    bytes.append(static_cast<const char*>(data), size);
-  }, {});
+  maps.difference = write_dynamic_map(
+      fixed, global, paths, options, header,
+      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, {});
   maps.dynamic = photons_in(bytes);
   return maps;
 }
@@ -178,8 +196,8 @@ TEST(DynamicMap, AMovingLampsPhotonsAreAllDynamic) {
 }
 
 TEST(DynamicMap, AimedPhotonsOfASunAreTheSamePhotonsInBothScenes) {
-  // Two walls and a box that moves stand in the sun on wide ground; photons are aimed at them. Were they aimed in one scene only, starts
-  // and fluxes would differ.
+  // Two walls and a box that moves stand in the sun on wide ground; photons are aimed at them. Were they aimed in one
+  // scene only, starts and fluxes would differ.
   Room room(test::matte(Rgb(0.5f)), false, {0.3f, 0.2f, 0.3f}, true);
   room.table.aim = {{{0.5, 0.5, 0.5}, 0.875, 0.75}, {{0.4, 0.3, 0.4}, 0.25, 0.25}};
   const Maps maps = maps_of(room, 20000);
@@ -189,11 +207,11 @@ TEST(DynamicMap, AimedPhotonsOfASunAreTheSamePhotonsInBothScenes) {
   const Maps all = maps_of(room, 20000, true);
   EXPECT_EQ(maps.dynamic, all.dynamic);
   Room uniform(test::matte(Rgb(0.5f)), false, {0.3f, 0.2f, 0.3f}, true);
-  EXPECT_LT(2 * maps_of(uniform, 20000).dynamic.size(), maps.dynamic.size());   // they do come where they are aimed
+  EXPECT_LT(2 * maps_of(uniform, 20000).dynamic.size(), maps.dynamic.size());  // they do come where they are aimed
 }
 
 TEST(DynamicMap, WhereNothingIsMetThereIsNothing) {
-  const Room room(test::matte(Rgb(0.5f)), false, {5, 5, 5});   // outside the room
+  const Room room(test::matte(Rgb(0.5f)), false, {5, 5, 5});  // outside the room
   const Maps maps = maps_of(room, 5000);
   EXPECT_TRUE(maps.touched.empty());
   EXPECT_TRUE(maps.dynamic.empty());
@@ -221,13 +239,14 @@ TEST(MoverWatch, BitsAreTheIntervalsWhoseBoxesAreMet) {
       between{{5, -5, 0.5f}, {0, 1, 0}, 0, INFINITY};
   EXPECT_EQ(watch.touching(up, INFINITY), 1 | std::uint64_t(1) << 63);
   EXPECT_EQ(watch.touching(far, INFINITY), std::uint64_t(1) << 63);
-  EXPECT_EQ(watch.touching(between, INFINITY), 0u);   // the interval's box of all is met, none of its surfaces'
+  EXPECT_EQ(watch.touching(between, INFINITY), 0u);  // the interval's box of all is met, none of its surfaces'
   EXPECT_EQ(watch.touching(up, 4.9f), 0u);
   EXPECT_NE(watch.touching(up, 5.1f), 0u);
 }
 
-/// Rays from all sides, from a metre to 10 km away, past a ball of 512 triangles. Of random lines that meet its box, by the mean areas of the
-/// shadows of convex bodies (Cauchy: a quarter of their surface), pi r^2 : 6 r^2 meet the ball, so its box is met 1.91 times as often.
+/// Rays from all sides, from a metre to 10 km away, past a ball of 512 triangles. Of random lines that meet its box, by
+/// the mean areas of the shadows of convex bodies (Cauchy: a quarter of their surface), pi r^2 : 6 r^2 meet the ball,
+/// so its box is met 1.91 times as often.
 TEST(MoverWatch, PiecesOfABallAreMetWhereItIsAndHardlyElsewhere) {
   test::HandMadeScene scene;
   const Vec3 centre{0.3f, 1.2f, -0.7f};
@@ -251,14 +270,12 @@ TEST(MoverWatch, PiecesOfABallAreMetWhereItIsAndHardlyElsewhere) {
     Hit hit;
     const Ray ray{origin, direction, 0, INFINITY};
     const bool hits = tracer.intersect(ray, hit), meets = by_pieces.touching(ray, INFINITY) != 0;
-    if (hits) {
-      ASSERT_NE(by_pieces.touching(ray, hit.t), 0u) << "from " << far << " m";
-    }
+    if (hits) { ASSERT_NE(by_pieces.touching(ray, hit.t), 0u) << "from " << far << " m"; }
     met += hits;
     touched += meets;
     near_box += by_box.touching(ray, INFINITY) != 0;
   }
-  EXPECT_NEAR(double(near_box) / met, 1.91, 0.06);   // 18 000 hits: 1 %; the ball's flat triangles lie 1 % inside it
+  EXPECT_NEAR(double(near_box) / met, 1.91, 0.06);  // 18 000 hits: 1 %; the ball's flat triangles lie 1 % inside it
   EXPECT_LT(double(touched) / met, 1.55);
   EXPECT_GE(touched, met);
 }
@@ -275,14 +292,12 @@ TEST(MoverWatch, WhatLiesBetweenAPointAndABoxOfLightsIsNotMissed) {
     const Vec2 a = random.get2(i, Purpose::test), b = random.get2(i, Purpose::test, 1);
     const Vec3 from{4 * a.x - 2, 0, 4 * a.y - 2}, to{b.x - 0.5f, 2.05f, b.y - 0.5f};
     const bool meets = watch.touching({from, to - from, 0, INFINITY}, 1) != 0;
-    if (meets) {
-      ASSERT_TRUE(watch.between(from, lights));
-    }
+    if (meets) { ASSERT_TRUE(watch.between(from, lights)); }
     met += meets;
     clear += !watch.between(from, lights);
   }
   EXPECT_GT(met, 300);
-  EXPECT_GT(clear, 10000);   // points from which no way to the lights leads by the box
+  EXPECT_GT(clear, 10000);  // points from which no way to the lights leads by the box
   EXPECT_FALSE(watch.between({5, 0, 0}, {{5, 2, 0}, {5, 2, 0}}));
 }
 

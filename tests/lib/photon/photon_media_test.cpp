@@ -13,10 +13,10 @@ namespace tempolux {
 namespace {
 
 struct Sums {
-  double surfaces = 0;                       ///< W stored at surfaces
-  double collided = 0;                       ///< W: records times extinction
-  double fluence = 0;                        ///< W m: records
-  double direct = 0;                         ///< of them, straight from the lamp
+  double surfaces = 0;  ///< W stored at surfaces
+  double collided = 0;  ///< W: records times extinction
+  double fluence = 0;   ///< W m: records
+  double direct = 0;    ///< of them, straight from the lamp
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
   std::size_t tentative = 0;
 };
@@ -35,7 +35,8 @@ Sums trace_all(const SceneFrame& frame, const EmissionTable& table, const Photon
       }
       ++sums.tentative;
       sums.fluence += double(photon.flux[1]);
-      sums.collided += double(photon.flux[1] * frame.media->extinction({photon.position[0], photon.position[1], photon.position[2]}));
+      sums.collided += double(photon.flux[1] *
+                              frame.media->extinction({photon.position[0], photon.position[1], photon.position[2]}));
       if (photon.bounce == 0) sums.direct += double(photon.flux[1]);
     }
     sums.emitted += batch.emitted;
@@ -55,7 +56,8 @@ TEST(PhotonMedia, RecordsTimesExtinctionAreWhatCollides) {
     options.store_volume = true;
     const Sums sums = trace_all(box.scene.frame(), box.table, options);
     const double lost = sums.emitted.g - sums.surfaces;
-    // The share that is lost: .0036, .31, 1. Each of 10^5 paths is lost or not, and leaves some four records of exponential worth.
+    // The share that is lost: .0036, .31, 1. Each of 10^5 paths is lost or not, and leaves some four records of
+    // exponential worth.
     const double share = lost / sums.emitted.g, sigma_of_share = std::sqrt(share * (1 - share + 0.5 * share) / 1e5);
     EXPECT_NEAR(sums.collided / sums.emitted.g, share, 5 * sigma_of_share) << sigma;
     EXPECT_NEAR(sums.absorbed.g, sums.emitted.g, 1e-9 * sums.emitted.g);
@@ -92,7 +94,9 @@ TEST(PhotonMedia, FileHasLedgerMajorantsAndDirections) {
     std::string bytes;
     formats::PhotonHeader header;
     header.identity.first_frame = header.identity.last_frame = 12;
-    write_photon_map(photons, options, header, [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, {});
+    write_photon_map(photons, options, header,
+                     [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                     {});
     EXPECT_EQ(bytes.substr(8, 4), std::string("\1\0\3\0", 4));
     EXPECT_NE(bytes.find("majorants: " + photons.majorants().hash()), std::string::npos);
     EXPECT_NE(bytes.find(g == 0 ? "columns: none" : "columns: direction"), std::string::npos);

@@ -61,10 +61,11 @@ INSTANTIATE_TEST_SUITE_P(Rooms, ClosedBoxPhotons,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.0f, 0.5f, 0.9f, 0.99f)));
 
-/// A point light in a floor's plane: the cosine is 0, the floor gets nothing, though every other photon starts into it. A light a
-/// millionth before the floor gives it half of its flux.
+/// A point light in a floor's plane: the cosine is 0, the floor gets nothing, though every other photon starts into it.
+/// A light a millionth before the floor gives it half of its flux.
 TEST(PhotonTracer, AFloorGetsNothingFromALightInItsPlane) {
-  for (const auto& [a, b] : {std::pair{Vec3{1, 0, 0}, Vec3{0, 0, 1}}, std::pair{Vec3{1, 0.5f, 0.2f}, Vec3{-0.4f, 0.3f, 1}}})
+  for (const auto& [a, b] :
+       {std::pair{Vec3{1, 0, 0}, Vec3{0, 0, 1}}, std::pair{Vec3{1, 0.5f, 0.2f}, Vec3{-0.4f, 0.3f, 1}}})
     for (const float before : {0.0f, 1e-6f}) {
       test::HandMadeScene scene;
       const Vec3 middle{0.1f, 0.3f, -0.2f};
@@ -94,7 +95,9 @@ TEST(PhotonTracer, APhotonDoesNotDependOnTheGroupsItIsCountedIn) {
     options.photon_count = 6300;
     options.group_count = groups;
     Sums sums = trace_all(PhotonTracer(tracer, lights, options));
-    std::sort(sums.photons.begin(), sums.photons.end(), [](const auto& a, const auto& b) { return std::tie(a.position, a.flux, a.bounce) < std::tie(b.position, b.flux, b.bounce); });
+    std::sort(sums.photons.begin(), sums.photons.end(), [](const auto& a, const auto& b) {
+      return std::tie(a.position, a.flux, a.bounce) < std::tie(b.position, b.flux, b.bounce);
+    });
     return sums.photons;
   };
   const auto one = sorted(1);
@@ -129,15 +132,17 @@ TEST(PhotonMap, BytesAreEqualForAnyNumberOfThreads) {
   for (int threads : {1, 2, 3, 7}) {
     const ThreadLimit limit(threads);
     std::string bytes;
-    write_photon_map(photons, options, formats::PhotonHeader(), [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, {});
+    write_photon_map(photons, options, formats::PhotonHeader(),
+                     [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+                     {});
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first) << threads << " threads";
   }
 }
 
 TEST(PhotonMap, WhereNothingIsAbsorbedTheTotalIsNotNegative) {
-  // A convex white thing under a sun: all light escapes; roulette kills some photons and makes up for it with the others, so
-  // the difference has either sign.
+  // A convex white thing under a sun: all light escapes; roulette kills some photons and makes up for it with the
+  // others, so the difference has either sign.
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     test::HandMadeScene scene;
     scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, test::matte(Rgb(1.0f)));
@@ -149,7 +154,8 @@ TEST(PhotonMap, WhereNothingIsAbsorbedTheTotalIsNotNegative) {
     options.photon_count = 1000;
     options.seed = seed;
     const PhotonTracer photons(tracer, lights, options);
-    const auto result = write_photon_map(photons, options, formats::PhotonHeader(), [](const void*, std::size_t) {}, {});
+    const auto result =
+        write_photon_map(photons, options, formats::PhotonHeader(), [](const void*, std::size_t) {}, {});
     for (const double x : result.totals.absorbed_flux) EXPECT_GE(x, 0) << seed;
   }
 }

@@ -1,4 +1,5 @@
-// Selective photon tracing: an update of all groups is a fresh map, one of none is the old one, and overlays say the same as whole files.
+// Selective photon tracing: an update of all groups is a fresh map, one of none is the old one, and overlays say the
+// same as whole files.
 #include "lib/photon/photon_update.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +37,8 @@ class PhotonUpdate : public testing::Test {
       const MediumOptions medium{.sigma_t = sigma, .albedo = Rgb(0.7f)};
       const auto own = test::cube_of_medium({}, 1.2, medium);
       const MajorantGrid frozen = test::cube_of_medium({}, 1.2, {.sigma_t = 2})->majorants();
-      box.scene.set_media(std::make_shared<const Media>(std::vector<Medium>(own->all().begin(), own->all().end()), frozen));
+      box.scene.set_media(
+          std::make_shared<const Media>(std::vector<Medium>(own->all().begin(), own->all().end()), frozen));
       tracer = std::make_unique<Tracer>(box.scene.frame());
       lights = std::make_unique<Lights>(box.scene.frame(), box.table);
       photons = std::make_unique<PhotonTracer>(*tracer, *lights, options);
@@ -61,14 +63,17 @@ class PhotonUpdate : public testing::Test {
   std::string fresh(const std::string& name, const Room& room, int frame) const {
     return written(name, [&](const auto& sink) { write_photon_map(*room.photons, options_, header(frame), sink, {}); });
   }
-  std::string updated(const std::string& name, const std::string& from, const Room& room, int frame, const UpdateOptions& how, bool same = false) {
+  std::string updated(const std::string& name, const std::string& from, const Room& room, int frame,
+                      const UpdateOptions& how, bool same = false) {
     PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
     groups_ = choose_groups(previous, frame, same, how);
     return written(name, [&](const auto& sink) {
       write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true, {}}, sink);
     });
   }
-  bool is_overlay(const std::string& name) const { return !formats::PhotonReader(path(name)).header().base_name.empty(); }
+  bool is_overlay(const std::string& name) const {
+    return !formats::PhotonReader(path(name)).header().base_name.empty();
+  }
 
   std::filesystem::path folder_;
   PhotonOptions options_;
@@ -87,8 +92,8 @@ TEST_F(PhotonUpdate, OfAllGroupsIsAFreshMapOfNoneTheOld) {
   EXPECT_LT(std::filesystem::file_size(path("still.photons")), 1000u);
 }
 
-/// A third of the groups at each of three frames: each group once, so that the third map is a fresh one; the first is an overlay, the second
-/// differs in more than half of its groups and is whole.
+/// A third of the groups at each of three frames: each group once, so that the third map is a fresh one; the first is
+/// an overlay, the second differs in more than half of its groups and is whole.
 TEST_F(PhotonUpdate, OldestFirstGoesRoundOnce) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);
@@ -128,8 +133,9 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   EXPECT_EQ(whole, two);
 }
 
-/// A map kept in memory from frame to frame makes the files that one read anew in each frame makes, priorities included: overlays upon overlays,
-/// until more than half of the groups differ and a whole map is written, which has to be read again.
+/// A map kept in memory from frame to frame makes the files that one read anew in each frame makes, priorities
+/// included: overlays upon overlays, until more than half of the groups differ and a whole map is written, which has to
+/// be read again.
 TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);
@@ -139,8 +145,9 @@ TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
   for (int frame = 1; frame <= 4; ++frame) {
     const UpdateOptions how{frame % 2 ? UpdateStrategy::census : UpdateStrategy::oldest, 12, 0};
     const Room& room = frame % 2 ? thick : thin;
-    const std::string name = std::to_string(frame) + ".photons", before = path("kept/" + std::to_string(frame - 1) + ".photons");
-    ASSERT_EQ(kept.is_kept(), frame < 4) << frame;   // 36 of 63 groups differ at frame 3
+    const std::string name = std::to_string(frame) + ".photons",
+                      before = path("kept/" + std::to_string(frame - 1) + ".photons");
+    ASSERT_EQ(kept.is_kept(), frame < 4) << frame;  // 36 of 63 groups differ at frame 3
     if (!kept.is_kept()) kept = read_previous(before, *room.photons, how.strategy, {}, true);
     find_change(before, kept, *room.photons, how.strategy, {});
     const std::string wanted = updated(name, std::to_string(frame - 1) + ".photons", room, frame, how);
@@ -148,9 +155,13 @@ TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
     ASSERT_EQ(kept.change, read.change) << frame;
     ASSERT_EQ(kept.ledger, read.ledger) << frame;
     ASSERT_EQ(choose_groups(kept, frame, false, how), groups_);
-    EXPECT_EQ(written("kept/" + name, [&](const auto& sink) {
-      write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true, {}}, sink);
-    }), wanted) << frame;
+    EXPECT_EQ(
+        written("kept/" + name,
+                [&](const auto& sink) {
+                  write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true, {}}, sink);
+                }),
+        wanted)
+        << frame;
     EXPECT_EQ(is_overlay("kept/" + name), is_overlay(name)) << frame;
     EXPECT_EQ(std::filesystem::file_size(path("kept/" + name)), std::filesystem::file_size(path(name))) << frame;
   }
@@ -172,15 +183,21 @@ TEST_F(PhotonUpdate, CensusSeesChangeAndOnlyThat) {
   while (reader.read_block(block))
     for (const formats::Photon& p : block.photons)
       if (p.kind == formats::PathKind::tentative)
-        collided += double((p.flux[0] + p.flux[1] + p.flux[2]) / 3 * thin.tracer->frame().media->extinction({p.position[0], p.position[1], p.position[2]}));
+        collided += double((p.flux[0] + p.flux[1] + p.flux[2]) / 3 *
+                           thin.tracer->frame().media->extinction({p.position[0], p.position[1], p.position[2]}));
   EXPECT_NEAR(sum, 3 * collided, 0.003 * sum);
   updated("1.photons", "0.photons", thick, 1, {UpdateStrategy::census, 5, 0});
   ASSERT_EQ(groups_.size(), 5u);
   for (const std::uint32_t g : groups_)
-    EXPECT_GE(much.change[g], [&] { auto sorted = much.change; std::ranges::sort(sorted, std::greater<>()); return sorted[4]; }());
+    EXPECT_GE(much.change[g], [&] {
+      auto sorted = much.change;
+      std::ranges::sort(sorted, std::greater<>());
+      return sorted[4];
+    }());
 }
 
-/// Pilots are paths of the map: their signatures cost it nothing, and walked again through the same smoke they are the same.
+/// Pilots are paths of the map: their signatures cost it nothing, and walked again through the same smoke they are the
+/// same.
 TEST_F(PhotonUpdate, PilotsTellWhatHasChanged) {
   PhotonOptions plain = options_;
   options_.pilots = 7;
@@ -189,12 +206,15 @@ TEST_F(PhotonUpdate, PilotsTellWhatHasChanged) {
   options_.pilots = 0;
   EXPECT_EQ(watched, fresh("plain.photons", unwatched, 0));
   EXPECT_THROW(read_previous(path("plain.photons"), *thick.photons, UpdateStrategy::fde, {}), InputError);
-  const auto change = [&](const Room& room, UpdateStrategy strategy) { return read_previous(path("0.photons"), *room.photons, strategy, {}).change; };
+  const auto change = [&](const Room& room, UpdateStrategy strategy) {
+    return read_previous(path("0.photons"), *room.photons, strategy, {}).change;
+  };
   for (const auto strategy : {UpdateStrategy::fde, UpdateStrategy::dip, UpdateStrategy::hybrid, UpdateStrategy::path})
     for (const double c : change(same, strategy)) EXPECT_EQ(c, 0);
-  // Of smoke that has changed everywhere each pilot that looks at any sees it; some scatter elsewhere; what is scattered elsewhere
-  // was looked at; and where surfaces stand, paths differ only by smoke.
-  const auto fde = change(thick, UpdateStrategy::fde), dip = change(thick, UpdateStrategy::dip), way = change(thick, UpdateStrategy::path);
+  // Of smoke that has changed everywhere each pilot that looks at any sees it; some scatter elsewhere; what is
+  // scattered elsewhere was looked at; and where surfaces stand, paths differ only by smoke.
+  const auto fde = change(thick, UpdateStrategy::fde), dip = change(thick, UpdateStrategy::dip),
+             way = change(thick, UpdateStrategy::path);
   double looked = 0, moved = 0;
   for (std::size_t g = 0; g < fde.size(); ++g) {
     EXPECT_LE(dip[g], fde[g]);
@@ -216,12 +236,14 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
     for (std::size_t q = 0; q < 100; ++q)
       if (a.pilots[q].collisions == b.pilots[q].collisions && a.pilots[q].vertices == b.pilots[q].vertices)
         difference += std::pow(a.pilots[q].sketch - b.pilots[q].sketch, 2);
-    for (const PhotonBatch* batch : {&a, &b})   // places of paths that differ are few: 1 in 2000 places
+    for (const PhotonBatch* batch : {&a, &b})  // places of paths that differ are few: 1 in 2000 places
       for (const formats::Photon& p : batch->block.photons) {
         if (p.kind != formats::PathKind::tentative) continue;
         const Vec3 at{p.position[0], p.position[1], p.position[2]};
-        const double change = double(more.photons->media()->extinction(at)) - double(thin.photons->media()->extinction(at));
-        const double share = double(options_.volume_share), flux_per_majorant = share * double(p.flux[0] + p.flux[1] + p.flux[2]) / 3;
+        const double change =
+            double(more.photons->media()->extinction(at)) - double(thin.photons->media()->extinction(at));
+        const double share = double(options_.volume_share),
+                     flux_per_majorant = share * double(p.flux[0] + p.flux[1] + p.flux[2]) / 3;
         wanted += 0.5 / share * std::pow(change * flux_per_majorant, 2);
       }
   }
@@ -237,50 +259,62 @@ TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
   const std::vector<std::uint32_t> some{3, 17, 40};
   const auto with = [&](const std::string& name, const std::function<const PhotonTracer&(int)>& corrective) {
     return written(name, [&](const auto& sink) {
-      write_updated_map(*thick.photons, options_, header(1), {path("0.photons"), previous, some, true, corrective}, sink);
+      write_updated_map(*thick.photons, options_, header(1), {path("0.photons"), previous, some, true, corrective},
+                        sink);
     });
   };
   EXPECT_EQ(with("a.photons", {}), with("b.photons", [&](int frame) -> const PhotonTracer& {
-    EXPECT_EQ(frame, 0);
-    return *thin.photons;
-  }));
+              EXPECT_EQ(frame, 0);
+              return *thin.photons;
+            }));
   EXPECT_THROW(with("c.photons", [&](int) -> const PhotonTracer& { return *thick.photons; }), InputError);
 }
 
 TEST(SpreadPaths, AddsUpAndGoesWhereVarianceFallsMost) {
   // On paper: moments 4 and 1, ten paths each; 10 more: 20 and 10 are in proportion to 2 and 1.
-  EXPECT_EQ(spread_paths(std::vector<double>{4, 1}, std::vector<std::uint64_t>{10, 10}, 10), (std::vector<std::uint64_t>{20, 10}));
+  EXPECT_EQ(spread_paths(std::vector<double>{4, 1}, std::vector<std::uint64_t>{10, 10}, 10),
+            (std::vector<std::uint64_t>{20, 10}));
   // 14 in proportion to 2 and 1 would take some of the second away: the first gets all that are new.
-  EXPECT_EQ(spread_paths(std::vector<double>{4, 1, 0}, std::vector<std::uint64_t>{2, 10, 2}, 2), (std::vector<std::uint64_t>{4, 10, 2}));
-  EXPECT_EQ(spread_paths(std::vector<double>{0, 0}, std::vector<std::uint64_t>{3, 4}, 3), (std::vector<std::uint64_t>{5, 5}));
-  EXPECT_EQ(spread_paths(std::vector<double>{1, 1, 1}, std::vector<std::uint64_t>{5, 5, 5}, 2), (std::vector<std::uint64_t>{6, 6, 5}));
+  EXPECT_EQ(spread_paths(std::vector<double>{4, 1, 0}, std::vector<std::uint64_t>{2, 10, 2}, 2),
+            (std::vector<std::uint64_t>{4, 10, 2}));
+  EXPECT_EQ(spread_paths(std::vector<double>{0, 0}, std::vector<std::uint64_t>{3, 4}, 3),
+            (std::vector<std::uint64_t>{5, 5}));
+  EXPECT_EQ(spread_paths(std::vector<double>{1, 1, 1}, std::vector<std::uint64_t>{5, 5, 5}, 2),
+            (std::vector<std::uint64_t>{6, 6, 5}));
 }
 
-/// Many further paths in some groups change no mean: emitted flux stays to the last digits, and the light in the smoke within its noise.
+/// Many further paths in some groups change no mean: emitted flux stays to the last digits, and the light in the smoke
+/// within its noise.
 TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
   const Room thick(2, options_);
   fresh("0.photons", thick, 0);
   GroupMoments groups = read_moments(path("0.photons"), *thick.photons);
   for (std::size_t g = 0; g < groups.moments.size(); ++g) groups.moments[g] = g % 5 == 0 ? 1 : 0;
-  written("1.photons", [&](const auto& sink) { write_refined_map(*thick.photons, options_, header(0), path("0.photons"), groups, 13000, sink); });
+  written("1.photons", [&](const auto& sink) {
+    write_refined_map(*thick.photons, options_, header(0), path("0.photons"), groups, 13000, sink);
+  });
   const auto totals = [&](const std::string& name) {
     formats::PhotonReader reader(path(name));
     formats::PhotonBlock block;
     double worth = 0;
     while (reader.read_block(block))
-      for (const formats::Photon& p : block.photons) worth += p.kind == formats::PathKind::tentative ? double(p.flux[0]) : 0;
-    for (const formats::GroupFlux& g : reader.ledger()) EXPECT_EQ(g.paths, name == "1.photons" && g.group % 5 == 0 ? 1100u : 100u);
+      for (const formats::Photon& p : block.photons)
+        worth += p.kind == formats::PathKind::tentative ? double(p.flux[0]) : 0;
+    for (const formats::GroupFlux& g : reader.ledger())
+      EXPECT_EQ(g.paths, name == "1.photons" && g.group % 5 == 0 ? 1100u : 100u);
     EXPECT_EQ(reader.header().emitted_count, name == "1.photons" ? 19300u : 6300u);
     return std::pair(reader.totals().emitted_flux[0], worth);
   };
   const auto before = totals("0.photons"), after = totals("1.photons");
   EXPECT_NEAR(after.first, before.first, 1e-6 * before.first);
-  // 6300 paths: 2 % of what they are worth in the smoke. Equal flux of all paths would show the groups that have eleven times as many.
+  // 6300 paths: 2 % of what they are worth in the smoke. Equal flux of all paths would show the groups that have eleven
+  // times as many.
   EXPECT_NEAR(after.second, before.second, 0.06 * before.second);
 }
 
-/// On paper: 6 groups are boxes 3 x 2 of base 3 (where) and base 2; group g is that of digits g mod 3 and g mod 2, each permuted. The values are
-/// put so that a group's own is 1000 and those beside it are known: all others 1 give 1, whoever they are.
+/// On paper: 6 groups are boxes 3 x 2 of base 3 (where) and base 2; group g is that of digits g mod 3 and g mod 2, each
+/// permuted. The values are put so that a group's own is 1000 and those beside it are known: all others 1 give 1,
+/// whoever they are.
 TEST(BesideGroups, LeavesOutOnesOwn) {
   for (const std::uint64_t seed : {0u, 1u, 7u})
     for (std::size_t g = 0; g < 6; ++g) {
@@ -288,19 +322,20 @@ TEST(BesideGroups, LeavesOutOnesOwn) {
       values[g] = 1000;
       const std::vector<double> beside = beside_groups(values, seed);
       EXPECT_EQ(beside[g], 1);
-      // In 3 x 2 boxes a corner has two neighbours, a middle one three, and each of those sees the 1000 among its own two or three.
+      // In 3 x 2 boxes a corner has two neighbours, a middle one three, and each of those sees the 1000 among its own
+      // two or three.
       int seen = 0;
       for (std::size_t o = 0; o < 6; ++o) seen += beside[o] > 1;
       EXPECT_TRUE(seen == 2 || seen == 3) << seen;
     }
-  EXPECT_EQ(beside_groups(std::vector<double>(11, 2.0), 0), std::vector<double>(11, 2.0));   // no boxes: the mean of all
+  EXPECT_EQ(beside_groups(std::vector<double>(11, 2.0), 0), std::vector<double>(11, 2.0));  // no boxes: the mean of all
   EXPECT_EQ(beside_groups(std::vector<double>{3}, 0), std::vector<double>{3});
 }
 
-/// Refined maps have the light of plain ones in the mean: 63 groups of 4 paths, of which a twentieth of the tentative photons is recorded, get five
-/// times as many more, over 300 seeds. Paths given to groups by what these found themselves lose 17 % of the light: the lucky are
-/// corrected, the unlucky are not. The plain maps have 38 000 records that count alike but for a factor of 2: .6 % by chance, and paths
-/// have more than one; 3 % is four deviations.
+/// Refined maps have the light of plain ones in the mean: 63 groups of 4 paths, of which a twentieth of the tentative
+/// photons is recorded, get five times as many more, over 300 seeds. Paths given to groups by what these found
+/// themselves lose 17 % of the light: the lucky are corrected, the unlucky are not. The plain maps have 38 000 records
+/// that count alike but for a factor of 2: .6 % by chance, and paths have more than one; 3 % is four deviations.
 TEST_F(PhotonUpdate, RefiningLosesNoLight) {
   const Room thick(2, options_);
   double before = 0, after = 0;
@@ -309,7 +344,8 @@ TEST_F(PhotonUpdate, RefiningLosesNoLight) {
     formats::PhotonBlock block;
     double sum = 0;
     while (reader.read_block(block))
-      for (const formats::Photon& p : block.photons) sum += p.kind == formats::PathKind::tentative ? double(p.flux[0]) * double(p.normal[0]) : 0;
+      for (const formats::Photon& p : block.photons)
+        sum += p.kind == formats::PathKind::tentative ? double(p.flux[0]) * double(p.normal[0]) : 0;
     return sum;
   };
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -320,7 +356,9 @@ TEST_F(PhotonUpdate, RefiningLosesNoLight) {
     const PhotonTracer photons(*thick.tracer, *thick.lights, options);
     written("0.photons", [&](const auto& sink) { write_photon_map(photons, options, header(0), sink, {}); });
     const GroupMoments groups = read_moments(path("0.photons"), photons);
-    written("1.photons", [&](const auto& sink) { write_refined_map(photons, options, header(0), path("0.photons"), groups, 1260, sink); });
+    written("1.photons", [&](const auto& sink) {
+      write_refined_map(photons, options, header(0), path("0.photons"), groups, 1260, sink);
+    });
     before += collided("0.photons");
     after += collided("1.photons");
   }

@@ -7,10 +7,10 @@ namespace tempolux {
 namespace {
 
 TEST(Estimate, APowerLawGoesThroughItsTwoPoints) {
-  EXPECT_NEAR(power_law(10, 100, 20, 200, 80), 800, 1e-9);   // in proportion
-  EXPECT_NEAR(power_law(10, 100, 20, 100, 80), 100, 1e-9);   // constant
-  EXPECT_NEAR(power_law(10, 100, 20, 90, 80), 90, 1e-9);     // never falls
-  EXPECT_NEAR(power_law(10, 1, 20, 100, 40), 400, 1e-9);     // never faster than the pixels
+  EXPECT_NEAR(power_law(10, 100, 20, 200, 80), 800, 1e-9);  // in proportion
+  EXPECT_NEAR(power_law(10, 100, 20, 100, 80), 100, 1e-9);  // constant
+  EXPECT_NEAR(power_law(10, 100, 20, 90, 80), 90, 1e-9);    // never falls
+  EXPECT_NEAR(power_law(10, 1, 20, 100, 40), 400, 1e-9);    // never faster than the pixels
   EXPECT_EQ(power_law(10, 5, 20, 0, 40), 0);
   EXPECT_NEAR(power_law(10, 0, 20, 7, 40), 14, 1e-9);
 }
@@ -18,7 +18,7 @@ TEST(Estimate, APowerLawGoesThroughItsTwoPoints) {
 TEST(Estimate, TextHasAllStagesAndTheirSums) {
   const std::string text = estimate_text({{"photon-trace", 2, 1.1, 1e6}, {"frame-render", 4, 2.1, 5e6}}, 2);
   EXPECT_NE(text.find("photon-trace"), std::string::npos);
-  EXPECT_NE(text.find("10.6                 22.0 MB"), std::string::npos) << text;   // 2 x 1.1 + 4 x 2.1 s
+  EXPECT_NE(text.find("10.6                 22.0 MB"), std::string::npos) << text;  // 2 x 1.1 + 4 x 2.1 s
   EXPECT_NE(text.find("about 6 s on 2 processors\n"), std::string::npos) << text;
   EXPECT_NE(estimate_text({{"frame-render", 1000, 36, 0}}, 2).find("about 5.0 hours on 2"), std::string::npos);
 }

@@ -17,10 +17,14 @@ namespace fs = std::filesystem;
 
 class InputsTest : public testing::Test {
  protected:
-  InputsTest() : folder(fs::temp_directory_path() / ("inputs_test." + std::to_string(::getpid()))) { fs::create_directories(folder); }
+  InputsTest() : folder(fs::temp_directory_path() / ("inputs_test." + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
+  }
   ~InputsTest() override { fs::remove_all(folder); }
   std::string file(const std::string& name) const { return (folder / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name), std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(file(name), std::ios::binary) << text;
+  }
   /// Notes these files as they are now.
   void note(const std::vector<std::string>& names, const std::string& wish = "wish") const {
     Inputs inputs("");
@@ -65,7 +69,8 @@ TEST_F(InputsTest, NamesMayHoldAnyCharacter) {
 }
 
 TEST_F(InputsTest, WhatIsNoSuchFileIsNoPlan) {
-  for (const char* text : {"", "tempolux inputs 1", "tempolux inputs 1\nwish\n", "tempolux inputs 1\nwish\n1 2 3 4 hash 99999999 a\n"}) {
+  for (const char* text :
+       {"", "tempolux inputs 1", "tempolux inputs 1\nwish\n", "tempolux inputs 1\nwish\n1 2 3 4 hash 99999999 a\n"}) {
     write("noted", text);
     EXPECT_FALSE(unchanged()) << text;
   }

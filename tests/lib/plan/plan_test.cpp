@@ -72,7 +72,8 @@ void slide(Scene& scene, int node, const std::vector<double>& places) {
   scene.duration_s = std::max(scene.duration_s, track.times_s.back());
 }
 
-Plan plan_of(const Scene& scene, const std::vector<int>& frames, int segment_length = 24, const std::vector<int>& others = {}) {
+Plan plan_of(const Scene& scene, const std::vector<int>& frames, int segment_length = 24,
+             const std::vector<int>& others = {}) {
   TimeOptions time;
   time.segment_length = segment_length;
   return make_plan(scene, frames, kCamera, time, {}, others);
@@ -123,7 +124,7 @@ TEST(Plan, AStillSceneIsOneFrame) {
   EXPECT_EQ(plan.segments.size(), 1u);
   EXPECT_EQ(lit_frames(plan), (Numbers{{0, 0}, {1, 0}, {5, 0}}));
   Scene scene = still_room();
-  slide(scene, kBox, {0, 0, 0, 0});   // equal keys move nothing
+  slide(scene, kBox, {0, 0, 0, 0});  // equal keys move nothing
   EXPECT_EQ(lit_frames(plan_of(scene, {0, 1, 2, 3}, 2)), (Numbers{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
   EXPECT_TRUE(plan_of(scene, {0}).warnings.empty());
 }
@@ -162,7 +163,8 @@ TEST(Plan, FramesOutsideTheAnimationShowItsNearestEnd) {
   const Plan plan = plan_of(scene, {-2, 0, 3, 9}, 2);
   EXPECT_EQ(lit_frames(plan), (Numbers{{-2, 0}, {0, 0}, {3, 3}, {9, 3}}));
   ASSERT_EQ(plan.warnings.size(), 1u);
-  EXPECT_EQ(plan.warnings[0], "of the frames asked for -2, 9 are outside the animation (0 to 3): its nearest end is shown");
+  EXPECT_EQ(plan.warnings[0],
+            "of the frames asked for -2, 9 are outside the animation (0 to 3): its nearest end is shown");
 }
 
 TEST(Plan, TheOrderOfTheRangeIsKeptAndDuplicatesAreNot) {
@@ -195,7 +197,7 @@ TEST(Plan, ASceneWithoutLightIsRefusedWithTheExportersBox) {
 TEST(LookedFrames, AreEndsMiddleAndWhereSomethingComesOrGoes) {
   Scene scene = still_room();
   std::vector<double> places(24, 0.0);
-  std::fill(places.begin() + 17, places.end(), 5.0);   // stands, jumps, stands
+  std::fill(places.begin() + 17, places.end(), 5.0);  // stands, jumps, stands
   places.back() = 5.5;
   slide(scene, kBox, places);
   // 0 and 11 show the same; 17 is where it jumps; 23 moves on.
@@ -230,7 +232,9 @@ TEST(Graph, ANameChangesWithAllThatTheFileIsMadeFromAndWithNothingElse) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 2});
   const Graph graph = graph_of(plan_of(scene, {0, 1}), records());
-  const auto same = [&](const Graph& other, const char* folder) { return names(graph, folder) == names(other, folder); };
+  const auto same = [&](const Graph& other, const char* folder) {
+    return names(graph, folder) == names(other, folder);
+  };
 
   Scene camera = scene;
   camera.nodes[kCamera].translation.y = 1;
@@ -283,7 +287,7 @@ TEST(Graph, NothingIsWarpedIntoAFrameOfOtherLight) {
   Scene scene = still_room();
   std::vector<double> places(9), lamp(9, 0.0);
   for (std::size_t f = 0; f < 9; ++f) places[f] = double(f);
-  lamp[3] = 1;   // the lamp is elsewhere in frame 3
+  lamp[3] = 1;  // the lamp is elsewhere in frame 3
   slide(scene, kCamera, places);
   slide(scene, kLamp, lamp);
   Wish wish;
@@ -312,7 +316,8 @@ TEST(PlanFiles, JsonGivesFactsAndHashesOfEachFrame) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 1, 0});
   const Plan plan = plan_of(scene, {2});
-  const nlohmann::json json = nlohmann::json::parse(plan_json(plan, graph_of(plan, records()), "room.glb", "history\n"));
+  const nlohmann::json json =
+      nlohmann::json::parse(plan_json(plan, graph_of(plan, records()), "room.glb", "history\n"));
   EXPECT_EQ(json["format"], "tempolux plan");
   EXPECT_EQ(json["segments"][0]["moves"][0]["node"], "Box");
   EXPECT_EQ(json["segments"][0]["frames"][2]["lit_as"], 1);

@@ -65,9 +65,9 @@ TEST(AdaptiveFrame, SamplesWhereTheyAreNeededBringNoBias) {
   }
 }
 
-/// One first sample is enough to ask for more: with a limit that no pixel reaches, n ~ error^(-7/8), 2^(7/8) = 1.83 times as many for
-/// half of it. Rounding down takes half a sample of some tens, and pixels that see nothing but black stay at one: 5 %. Not only
-/// edges ask: the lamp is wide, light on the walls scatters by its cosines alone.
+/// One first sample is enough to ask for more: with a limit that no pixel reaches, n ~ error^(-7/8), 2^(7/8) = 1.83
+/// times as many for half of it. Rounding down takes half a sample of some tens, and pixels that see nothing but black
+/// stay at one: 5 %. Not only edges ask: the lamp is wide, light on the walls scatters by its cosines alone.
 TEST(AdaptiveFrame, OneFirstSampleIsEnoughToRefine) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -90,8 +90,8 @@ TEST(AdaptiveFrame, OneFirstSampleIsEnoughToRefine) {
   EXPECT_NEAR(more / some, std::pow(2.0, 0.875), 0.05 * std::pow(2.0, 0.875));
 }
 
-/// For a filter light in mirrors alone asks for more samples: a matte room takes none, and is that of fixed samples but for rounding: parts
-/// are summed one by one, in float.
+/// For a filter light in mirrors alone asks for more samples: a matte room takes none, and is that of fixed samples but
+/// for rounding: parts are summed one by one, in float.
 TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -111,9 +111,10 @@ TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
     }
 }
 
-/// A bright sheet and a black one that meet in the middle of a column of pixels: of four samples, stratified, two are on either.
-/// Asked for more than it may have, a pixel that has an edge or is beside one takes all: that column and one on either side.
-/// Where they meet between two columns no pixel's samples differ, but those of its neighbours do: both columns take all.
+/// A bright sheet and a black one that meet in the middle of a column of pixels: of four samples, stratified, two are
+/// on either. Asked for more than it may have, a pixel that has an edge or is beside one takes all: that column and one
+/// on either side. Where they meet between two columns no pixel's samples differ, but those of its neighbours do: both
+/// columns take all.
 TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   for (const auto& [column, taken] : {std::pair{20.5f, 3.0}, std::pair{20.0f, 2.0}}) {
     const float edge = column / 32;
@@ -132,14 +133,15 @@ TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   }
 }
 
-/// The border of the shadow that a sheet cut across throws of a square lamp: of the lamp's area (1 - s)^2 / 2 are covered where
-/// x + y = (0.6 s - 0.5) / 0.4, none from s = 1 on; looked at is s from 0.82 to 0.99, p < 1.6 %. Of four samples one misses it in 4 p
-/// of the pixels, which then are 25 % dark. The mean over that part and all seeds is right within 4 sigma: were further samples
-/// given to just those, it would be .26 % too bright.
+/// The border of the shadow that a sheet cut across throws of a square lamp: of the lamp's area (1 - s)^2 / 2 are
+/// covered where x + y = (0.6 s - 0.5) / 0.4, none from s = 1 on; looked at is s from 0.82 to 0.99, p < 1.6 %. Of four
+/// samples one misses it in 4 p of the pixels, which then are 25 % dark. The mean over that part and all seeds is right
+/// within 4 sigma: were further samples given to just those, it would be .26 % too bright.
 TEST(AdaptiveFrame, BordersOfShadowsKeepTheirMean) {
   HandMadeScene made;
   made.add_quad({-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}, test::matte(Rgb(0.5f)));
-  made.add_quad({-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2}, test::matte(Rgb(0.0f), Rgb(1.0f)));
+  made.add_quad({-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2},
+                test::matte(Rgb(0.0f), Rgb(1.0f)));
   made.add_quad({2.5f, -3, 1.2f}, {-3, 2.5f, 1.2f}, {-6, -0.5f, 1.2f}, {-0.5f, -6, 1.2f}, test::matte(Rgb(0.0f)));
   const SceneFrame& frame = made.frame();
   const Tracer tracer(frame);
@@ -172,9 +174,10 @@ TEST(AdaptiveFrame, BordersOfShadowsKeepTheirMean) {
   EXPECT_LT(means.sigma(), 4e-4);
 }
 
-/// Lamps of a 25th of a pixel in a mirror, which else shows .2: of a lamp's pixels 16 % meet it with one of their four samples.
-/// Their neighbours take further samples, they themselves do not, and the mean over the picture is right within 4 sigma of 32 seeds. Were
-/// pixels that met a lamp to take more for their own sake, 84 % of the lamps' light were missing, 9.6 % of all.
+/// Lamps of a 25th of a pixel in a mirror, which else shows .2: of a lamp's pixels 16 % meet it with one of their four
+/// samples. Their neighbours take further samples, they themselves do not, and the mean over the picture is right
+/// within 4 sigma of 32 seeds. Were pixels that met a lamp to take more for their own sake, 84 % of the lamps' light
+/// were missing, 9.6 % of all.
 TEST(AdaptiveFrame, LampsSmallerThanPixelsKeepTheirLight) {
   Material mirror = test::matte(Rgb(1.0f));
   mirror.metallic = 1;

@@ -44,7 +44,8 @@ struct Lit {
   explicit Lit(const SceneFrame& frame) : tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
 };
 
-std::vector<AuditEntry> audit(const Lit& lit, const CameraView& view, const RenderedFrame& frame, std::uint64_t paths, std::uint64_t seed = 1) {
+std::vector<AuditEntry> audit(const Lit& lit, const CameraView& view, const RenderedFrame& frame, std::uint64_t paths,
+                              std::uint64_t seed = 1) {
   const std::vector<std::uint32_t> objects(kPixels, 0);
   FrameAudit audit(view, frame, objects, {});
   audit.add_photons(lit.tracer, lit.lights, {.photon_paths = paths, .seed = seed});
@@ -67,7 +68,7 @@ TEST(PhotonSplats, ObliquePlaneUnderALamp) {
   made.add_point_light({0, 1, 0}, Rgb(3.0f));
   const Lit lit(made.frame());
   const CameraView view = wide_view({});
-  std::array<double, 4> column{};   // means over quarters of the picture, left to right
+  std::array<double, 4> column{};  // means over quarters of the picture, left to right
   const Vec3 normal = normalize(Vec3{0, -1, 1}), lamp{0, 1, 0};
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
@@ -77,7 +78,8 @@ TEST(PhotonSplats, ObliquePlaneUnderALamp) {
       if (!(t > 0) || std::abs(at.x) > 60 || at.y > 1.9f || at.y < -30) continue;
       const Vec3 to_lamp = lamp - at;
       const float d2 = dot(to_lamp, to_lamp);
-      column[std::size_t(x * 4 / kWidth)] += double(0.6f * 3 / kPi * std::abs(dot(to_lamp, normal)) / std::sqrt(d2) / d2) / (kPixels / 4);
+      column[std::size_t(x * 4 / kWidth)] +=
+          double(0.6f * 3 / kPi * std::abs(dot(to_lamp, normal)) / std::sqrt(d2) / d2) / (kPixels / 4);
     }
   std::array<double, 4> found{}, error{};
   const std::vector<AuditEntry> entries = audit(lit, view, even_frame(Layer::emission, 1), 400'000);
@@ -88,21 +90,24 @@ TEST(PhotonSplats, ObliquePlaneUnderALamp) {
       error[i] += entry.splats.error * entry.splats.error / 16;
     }
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(found[i] / column[i], 1, 4 * std::sqrt(error[i]) / column[i] + 0.01) << i;   // tiles of fewer than 32 photons are left out: far away, below .5 %
+    EXPECT_NEAR(found[i] / column[i], 1, 4 * std::sqrt(error[i]) / column[i] + 0.01)
+        << i;  // tiles of fewer than 32 photons are left out: far away, below .5 %
     EXPECT_LT(std::sqrt(error[i]) / column[i], 0.02);
   }
 }
 
 /// In a sphere light that was reflected once or more is the same everywhere: E = F rho / (S (1 - rho)), seen
 /// as rho E / pi. A polyhedron of 1152 faces is smaller by .6 % in S. Over 24 seeds the
-/// standard errors are right: (splats - exact) / error is Student's t with 31 degrees of freedom, as the error is that of
-/// 32 maps, so its square has the mean 31 / 29 and the deviation 1.6. Over 384 values, 16 tiles of 24 seeds, 4 sigma are .33. Were the
-/// parts of one map taken for samples the mean would be below .1: each holds starting paths of one kind.
+/// standard errors are right: (splats - exact) / error is Student's t with 31 degrees of freedom, as the error is that
+/// of 32 maps, so its square has the mean 31 / 29 and the deviation 1.6. Over 384 values, 16 tiles of 24 seeds, 4 sigma
+/// are .33. Were the parts of one map taken for samples the mean would be below .1: each holds starting paths of one
+/// kind.
 TEST(PhotonSplats, SphereIsLitEvenlyAndTheErrorIsKnown) {
   test::ClosedBox box(test::Shape::sphere, 0.5f, Rgb(1.0f));
   const SceneFrame& frame = box.scene.frame();
   const CameraView view = wide_view({0.1, -0.2, 0.3});
-  const double surface = test::AreaSampler(frame).area(), exact = 0.5 / 3.14159265 * double(box.flux.g) * 0.5 / (surface * 0.5);
+  const double surface = test::AreaSampler(frame).area(),
+               exact = 0.5 / 3.14159265 * double(box.flux.g) * 0.5 / (surface * 0.5);
   double sum = 0, variance = 0, z2 = 0;
   int tiles = 0, far = 0;
   const Lit lit(frame);
@@ -134,7 +139,8 @@ TEST(PhotonSplats, TheOtherSideOfAThinWallIsDark) {
   HandMadeScene made;
   made.add_quad({-50, -50, -1}, {50, -50, -1}, {50, 50, -1}, {-50, 50, -1}, matte(Rgb(0.6f)));
   made.add_point_light({0, 0, -2}, Rgb(3.0f));
-  EXPECT_TRUE(audit(Lit(made.frame()), wide_view({}), even_frame(Layer::emission, 1), 20'000).empty());   // no photon is in view
+  EXPECT_TRUE(
+      audit(Lit(made.frame()), wide_view({}), even_frame(Layer::emission, 1), 20'000).empty());  // no photon is in view
 }
 
 /// A frame whose indirect light is a tenth too dark is found out, one that is right is not; the share is of
@@ -146,13 +152,14 @@ TEST(FrameAudit, FindsALayerThatIsTooDark) {
   const double exact = 0.5 / 3.14159265 * double(box.flux.g) / test::AreaSampler(frame).area();
   const Lit lit(frame);
   RenderedFrame dark = even_frame(Layer::indirect, float(0.9 * exact));
-  for (Layers& pixel : dark.mean.pixels) pixel[Layer::direct] = Rgb(float(1.1 * exact));   // the picture is 2 exact
+  for (Layers& pixel : dark.mean.pixels) pixel[Layer::direct] = Rgb(float(1.1 * exact));  // the picture is 2 exact
   const AuditEntry entry = *find(audit(lit, view, dark, 300'000), Layer::indirect, "picture");
   EXPECT_NEAR(entry.of_layer(), -0.1, 4 * entry.of_layer_error());
   EXPECT_LT(entry.of_layer_error(), 0.006);
   EXPECT_NEAR(entry.share(), -0.05, 4 * entry.share_error());
   EXPECT_TRUE(is_biased(entry));
-  EXPECT_FALSE(is_biased(*find(audit(lit, view, even_frame(Layer::indirect, float(exact)), 300'000), Layer::indirect, "picture")));
+  EXPECT_FALSE(is_biased(
+      *find(audit(lit, view, even_frame(Layer::indirect, float(exact)), 300'000), Layer::indirect, "picture")));
 }
 
 /// A way of finding light that says there is no indirect light errs by all of it: paths say so, within 4 of
@@ -164,7 +171,9 @@ TEST(FrameAudit, PathsSayWhatIsMissing) {
   options.samples = 64;
   const RenderedFrame reference = render_frame(c.render_scene(), c.view, options);
   double indirect = 0, direct = 0;
-  for (const Layers& pixel : reference.mean.pixels) indirect += channel_mean(Rgbd(pixel[Layer::indirect])) / kPixels, direct += channel_mean(Rgbd(pixel[Layer::direct])) / kPixels;
+  for (const Layers& pixel : reference.mean.pixels)
+    indirect += channel_mean(Rgbd(pixel[Layer::indirect])) / kPixels,
+        direct += channel_mean(Rgbd(pixel[Layer::direct])) / kPixels;
   options.samples = 4;
   options.known = &none.known;
   const RenderedFrame dark = render_frame(c.render_scene(), c.view, options);

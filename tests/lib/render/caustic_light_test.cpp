@@ -20,7 +20,8 @@ using test::HandMadeScene;
 using test::matte;
 
 Material pane() { return test::glass(0, true); }
-std::vector<formats::Photon> trace(const Tracer& tracer, const Lights& lights, std::uint64_t count, std::uint64_t seed) {
+std::vector<formats::Photon> trace(const Tracer& tracer, const Lights& lights, std::uint64_t count,
+                                   std::uint64_t seed) {
   PhotonOptions options;
   options.photon_count = count;
   options.seed = seed;
@@ -41,10 +42,17 @@ TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
   scene.add_quad({-9, 3, 9}, {9, 3, 9}, {9, 3, -9}, {-9, 3, -9}, pane());
   scene.add_quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, matte(Rgb(0.0f)));
   constexpr float kNear = 2, kFar = 2.1f, kHalf = 0.05f;
-  scene.add({{kNear, 0, -kHalf}, {kNear, 0, kHalf}, {kNear, 1, kHalf}, {kNear, 1, -kHalf},
-             {kFar, 0, -kHalf}, {kFar, 0, kHalf}, {kFar, 1, kHalf}, {kFar, 1, -kHalf}},
-            {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {1, 5, 6}, {1, 6, 2}, {0, 7, 4}, {0, 3, 7}, {3, 2, 6}, {3, 6, 7}},
-            matte(Rgb(0.0f)));
+  scene.add(
+      {{kNear, 0, -kHalf},
+       {kNear, 0, kHalf},
+       {kNear, 1, kHalf},
+       {kNear, 1, -kHalf},
+       {kFar, 0, -kHalf},
+       {kFar, 0, kHalf},
+       {kFar, 1, kHalf},
+       {kFar, 1, -kHalf}},
+      {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {1, 5, 6}, {1, 6, 2}, {0, 7, 4}, {0, 3, 7}, {3, 2, 6}, {3, 6, 7}},
+      matte(Rgb(0.0f)));
   scene.add_point_light({0, 4, 0}, Rgb(1.0f));
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
@@ -60,14 +68,15 @@ TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
       expected += pane_transmittance(double(4 - y) / d) * 2 / d / d2;
       found += double(light.caustic({kNear, y, z}, LitSurface(Vec3{-1, 0, 0})).g);
     }
-    for (float z : {-0.04f, 0.0f, 0.04f}) EXPECT_EQ(light.caustic({kFar, 0.5f, z}, LitSurface(Vec3{1, 0, 0})).g, 0) << "the far face is dark";
+    for (float z : {-0.04f, 0.0f, 0.04f})
+      EXPECT_EQ(light.caustic({kFar, 0.5f, z}, LitSurface(Vec3{1, 0, 0})).g, 0) << "the far face is dark";
   }
   EXPECT_NEAR(found / expected, 1, 0.06);
 }
 
-/// Light of irradiance 1 straight down on the steps of a stair 0.1 m deep and 0.02 m high, 12 photons on each: what falls on
-/// a step stays on it and on those that can be reached, so that the mean over places of steps is 1.
-/// 200 maps, 40 places each; neighbouring places share photons: some 200 x 5 independent values of 25 % noise, 1 %.
+/// Light of irradiance 1 straight down on the steps of a stair 0.1 m deep and 0.02 m high, 12 photons on each: what
+/// falls on a step stays on it and on those that can be reached, so that the mean over places of steps is 1. 200 maps,
+/// 40 places each; neighbouring places share photons: some 200 x 5 independent values of 25 % noise, 1 %.
 TEST(CausticLight, KeepsItsMeanOnAStair) {
   HandMadeScene scene;
   std::vector<Vec3> p;
@@ -82,7 +91,7 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
   const Tracer tracer(frame);
   const auto up = formats::encode_normal({0, 1, 0});
   constexpr int kPhotons = kSteps * 100;
-  double all = 0, sum = 0;   // by the k nearest of a place, by footprints
+  double all = 0, sum = 0;  // by the k nearest of a place, by footprints
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const PathRandom random(seed, 3);
     std::vector<formats::Photon> photons;
@@ -106,10 +115,10 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
   EXPECT_NEAR(sum / all, 1, 0.02);
 }
 
-/// Irradiance 1 straight down on a floor, by photons that fall independently and by photons spread as evenly as Halton's
-/// sequence spreads them through a plane mirror: a density of the k nearest would be dark by 1 / (2 k) in the second case.
-/// 5000 places: some 20000 x 3/4 / 30 independent values of 21 % noise in the first case, 0.5 % in
-/// the mean of four maps, of which 3.5 are asked; evenly spread photons have a third of the noise.
+/// Irradiance 1 straight down on a floor, by photons that fall independently and by photons spread as evenly as
+/// Halton's sequence spreads them through a plane mirror: a density of the k nearest would be dark by 1 / (2 k) in the
+/// second case. 5000 places: some 20000 x 3/4 / 30 independent values of 21 % noise in the first case, 0.5 % in the
+/// mean of four maps, of which 3.5 are asked; evenly spread photons have a third of the noise.
 TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
   HandMadeScene scene;
   scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));
@@ -143,15 +152,20 @@ TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
 void add_spot(float radius, float flux, std::vector<formats::Photon>& photons) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const Vec2 d = sample_disc_concentric(PathRandom(1, 7).get2(i, Purpose::test));
-    photons.push_back({{radius * d.x, 0, radius * d.y}, {flux, flux, flux}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::caustic, 1});
+    photons.push_back({{radius * d.x, 0, radius * d.y},
+                       {flux, flux, flux},
+                       formats::encode_normal({0, 1, 0}),
+                       0,
+                       formats::PathKind::caustic,
+                       1});
   }
 }
 
-/// Spots keep their light: 1000 photons of 1 W in all on a disc of radius 1 m on a floor, free, and with a thin wall through
-/// its middle. E summed over a grid of 0.02 m, a fraction of the least radius (0.16 m; the sum of a paraboloid of that width is
-/// right to 1e-3), is 1 W, and with the wall that of the photons on either side: the wall shades nothing here, it parts.
-/// With the wall the areas of footprints at it are drawn: some 400 photons' noise of 20 %, 1 %, of which 2.5 are asked.
-/// The 25 nearest photons of each place give 1.08 to 1.12 (see FootprintDensity).
+/// Spots keep their light: 1000 photons of 1 W in all on a disc of radius 1 m on a floor, free, and with a thin wall
+/// through its middle. E summed over a grid of 0.02 m, a fraction of the least radius (0.16 m; the sum of a paraboloid
+/// of that width is right to 1e-3), is 1 W, and with the wall that of the photons on either side: the wall shades
+/// nothing here, it parts. With the wall the areas of footprints at it are drawn: some 400 photons' noise of 20 %, 1 %,
+/// of which 2.5 are asked. The 25 nearest photons of each place give 1.08 to 1.12 (see FootprintDensity).
 TEST(CausticLight, SpotsKeepTheirLight) {
   for (const bool wall : {false, true}) {
     HandMadeScene scene;
@@ -175,15 +189,14 @@ TEST(CausticLight, SpotsKeepTheirLight) {
         if (here > 0) farthest = std::max(farthest, double(std::hypot(x, z)));
       }
     EXPECT_NEAR(sum, 1, wall ? 0.025 : 0.002);
-    if (wall) {
-      EXPECT_NEAR(sum_left, left, 0.025 * left);
-    }
+    if (wall) { EXPECT_NEAR(sum_left, left, 0.025 * left); }
     EXPECT_LT(farthest, 1.5) << "a photon at the rim has k neighbours within twice the radius of one in the middle";
   }
 }
 
-/// Stray photons around a spot of 1000 photons, 0.01 m across: light is smooth over the largest radius, 1 m, where no place of
-/// the spot is within the margin of 0.1 m, and not where nothing arrives, so that no answer from beside the spot counts in it.
+/// Stray photons around a spot of 1000 photons, 0.01 m across: light is smooth over the largest radius, 1 m, where no
+/// place of the spot is within the margin of 0.1 m, and not where nothing arrives, so that no answer from beside the
+/// spot counts in it.
 TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   HandMadeScene scene;
   scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
@@ -203,8 +216,8 @@ TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   EXPECT_EQ(smooth, 0) << "nothing is there";
 }
 
-/// Photons nearer to each other than positions can tell heights of, in a scene of kilometres: each is a disc all the same, and
-/// no wider than its neighbours are. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
+/// Photons nearer to each other than positions can tell heights of, in a scene of kilometres: each is a disc all the
+/// same, and no wider than its neighbours are. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
 TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   HandMadeScene scene;
   scene.add_quad({-4000, 0, 4000}, {4000, 0, 4000}, {4000, 0, -4000}, {-4000, 0, -4000}, matte(Rgb(0.0f)));
@@ -216,7 +229,8 @@ TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   double sum = 0;
   float smooth;
   for (float x = -0.0299f; x < 0.03f; x += 0.002f)
-    for (float z = -0.0299f; z < 0.03f; z += 0.002f) sum += double(density.estimate({x, 0, z}, {0, 1, 0}, smooth).g) * 4e-6;
+    for (float z = -0.0299f; z < 0.03f; z += 0.002f)
+      sum += double(density.estimate({x, 0, z}, {0, 1, 0}, smooth).g) * 4e-6;
   EXPECT_NEAR(sum, 1, 0.02);
 }
 
@@ -225,7 +239,8 @@ TEST(CausticLight, IsNothingWithoutItsPhotons) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.5f)));
   const Tracer tracer(scene.frame());
-  const std::vector<formats::Photon> photons{{{0, 0, 0}, {1, 1, 1}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::indirect, 1}};
+  const std::vector<formats::Photon> photons{
+      {{0, 0, 0}, {1, 1, 1}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::indirect, 1}};
   PhotonLightOptions options;
   options.caustic_only = true;
   const PhotonLight light(tracer, photons, {}, options);
@@ -233,7 +248,8 @@ TEST(CausticLight, IsNothingWithoutItsPhotons) {
   EXPECT_EQ(light.caustic({0, 0, 0}, LitSurface(Vec3{0, 1, 0})).g, 0);
 }
 
-/// 4000 photons of three colours on a floor of 2 m, a wall across it: footprints at the wall are cut, and those from behind reach no place before it.
+/// 4000 photons of three colours on a floor of 2 m, a wall across it: footprints at the wall are cut, and those from
+/// behind reach no place before it.
 struct CutFootprints {
   HandMadeScene scene;
   std::vector<formats::Photon> photons;
@@ -251,13 +267,15 @@ struct CutFootprints {
   }
 };
 
-/// Four of some 25 photons asked, drawn by what they give: the mean over 80000 places within 5 cm of the wall is that of all asked. A place's channel deviates
-/// by about .7 of itself, as each of the four has one of three colours: .7 / sqrt(80000) = .25 %, four of them. Away from the wall nothing is asked.
-/// Seen to fail: light of those drawn counted as if all were drawn alike (1.66 to 1.70).
+/// Four of some 25 photons asked, drawn by what they give: the mean over 80000 places within 5 cm of the wall is that
+/// of all asked. A place's channel deviates by about .7 of itself, as each of the four has one of three colours: .7 /
+/// sqrt(80000) = .25 %, four of them. Away from the wall nothing is asked. Seen to fail: light of those drawn counted
+/// as if all were drawn alike (1.66 to 1.70).
 TEST(CausticLight, AFewPhotonsAskedHaveTheMeanOfAll) {
   CutFootprints made;
   const Tracer tracer(made.scene.frame());
-  const FootprintDensity all(tracer, made.photons, {.max_radius = 0.3f}), few(tracer, made.photons, {.max_radius = 0.3f, .asked = 4});
+  const FootprintDensity all(tracer, made.photons, {.max_radius = 0.3f}),
+      few(tracer, made.photons, {.max_radius = 0.3f, .asked = 4});
   const PathRandom random(6, 6);
   Rgbd sum_all{0.0}, sum_few{0.0};
   float unused;
@@ -266,15 +284,13 @@ TEST(CausticLight, AFewPhotonsAskedHaveTheMeanOfAll) {
     const Vec3 near{0.1f * (u.x - 0.5f), 0, 1.6f * (u.y - 0.5f)}, away{0.5f + 0.1f * u.x, 0, 1.2f * (u.y - 0.5f)};
     sum_all += Rgbd(all.estimate(near, {0, 1, 0}, unused));
     sum_few += Rgbd(few.estimate(near, {0, 1, 0}, unused));
-    if (i < 100) {
-      EXPECT_EQ(all.estimate(away, {0, 1, 0}, unused).g, few.estimate(away, {0, 1, 0}, unused).g);
-    }
+    if (i < 100) { EXPECT_EQ(all.estimate(away, {0, 1, 0}, unused).g, few.estimate(away, {0, 1, 0}, unused).g); }
   }
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum_few[c] / sum_all[c], 1, 0.01) << c;
 }
 
-/// A dense spot among sparse photons: where light is said to be alike up to a distance, no footprint narrower than four times that comes as near, by all
-/// photons' distances to their 6th neighbours.
+/// A dense spot among sparse photons: where light is said to be alike up to a distance, no footprint narrower than four
+/// times that comes as near, by all photons' distances to their 6th neighbours.
 TEST(CausticLight, IsAlikeOnlyAwayFromNarrowFootprints) {
   HandMadeScene scene;
   scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
@@ -293,7 +309,8 @@ TEST(CausticLight, IsAlikeOnlyAwayFromNarrowFootprints) {
   std::vector<float> radius;
   for (const formats::Photon& p : photons) {
     std::vector<float> others;
-    for (const formats::Photon& q : photons) others.push_back(distance(q.position, {p.position[0], p.position[1], p.position[2]}));
+    for (const formats::Photon& q : photons)
+      others.push_back(distance(q.position, {p.position[0], p.position[1], p.position[2]}));
     std::nth_element(others.begin(), others.begin() + kNeighbours, others.end());
     radius.push_back(std::min(1.0f, others[kNeighbours]));
   }
@@ -314,8 +331,8 @@ TEST(CausticLight, IsAlikeOnlyAwayFromNarrowFootprints) {
   EXPECT_GT(said, 2000);
 }
 
-/// While a memory lives a place has the light of one beside it, of its own half alone; a place far away, one that faces elsewhere, and all without a memory
-/// have their own.
+/// While a memory lives a place has the light of one beside it, of its own half alone; a place far away, one that faces
+/// elsewhere, and all without a memory have their own.
 TEST(CausticLight, APixelRemembersItsPlace) {
   CutFootprints made;
   const Tracer tracer(made.scene.frame());

@@ -34,8 +34,8 @@ Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
   return {};
 }
 
-/// Paths: 10^6 x n(2) x 10. Gathering: n(1.5) of 8, and the points. Records: n(1) of 6, W in all with the points, and 10^5 a ray: with k rays the score is
-/// (W + 1e5 k) (.1 + 1 / k), least at k = sqrt(W / (1e5 x .1)).
+/// Paths: 10^6 x n(2) x 10. Gathering: n(1.5) of 8, and the points. Records: n(1) of 6, W in all with the points, and
+/// 10^5 a ray: with k rays the score is (W + 1e5 k) (.1 + 1 / k), least at k = sqrt(W / (1e5 x .1)).
 TEST(WaysToLight, CostAndErrAsDerived) {
   const std::vector<Way> ways = ways_to_light(example(), kOrder, false);
   ASSERT_EQ(ways.size(), 3u);
@@ -61,20 +61,24 @@ TEST(WaysToLight, RecordsHaveTheBestNumberOfRays) {
   }
 }
 
-/// Without indirect light nothing pays that is to find it. Where it is most of the noise records pay, and in a small picture they do not.
+/// Without indirect light nothing pays that is to find it. Where it is most of the noise records pay, and in a small
+/// picture they do not.
 TEST(WaysToLight, FollowTheIndirectLight) {
   RoughFrame rough = example();
   rough.path = {10, 1, 1, 1, 1};
   rough.gather = {8, 1, 1, 1, 1};
   rough.record_error = 0;
   rough.record_sample = 10;
-  EXPECT_EQ(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::gather) << "a sample of it is cheaper here";
+  EXPECT_EQ(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::gather)
+      << "a sample of it is cheaper here";
   rough.gather.work = 10;
   EXPECT_EQ(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::paths);
-  EXPECT_EQ(ways_to_light(example(), {1e4, 0, 500}, false).front().method, IndirectMethod::paths) << "10^4 pixels do not pay for points";
+  EXPECT_EQ(ways_to_light(example(), {1e4, 0, 500}, false).front().method, IndirectMethod::paths)
+      << "10^4 pixels do not pay for points";
 }
 
-/// A map costs its photons and look-ups and takes the caustics' noise away; its own error stays. Caustics that paths do not meet stay wrong without it.
+/// A map costs its photons and look-ups and takes the caustics' noise away; its own error stays. Caustics that paths do
+/// not meet stay wrong without it.
 TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   RoughFrame rough = example();
   rough.path = {10, 20, 2, 19, 1};
@@ -105,9 +109,11 @@ TEST(WaysToLight, WhereNothingIsMatteArePaths) {
   for (const Way& one : ways) EXPECT_EQ(one.method, IndirectMethod::paths);
 }
 
-/// Of two frames the way with the least work x error of both: in one paths are a hundredth better, in the other ten times worse.
+/// Of two frames the way with the least work x error of both: in one paths are a hundredth better, in the other ten
+/// times worse.
 TEST(WaysToLight, JoinedByTheSums) {
-  const Way paths{IndirectMethod::paths, false, 0, 1, 0.99}, records{IndirectMethod::records, false, 80, 1, 1}, slow{IndirectMethod::paths, false, 0, 10, 1};
+  const Way paths{IndirectMethod::paths, false, 0, 1, 0.99}, records{IndirectMethod::records, false, 80, 1, 1},
+      slow{IndirectMethod::paths, false, 0, 10, 1};
   Way more = records;
   more.rays = 120;
   const std::vector<Way> all = joined({{paths, records}, {more, slow}});

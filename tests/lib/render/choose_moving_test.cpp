@@ -17,14 +17,15 @@ struct Room {
 
   Room(Vec3 at, float size, bool lamp_moves) {
     scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
-    scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f}, test::matte(Rgb(0.0f), Rgb(5.0f)),
-                   lamp_moves);
-    scene.add_quad(at, at + Vec3{0, 0, size}, at + Vec3{size, 0, size}, at + Vec3{size, 0, 0}, test::matte(Rgb(0.5f)), true);
+    scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f},
+                   test::matte(Rgb(0.0f), Rgb(5.0f)), lamp_moves);
+    scene.add_quad(at, at + Vec3{0, 0, size}, at + Vec3{size, 0, size}, at + Vec3{size, 0, 0}, test::matte(Rgb(0.5f)),
+                   true);
     frame = scene.frame();
     table = build_emission_table(std::span(&frame, 1));
   }
   MovingPilot pilot() const {
-    PlacedCamera camera;   // orthographic, 4.8 x 2.7 m, looking along -z
+    PlacedCamera camera;  // orthographic, 4.8 x 2.7 m, looking along -z
     camera.camera.kind = Camera::Kind::orthographic;
     camera.camera.ymag_m = 1.35f;
     camera.scene_from_camera.translation = {2, 1.4, 3.9};
@@ -43,7 +44,8 @@ TEST(MovingPilot, UnderTheLampItMattersMoreTheLargerItIs) {
   EXPECT_GT(small.touched_share, 0);
   EXPECT_LT(small.touched_share, 0.05);
   EXPECT_LT(small.gathered_share, 0.5);
-  EXPECT_GT(large.touched_share, 0.28);   // the lamp shines both ways, and 2 x 2 m at .9 m below it take .60 of one, by the form factor
+  EXPECT_GT(large.touched_share,
+            0.28);  // the lamp shines both ways, and 2 x 2 m at .9 m below it take .60 of one, by the form factor
   EXPECT_GT(large.gathered_share, 0.9);
 }
 
@@ -55,9 +57,10 @@ TEST(MovingPilot, AMovingLampTouchesAll) {
 TEST(ChooseMoving, WhateverIsCheaper) {
   const double once = 1 / 24.0;
   EXPECT_EQ(choose_moving({0.03, 0.2}, 24, once).method, MovingMethod::records);
-  EXPECT_EQ(choose_moving({0.07, 0.99}, 24, once).method, MovingMethod::light);   // records: 1/24 + .1 + .99
+  EXPECT_EQ(choose_moving({0.07, 0.99}, 24, once).method, MovingMethod::light);  // records: 1/24 + .1 + .99
   EXPECT_EQ(choose_moving({0.07, 0.2}, 24, once).method, MovingMethod::records);
-  EXPECT_EQ(choose_moving({0.07, 0.2}, 24, 0.71).method, MovingMethod::light);   // each camera sees other things: .71 + .1 + .2
+  EXPECT_EQ(choose_moving({0.07, 0.2}, 24, 0.71).method,
+            MovingMethod::light);  // each camera sees other things: .71 + .1 + .2
   EXPECT_EQ(choose_moving({0.3, 0.99}, 24, once).method, MovingMethod::anew);
   EXPECT_EQ(choose_moving({1, 0}, 24, once).method, MovingMethod::anew);
   // What stands is computed once: for one state it would be light computed twice.

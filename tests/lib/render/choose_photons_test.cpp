@@ -6,7 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// One in 70 or more leaves a photon: the usual number. Fewer: as many more, but 16 times at most; none at all is as one.
+/// One in 70 or more leaves a photon: the usual number. Fewer: as many more, but 16 times at most; none at all is as
+/// one.
 TEST(PhotonPaths, AreMoreWhereFewArrive) {
   EXPECT_EQ(photon_paths(1.0 / 70, 700'000), 700'000u);
   EXPECT_EQ(photon_paths(5.0 / 7, 700'000), 700'000u);

@@ -1,4 +1,5 @@
-// Whether bright points are divided: a room with a lamp under its ceiling, and with one that shines at a wall from near by.
+// Whether bright points are divided: a room with a lamp under its ceiling, and with one that shines at a wall from near
+// by.
 #include "lib/render/choose_split.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ SplitPilot pilot_of(float size, float above) {
   scene.add_quad({a, above, a}, {b, above, a}, {b, above, b}, {a, above, b}, lamp);
   const SceneFrame& frame = scene.frame();
   const EmissionTable table = build_emission_table(std::span(&frame, 1));
-  PlacedCamera camera;   // orthographic, 7 x 3.9 m
+  PlacedCamera camera;  // orthographic, 7 x 3.9 m
   camera.camera.kind = Camera::Kind::orthographic;
   camera.camera.ymag_m = 1.95f;
   camera.scene_from_camera.translation = {2, 2, 3.9};
@@ -34,7 +35,8 @@ TEST(SplitPilot, NoBrightSpotUnderAWideLamp) {
   EXPECT_FALSE(choose_split(pilot).split);
 }
 
-/// 0.1 m above the floor a lamp of 0.3 m lights some 0.2 of 96 m^2: half of the light that is reflected comes from there.
+/// 0.1 m above the floor a lamp of 0.3 m lights some 0.2 of 96 m^2: half of the light that is reflected comes from
+/// there.
 TEST(SplitPilot, ALampNearASurface) {
   const SplitPilot pilot = pilot_of(0.3f, 0.1f);
   EXPECT_GT(pilot.high_share, 0.3);

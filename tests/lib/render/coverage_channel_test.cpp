@@ -25,12 +25,15 @@ Image frame_of_step(float edge, float bottom = 100) {
   return image;
 }
 
-std::uint32_t coverage_at(const Image& image, int x, int y) { return image.find("coverage")->ids[std::size_t(y * 64 + x)]; }
+std::uint32_t coverage_at(const Image& image, int x, int y) {
+  return image.find("coverage")->ids[std::size_t(y * 64 + x)];
+}
 
 /// Sixteen stratified points have one in each sixteenth of the pixel's width: a quarter is four of them.
 TEST(Coverage, OfAStraightEdgeIsItsShare) {
-  const Image right = frame_of_step(32.25f);   // the centre of column 32 sees what lies below; a quarter the sheet, seen at its left
-  const Image left = frame_of_step(32.75f);    // now it sees the sheet, and a quarter what column 33 sees
+  const Image right =
+      frame_of_step(32.25f);  // the centre of column 32 sees what lies below; a quarter the sheet, seen at its left
+  const Image left = frame_of_step(32.75f);  // now it sees the sheet, and a quarter what column 33 sees
   for (int y = 1; y < 35; ++y) {
     EXPECT_EQ(coverage_at(right, 32, y), 4u << 12);
     EXPECT_EQ(coverage_at(left, 32, y), 4u << 16);
@@ -38,8 +41,8 @@ TEST(Coverage, OfAStraightEdgeIsItsShare) {
   }
 }
 
-/// The sheet's corner covers a quarter of pixel (32, 20), whose centre misses it: only the upper left neighbours see it. Points are stratified
-/// in quarters of the pixel too.
+/// The sheet's corner covers a quarter of pixel (32, 20), whose centre misses it: only the upper left neighbours see
+/// it. Points are stratified in quarters of the pixel too.
 TEST(Coverage, OfACornerGoesToTheNearestPixelThatSeesIt) {
   const Image image = frame_of_step(32.5f - 1 / 64.0f, 20.5f - 1 / 64.0f);
   const std::uint32_t packed = coverage_at(image, 32, 20);
@@ -47,18 +50,22 @@ TEST(Coverage, OfACornerGoesToTheNearestPixelThatSeesIt) {
   for (int n = 0; n < 8; ++n) sum += packed >> (4 * n) & 15;
   EXPECT_GE(sum, 3u);
   EXPECT_LE(sum, 4u);
-  EXPECT_EQ(packed & 0xfff00000u, 0u);   // nobody to the lower left, below or to the lower right; nor to the right
+  EXPECT_EQ(packed & 0xfff00000u, 0u);  // nobody to the lower left, below or to the lower right; nor to the right
   EXPECT_EQ(packed >> 16 & 15, 0u);
 }
 
-/// A strip of half a pixel's width, between pixel centres: nobody shows it. Its half of the pixels beside counts as other.
+/// A strip of half a pixel's width, between pixel centres: nobody shows it. Its half of the pixels beside counts as
+/// other.
 TEST(Coverage, WhatNoCentreSeesIsOther) {
   test::HandMadeScene made;
   const float left = 0.75f / 32, right = 1.25f / 32;
-  made.add({{left, -2, 0}, {right, -2, 0}, {right, 2, 0}, {left, 2, 0}, {-3, -3, -1}, {3, -3, -1}, {3, 3, -1}, {-3, 3, -1}},
-           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, test::matte(Rgb(0.5f)));
-  made.add({{left, -2, 0.1f}, {right, -2, 0.1f}, {right, 0, 0.1f}, {left, 0, 0.1f}}, {{0, 1, 2}, {0, 2, 3}}, test::matte(Rgb(0.1f)));
-  made.add({{right, 0.1f, 0.2f}, {0.1f, 0.1f, 0.2f}, {0.1f, 0.5f, 0.2f}, {right, 0.5f, 0.2f}}, {{0, 1, 2}, {0, 2, 3}}, test::matte(Rgb(0.1f)));
+  made.add(
+      {{left, -2, 0}, {right, -2, 0}, {right, 2, 0}, {left, 2, 0}, {-3, -3, -1}, {3, -3, -1}, {3, 3, -1}, {-3, 3, -1}},
+      {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, test::matte(Rgb(0.5f)));
+  made.add({{left, -2, 0.1f}, {right, -2, 0.1f}, {right, 0, 0.1f}, {left, 0, 0.1f}}, {{0, 1, 2}, {0, 2, 3}},
+           test::matte(Rgb(0.1f)));
+  made.add({{right, 0.1f, 0.2f}, {0.1f, 0.1f, 0.2f}, {0.1f, 0.5f, 0.2f}, {right, 0.5f, 0.2f}}, {{0, 1, 2}, {0, 2, 3}},
+           test::matte(Rgb(0.1f)));
   made.add_point_light({0, 0, 3}, Rgb(1.0f));
   const SceneFrame& frame = made.frame();
   const Tracer tracer(frame);

@@ -10,7 +10,8 @@ namespace {
 TEST(DeformingMotion, FollowsTheShearOfAMorphTarget) {
   GltfMaker maker;
   const int mesh = maker.add_square();
-  maker.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", maker.add_vec3({0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0})}}};
+  maker.json["meshes"][0]["primitives"][0]["targets"] = {
+      {{"POSITION", maker.add_vec3({0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0})}}};
   maker.add_node({{"mesh", mesh}});
   const int camera = maker.add_camera({{"translation", {1, 0.5, 3}}});
   maker.json["cameras"][0] = {{"type", "orthographic"},

@@ -27,15 +27,18 @@ struct Lit {
   Tracer tracer;
   Lights lights;
   Lit(HandMadeScene scene_, const Environment& environment)
-      : scene(std::move(scene_)), frame(with(scene.frame(), environment)), tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
+      : scene(std::move(scene_)),
+        frame(with(scene.frame(), environment)),
+        tracer(frame),
+        lights(frame, build_emission_table({&frame, 1})) {}
   static SceneFrame with(SceneFrame frame, const Environment& environment) {
     frame.environment = &environment;
     return frame;
   }
   Layers seen(Vec3 eye, Vec3 towards, std::uint64_t pixel, std::uint32_t sample) const {
     RayCounts counts;
-    return trace_eye_path({tracer, lights}, {eye, normalize(towards), 0, INFINITY}, PixelRandom(5, pixel, sample), nullptr,
-                          counts);
+    return trace_eye_path({tracer, lights}, {eye, normalize(towards), 0, INFINITY}, PixelRandom(5, pixel, sample),
+                          nullptr, counts);
   }
 };
 
@@ -65,8 +68,9 @@ TEST(Environment, APlaneUnderAUniformSkyShowsRhoTimesL) {
   EXPECT_EQ(sum, direct);
 }
 
-// Under a sky of 3 and a sun of 30 W/m^2 at 60 degrees: rho (3 + 15 / pi), all of it direct, whether each light has a ray of its own or one
-// of the two is drawn. That choice is nearly all the noise: of one ray each the deviation is less than a quarter.
+// Under a sky of 3 and a sun of 30 W/m^2 at 60 degrees: rho (3 + 15 / pi), all of it direct, whether each light has a
+// ray of its own or one of the two is drawn. That choice is nearly all the noise: of one ray each the deviation is less
+// than a quarter.
 TEST(Environment, ASunWithARayOfItsOwnGivesTheSameLightWithLessNoise) {
   HandMadeScene made = plane(matte(Rgb(0.5f)));
   SceneFrame frame = Lit::with(made.frame(), uniform(3));
@@ -84,7 +88,8 @@ TEST(Environment, ASunWithARayOfItsOwnGivesTheSameLightWithLessNoise) {
     constexpr int kSamples = 4096;
     for (std::uint32_t i = 0; i < kSamples; ++i) {
       RayCounts counts;
-      const Layers seen = trace_eye_path(scene, {{0.1f, 1, 0.2f}, normalize(Vec3{0.2f, -1, 0.1f}), 0, INFINITY}, PixelRandom(5, 1, i), nullptr, counts);
+      const Layers seen = trace_eye_path(scene, {{0.1f, 1, 0.2f}, normalize(Vec3{0.2f, -1, 0.1f}), 0, INFINITY},
+                                         PixelRandom(5, 1, i), nullptr, counts);
       EXPECT_EQ(total(seen), double(seen[Layer::direct].g));
       sum += total(seen);
       square += total(seen) * total(seen);
@@ -110,8 +115,8 @@ TEST(Environment, AWhiteBowlUnderAUniformSkyIsAFurnace) {
   for (int i = 0; i < kCount; ++i) {
     const PathRandom random(1, std::uint64_t(i));
     const Vec2 u = random.get2(0, Purpose::test);
-    const double value = total(lit.seen({0.5f, 2, 0.5f}, Vec3{2 * u.x - 1, 0.2f, 2 * u.y - 1} * 0.9f - Vec3{0.5f, 2, 0.5f},
-                                        std::uint64_t(i), 0));
+    const double value = total(lit.seen(
+        {0.5f, 2, 0.5f}, Vec3{2 * u.x - 1, 0.2f, 2 * u.y - 1} * 0.9f - Vec3{0.5f, 2, 0.5f}, std::uint64_t(i), 0));
     sum += value / kCount;
     square += value * value / kCount;
   }

@@ -53,7 +53,7 @@ TEST(FrameNoise, IsThatBetweenSeeds) {
     for (options.seed = 1; options.seed <= kSeeds; ++options.seed) {
       const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
       ASSERT_TRUE(frame.noise.known());
-      EXPECT_EQ(frame.noise.pixels, 84u);   // 12 x 7 squares of 5
+      EXPECT_EQ(frame.noise.pixels, 84u);  // 12 x 7 squares of 5
       const Noise& noise = frame.noise.layer[std::size_t(Layer::direct)];
       said += noise.linear * noise.linear / kSeeds;
       error += noise.linear_error / noise.linear / kSeeds;
@@ -64,7 +64,8 @@ TEST(FrameNoise, IsThatBetweenSeeds) {
       }
     }
     double measured = 0;
-    for (std::size_t p = 0; p < sum.size(); ++p) measured += channel_mean(square[p] - sum[p] * sum[p] * (1.0 / kSeeds)) / (kSeeds - 1) / double(sum.size());
+    for (std::size_t p = 0; p < sum.size(); ++p)
+      measured += channel_mean(square[p] - sum[p] * sum[p] * (1.0 / kSeeds)) / (kSeeds - 1) / double(sum.size());
     EXPECT_NEAR(said / measured, 1, 0.25) << pixel_error;
     EXPECT_GT(error, 0.03);
     EXPECT_LT(error, 0.3);
@@ -82,7 +83,8 @@ TEST(FrameNoise, SeenErrorIsReachedOrNot) {
     double sum = 0;
     for (std::size_t p = 0; p < a.mean.pixels.size(); ++p) {
       Rgbd x(0.0), y(0.0);
-      for (std::size_t l = 0; l < kLayerCount; ++l) x += Rgbd(a.mean.pixels[p].value[l]), y += Rgbd(b.mean.pixels[p].value[l]);
+      for (std::size_t l = 0; l < kLayerCount; ++l)
+        x += Rgbd(a.mean.pixels[p].value[l]), y += Rgbd(b.mean.pixels[p].value[l]);
       for (int i = 0; i < 3; ++i) {
         const double d = srgb_code(x[i] * a.noise.exposure) - srgb_code(y[i] * a.noise.exposure);
         sum += d * d / (6.0 * double(a.mean.pixels.size()));

@@ -33,7 +33,7 @@ TEST(FrameRenderer, SumOfLayersIsTheImageExactly) {
   for (std::size_t p = 0; p < image.pixel_count(); ++p)
     for (int ch = 0; ch < 3; ++ch) {
       float sum = 0;
-      for (const char* layer : std::span(kLayerNames).first(std::size_t(Layer::volume)))   // without media none of them
+      for (const char* layer : std::span(kLayerNames).first(std::size_t(Layer::volume)))  // without media none of them
         sum += (*image.rgb(layer)[std::size_t(ch)])[p];
       ASSERT_EQ(sum, (*rgb[std::size_t(ch)])[p]);
     }
@@ -62,14 +62,15 @@ double squared_difference(const LayerImage& a, const LayerImage& b) {
   return sum;
 }
 
-/// A frame and either half of a reference of the same seed and samples are as far apart as the halves are: variances add up. Of equal
-/// random numbers the difference would be 0. Heavy tails: such sums scatter by 10 % (below), so two of them agree within 30 %.
+/// A frame and either half of a reference of the same seed and samples are as far apart as the halves are: variances
+/// add up. Of equal random numbers the difference would be 0. Heavy tails: such sums scatter by 10 % (below), so two of
+/// them agree within 30 %.
 TEST(FrameRenderer, HalvesAreIndependentOfFramesOfTheSameSeed) {
   const Cornell c;
   FrameOptions options;
   options.samples = 4;
   const RenderedFrame plain = render_frame(c.render_scene(), c.view, options);
-  options.target_error = 1e9;   // reached at once
+  options.target_error = 1e9;  // reached at once
   options.samples = 8;
   const RenderedFrame until = render_frame(c.render_scene(), c.view, options);
   options.target_error = 0;
@@ -104,8 +105,8 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   EXPECT_NEAR(one.own_rmse / rmse, 1, 0.3);
 }
 
-/// What a pixel needs is told by those around it and by the picture's mean, masked or not: single pixels, a row and a block come out
-/// with the bytes they have in the whole frame. (By the masked pixels alone every sixth differed.)
+/// What a pixel needs is told by those around it and by the picture's mean, masked or not: single pixels, a row and a
+/// block come out with the bytes they have in the whole frame. (By the masked pixels alone every sixth differed.)
 TEST(FrameRenderer, MaskedPixelsAreThoseOfTheWholeFrame) {
   const Cornell c;
   FrameOptions options;
@@ -120,7 +121,8 @@ TEST(FrameRenderer, MaskedPixelsAreThoseOfTheWholeFrame) {
   EXPECT_LT(part.rays.camera, full.rays.camera);
   for (std::size_t p = 0; p < options.mask.size(); ++p) {
     if (!options.mask[p]) continue;
-    for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_EQ(part.mean.pixels[p].value[l], full.mean.pixels[p].value[l]) << p;
+    for (std::size_t l = 0; l < kLayerCount; ++l)
+      ASSERT_EQ(part.mean.pixels[p].value[l], full.mean.pixels[p].value[l]) << p;
   }
 }
 
@@ -158,7 +160,7 @@ TEST(FrameRenderer, ABaseWithoutNoiseIsKnown) {
   base.add("direct.R").values = {3, 4};
   for (const char* name : {"albedo.R", "direct.R", "direct.noise.R"}) image.add(name).values = {1, 2};
   keep_base_pixels({0, 1}, base, 1, image);
-  EXPECT_EQ(image.find("albedo.R")->values, (std::vector<float>{1, 2}));   // holds for every pixel
+  EXPECT_EQ(image.find("albedo.R")->values, (std::vector<float>{1, 2}));  // holds for every pixel
   EXPECT_EQ(image.find("direct.R")->values, (std::vector<float>{3, 2}));
   EXPECT_EQ(image.find("direct.noise.R")->values, (std::vector<float>{0, 2}));
 }
@@ -180,8 +182,8 @@ TEST(FrameRenderer, TargetErrorIsReached) {
 }
 
 /// Layers of the photon renderer against those of the path tracer, as image means: emission and direct are the
-/// same samples (the ray that goes on joins light sampling in both); indirect carries the density estimate's bias, darker at edges within
-/// the estimate's radius (3 cm of a 4 m room with 300 k photons: below 3 %).
+/// same samples (the ray that goes on joins light sampling in both); indirect carries the density estimate's bias,
+/// darker at edges within the estimate's radius (3 cm of a 4 m room with 300 k photons: below 3 %).
 TEST(FrameRenderer, PhotonLayersAgreeWithPathLayers) {
   const Cornell c;
   FrameOptions options;
@@ -253,7 +255,8 @@ TEST(DataChannels, MotionCountsPixelsRightAndUp) {
   ASSERT_LT(base.frame.static_count, base.frame.surfaces.size());
   const SceneFrame later = shifted({0.1f, 0.05f, 0}), earlier = shifted({-0.1f, -0.05f, 0});
   Image image{64, 36, {}, {}, {}, {}};
-  add_data_channels(base.render_scene(), base.view, {"P", "id", "motion"}, {&later, &base.view}, {&earlier, &base.view}, image);
+  add_data_channels(base.render_scene(), base.view, {"P", "id", "motion"}, {&later, &base.view}, {&earlier, &base.view},
+                    image);
   int seen = 0;
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
     if (base.scene.object_names[image.find("id.object")->ids[p]] != "MovingBox") continue;

@@ -18,8 +18,27 @@ using test::matte;
 
 /// A box, fronts outwards.
 void add_box(HandMadeScene& scene, Vec3 l, Vec3 u, const Material& m) {
-  scene.add({{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z}, {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}},
-            {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}}, m);
+  scene.add({{l.x, l.y, l.z},
+             {u.x, l.y, l.z},
+             {u.x, u.y, l.z},
+             {l.x, u.y, l.z},
+             {l.x, l.y, u.z},
+             {u.x, l.y, u.z},
+             {u.x, u.y, u.z},
+             {l.x, u.y, u.z}},
+            {{0, 2, 1},
+             {0, 3, 2},
+             {4, 5, 6},
+             {4, 6, 7},
+             {0, 1, 5},
+             {0, 5, 4},
+             {3, 6, 2},
+             {3, 7, 6},
+             {0, 7, 3},
+             {0, 4, 7},
+             {1, 2, 6},
+             {1, 6, 5}},
+            m);
 }
 /// A screen at z = -3 that glows with radiance 1 towards +z.
 void add_screen(HandMadeScene& scene) {
@@ -42,7 +61,8 @@ Mean look(HandMadeScene& scene, Vec3 from, Vec3 towards, int samples) {
   RayCounts counts;
   Mean mean;
   for (int i = 0; i < samples; ++i) {
-    const Layers seen = trace_eye_path({tracer, lights}, {from, normalize(towards), 0, INFINITY}, PixelRandom(5, 0, std::uint32_t(i)), nullptr, counts);
+    const Layers seen = trace_eye_path({tracer, lights}, {from, normalize(towards), 0, INFINITY},
+                                       PixelRandom(5, 0, std::uint32_t(i)), nullptr, counts);
     double sum = 0;
     for (const Rgb& value : seen.value) sum += double(value.g);
     mean.add(sum);
@@ -69,7 +89,8 @@ TEST(GlassPaths, SlabLetsThroughTheFresnelSeries) {
       add_screen(scene);
       const double f = fresnel(std::cos(angle), 1.5), inside = std::sqrt(1 - std::pow(std::sin(angle) / 1.5, 2));
       const double a = std::pow(color, 0.2 / inside / 0.25), expected = (1 - f) * (1 - f) * a / (1 - f * f * a * a);
-      const Mean seen = look(scene, {-float(std::tan(angle)), 0, 1.1f}, {float(std::sin(angle)), 0, -float(std::cos(angle))}, 20000);
+      const Mean seen =
+          look(scene, {-float(std::tan(angle)), 0, 1.1f}, {float(std::sin(angle)), 0, -float(std::cos(angle))}, 20000);
       EXPECT_NEAR(seen.mean(), expected, 4 * seen.sigma() + 1e-5) << color << ' ' << angle;
       EXPECT_LT(seen.sigma(), 0.011 * expected + 1e-3);
     }
@@ -82,7 +103,7 @@ TEST(GlassPaths, RoughGlassInAFurnaceIsInvisible) {
     scene.add_room({-2, -2, -2}, {2, 2, 2}, matte(Rgb(0.0f), Rgb(1.0f)));
     add_box(scene, {-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, glass(roughness));
     const Mean seen = look(scene, {1.5f, 0.4f, 1.2f}, {-1.4f, -0.3f, -1}, 40000);
-    EXPECT_NEAR(seen.mean(), 1, 0.005 + 3 * seen.sigma()) << roughness;   // 0.005 as asked, a few boundaries each
+    EXPECT_NEAR(seen.mean(), 1, 0.005 + 3 * seen.sigma()) << roughness;  // 0.005 as asked, a few boundaries each
     EXPECT_LT(seen.sigma(), 0.006) << roughness;
     RecordProperty("mean_" + std::to_string(roughness), std::to_string(seen.mean()));
   }
@@ -98,7 +119,7 @@ TEST(GlassPaths, CorridorOfMirrorsIsAPower) {
   scene.add_quad({5, -1, 1}, {-5, -1, 1}, {-5, 1, 1}, {5, 1, 1}, mirror);
   scene.add_quad({5, -1, -1}, {5, -1, 1}, {5, 1, 1}, {5, 1, -1}, matte(Rgb(0.0f), Rgb(1.0f)));
   // tan = 1/2 between planes 2 m apart: a reflection every metre of x, the first after half of it (from z = 0).
-  const Mean seen = look(scene, {-4.4f, 0, 0}, {0.5f, 0, 1}, 20000);   // x = 5 after 9.4 m: 19 crossings at 0.5 m + k
+  const Mean seen = look(scene, {-4.4f, 0, 0}, {0.5f, 0, 1}, 20000);  // x = 5 after 9.4 m: 19 crossings at 0.5 m + k
   const double cos_o = 1 / std::sqrt(1.25), k = std::pow(1 - cos_o, 5), r = 0.9 * (1 - k) + k;
   const int n = int((9.4 - 0.5) / 1) + 1;
   EXPECT_NEAR(seen.mean(), std::pow(r, n), 4 * seen.sigma() + 1e-5);
@@ -112,7 +133,8 @@ TEST(GlassPaths, ThinRoughPaneShowsTheLampBehind) {
     Material pane = glass(roughness);
     pane.thin_walled = true;
     scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, pane);
-    scene.add_quad({-0.2f, -0.2f, -1}, {0.2f, -0.2f, -1}, {0.2f, 0.2f, -1}, {-0.2f, 0.2f, -1}, matte(Rgb(0.0f), Rgb(1.0f)));
+    scene.add_quad({-0.2f, -0.2f, -1}, {0.2f, -0.2f, -1}, {0.2f, 0.2f, -1}, {-0.2f, 0.2f, -1},
+                   matte(Rgb(0.0f), Rgb(1.0f)));
     const Vec3 travel = normalize(Vec3{0.3f, 0, -1});
     const Bsdf bsdf(pane, true);
     double expected = 0;
@@ -121,7 +143,8 @@ TEST(GlassPaths, ThinRoughPaneShowsTheLampBehind) {
       for (int j = 0; j < kGrid; ++j) {
         const Vec3 to{0.4f * ((float(i) + 0.5f) / kGrid - 0.5f), 0.4f * ((float(j) + 0.5f) / kGrid - 0.5f), -1};
         const Vec3 wi = normalize(to);
-        expected += double(bsdf.eval_specular(wi, -travel).g) * std::pow(double(-wi.z), 4) * 0.16 / (kGrid * kGrid);   // cos^2 / d^2
+        expected += double(bsdf.eval_specular(wi, -travel).g) * std::pow(double(-wi.z), 4) * 0.16 /
+                    (kGrid * kGrid);  // cos^2 / d^2
       }
     const Mean seen = look(scene, travel * -1.0f, travel, 20000);
     EXPECT_NEAR(seen.mean(), expected, 4 * seen.sigma() + 1e-4 * expected) << roughness;

@@ -124,10 +124,11 @@ TEST(CacheLeaks, ThinPartitionOnAFloor) {
     double cached = 0, exact = 0;
     int answered = 0;
     for (int i = 0; i < 16; ++i) {
-      const auto seen = chain.surface_at({side * (t + 0.01f + 0.005f * float(i)), -1, 0.1f * float(i) - 0.75f}, {0, 1, 0}, 0.01f);
+      const auto seen =
+          chain.surface_at({side * (t + 0.01f + 0.005f * float(i)), -1, 0.1f * float(i) - 0.75f}, {0, 1, 0}, 0.01f);
       ASSERT_TRUE(seen);
       const auto found = chain.store.interpolate(seen->first.position, seen->second);
-      if (!(found.weight > 0)) continue;   // a path finds the light there
+      if (!(found.weight > 0)) continue;  // a path finds the light there
       ++answered;
       cached += double(found.irradiance.g);
       exact += path_traced(chain, seen->first, seen->second, 4096);
@@ -137,8 +138,9 @@ TEST(CacheLeaks, ThinPartitionOnAFloor) {
   }
 }
 
-/// Where no record counts there is no answer, however near one ends: a path finds the light. A record of the lit side of a board, which ended 19 cm before it and
-/// was open all around, lit the dark floor beside the board when its radius was taken four times as large.
+/// Where no record counts there is no answer, however near one ends: a path finds the light. A record of the lit side
+/// of a board, which ended 19 cm before it and was open all around, lit the dark floor beside the board when its radius
+/// was taken four times as large.
 TEST(KnownLight, RecordsThatEndShortSayNothing) {
   test::ClosedBox box(Shape::cube, 0.5f);
   const Tracer tracer(box.scene.frame());
@@ -178,8 +180,8 @@ TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   }
 }
 
-/// A floor half in the light: beside the border points tell all but direct light, elsewhere all. Rows of points 0.1 m apart; the border is
-/// compared within 1.5 of that.
+/// A floor half in the light: beside the border points tell all but direct light, elsewhere all. Rows of points 0.1 m
+/// apart; the border is compared within 1.5 of that.
 TEST(KnownLight, DirectLightIsNotReadWhereAShadowEnds) {
   std::vector<IrradiancePoint> points;
   for (int i = -10; i < 10; ++i)
@@ -196,7 +198,8 @@ TEST(KnownLight, DirectLightIsNotReadWhereAShadowEnds) {
   KnownLight known;
   known.points = &lookup;
   SurfacePoint hit;
-  for (const auto& [x, direct, expected] : {std::tuple{-0.45f, true, 1.25f}, {-0.05f, false, 1.25f}, {0.05f, false, 1.25f}, {0.45f, true, 6.25f}}) {
+  for (const auto& [x, direct, expected] :
+       {std::tuple{-0.45f, true, 1.25f}, {-0.05f, false, 1.25f}, {0.05f, false, 1.25f}, {0.45f, true, 6.25f}}) {
     hit.position = {x, 0, 0.05f};
     const std::optional<KnownLight::Told> told = known.told(hit, {0, 1, 0}, 1, 0);
     ASSERT_TRUE(told) << x;

@@ -49,9 +49,10 @@ RayCounts look_everywhere(const Chain& chain, const KnownLight& known, std::uint
 
 class GatherInPixels : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
-/// Points without records: one ray of the hemisphere from each sample, and what it meets is read. The mean indirect irradiance
-/// of a closed box is F rho / (S (1 - rho)), pi / rho times what is seen of layer indirect. 4 sigma of the samples, 4 sqrt(rho / N) that N
-/// photons leave of the series, and 0.5 % for the points: 4 shadow rays at 5000 of them, and their neighbourhoods.
+/// Points without records: one ray of the hemisphere from each sample, and what it meets is read. The mean indirect
+/// irradiance of a closed box is F rho / (S (1 - rho)), pi / rho times what is seen of layer indirect. 4 sigma of the
+/// samples, 4 sqrt(rho / N) that N photons leave of the series, and 0.5 % for the points: 4 shadow rays at 5000 of
+/// them, and their neighbourhoods.
 TEST_P(GatherInPixels, MeanIrradianceIsTheGeometricSeries) {
   const auto [shape, rho] = GetParam();
   constexpr std::uint64_t kPhotons = 100000;
@@ -74,10 +75,12 @@ TEST_P(GatherInPixels, MeanIrradianceIsTheGeometricSeries) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, GatherInPixels,
-                         testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere), testing::Values(0.5f, 0.8f)));
+                         testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
+                                          testing::Values(0.5f, 0.8f)));
 
-/// Every wall emits 1 and reflects one half: 2 everywhere. Rays from matte surfaces meet light that shadow rays look for, too:
-/// without weights it would be 2.5. Points know light from walls beside them by shadow rays: 16 (see FurnaceCache).
+/// Every wall emits 1 and reflects one half: 2 everywhere. Rays from matte surfaces meet light that shadow rays look
+/// for, too: without weights it would be 2.5. Points know light from walls beside them by shadow rays: 16 (see
+/// FurnaceCache).
 TEST(GatherInPixels, AFurnaceIsUniform) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f), Rgb(1.0f)));
@@ -90,9 +93,10 @@ TEST(GatherInPixels, AFurnaceIsUniform) {
   EXPECT_LT(radiance.sigma(), 0.003);
 }
 
-/// What gloss shows is read, too, where its rays spread wider than the points' blur. A white metal plate in the furnace (2 everywhere) reflects
-/// all, so it shows 2, rough or smooth. Of 2000 rays from a rough one most end at the wall they meet: 0.02 m to 2 m away, a few radii of 0.1 m. A
-/// mirror shows the wall's own shadows and folds: from there a ray of the hemisphere goes on, at least one more to each.
+/// What gloss shows is read, too, where its rays spread wider than the points' blur. A white metal plate in the furnace
+/// (2 everywhere) reflects all, so it shows 2, rough or smooth. Of 2000 rays from a rough one most end at the wall they
+/// meet: 0.02 m to 2 m away, a few radii of 0.1 m. A mirror shows the wall's own shadows and folds: from there a ray of
+/// the hemisphere goes on, at least one more to each.
 TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
   for (const float roughness : {1.0f, 0.0f}) {
     HandMadeScene made;
@@ -113,7 +117,8 @@ TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
       EXPECT_EQ(total(seen), double(seen[Layer::specular].g));
       radiance.add(total(seen));
     }
-    // Light of the walls themselves is 1 by rays and shadow rays; what they reflect is 1, by points that err by 1 % (AFurnaceIsUniform).
+    // Light of the walls themselves is 1 by rays and shadow rays; what they reflect is 1, by points that err by 1 %
+    // (AFurnaceIsUniform).
     EXPECT_NEAR(radiance.mean(), 2, 4 * radiance.sigma() + 0.01) << roughness;
     if (roughness > 0) {
       EXPECT_LT(counts.bounce, kCount * 3 / 2);
@@ -124,8 +129,8 @@ TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
   }
 }
 
-/// A cache that has no record here takes nothing away and adds nothing: with no points the one ray of the hemisphere goes on as a
-/// path, and every layer is that of the path tracer to the bit.
+/// A cache that has no record here takes nothing away and adds nothing: with no points the one ray of the hemisphere
+/// goes on as a path, and every layer is that of the path tracer to the bit.
 TEST(MissingRecords, LeaveThePathAsItIs) {
   const test::Cornell c;
   const RecordStore none;
@@ -136,15 +141,16 @@ TEST(MissingRecords, LeaveThePathAsItIs) {
     const Ray ray = c.view.ray(float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f);
     const Layers path = trace_eye_path(c.render_scene(), ray, PixelRandom(1, pixel, 0), nullptr, path_counts);
     const Layers here = trace_eye_path(c.render_scene(), ray, PixelRandom(1, pixel, 0), &known, counts);
-    for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_EQ(here.value[l], path.value[l]) << pixel << ' ' << kLayerNames[l];
+    for (std::size_t l = 0; l < kLayerCount; ++l)
+      ASSERT_EQ(here.value[l], path.value[l]) << pixel << ' ' << kLayerNames[l];
   }
   EXPECT_EQ(counts.bounce, path_counts.bounce);
   EXPECT_GT(counts.gathered, 64u * 36 / 2);
   EXPECT_LE(counts.gathered, 64u * 36);
 }
 
-/// One record, of irradiance 7, stands on the floor, none on the ceiling. On the floor it tells the light, and the path goes no farther
-/// than to what its next ray meets; on the ceiling that ray ends at points.
+/// One record, of irradiance 7, stands on the floor, none on the ceiling. On the floor it tells the light, and the path
+/// goes no farther than to what its next ray meets; on the ceiling that ray ends at points.
 TEST(MissingRecords, TakeOneRayEach) {
   test::ClosedBox box(Shape::cube, 0.5f);
   const Chain chain(box.scene, 20000, 5000, 4);
@@ -161,7 +167,9 @@ TEST(MissingRecords, TakeOneRayEach) {
   RayCounts floor, ceiling;
   const RenderScene scene{chain.tracer, chain.lights};
   const auto look = [&](float y, std::uint32_t i, RayCounts& counts) {
-    return trace_eye_path(scene, {{-0.5f, 0, 0}, {0, y, 0}, 0, INFINITY}, PixelRandom(3, 0, i), &known, counts)[Layer::indirect].g;
+    return trace_eye_path(scene, {{-0.5f, 0, 0}, {0, y, 0}, 0, INFINITY}, PixelRandom(3, 0, i), &known,
+                          counts)[Layer::indirect]
+        .g;
   };
   constexpr std::uint32_t kCount = 1000;
   for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -177,9 +185,9 @@ TEST(MissingRecords, TakeOneRayEach) {
   EXPECT_LT(ceiling.bounce, kCount * 3 / 2) << "most end at the first";
 }
 
-/// A plane under a uniform sky of 3, all else known to be nothing: rho L by light sampling and the ray that goes on, each with its
-/// weight. 4096 of a scrambled Sobol sequence leave far less than 0.3 % (environment_render_test); one of them alone is off by
-/// tens of per cent.
+/// A plane under a uniform sky of 3, all else known to be nothing: rho L by light sampling and the ray that goes on,
+/// each with its weight. 4096 of a scrambled Sobol sequence leave far less than 0.3 % (environment_render_test); one of
+/// them alone is off by tens of per cent.
 TEST(MatteEnds, JoinLightSamplingUnderASky) {
   HandMadeScene made;
   made.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.5f)));
@@ -201,14 +209,15 @@ TEST(MatteEnds, JoinLightSamplingUnderASky) {
   EXPECT_NEAR(sum, 1.5, 0.003 * 1.5);
 }
 
-/// A grey room 4 m wide, a lamp under its ceiling that shines down, a sheet of polished metal that stands in it, throws light on
-/// the floor and shows the room. From the eye all five layers are to be seen.
+/// A grey room 4 m wide, a lamp under its ceiling that shines down, a sheet of polished metal that stands in it, throws
+/// light on the floor and shows the room. From the eye all five layers are to be seen.
 struct RoomWithMirror {
   HandMadeScene made;
   RoomWithMirror() {
     const Material grey = matte(Rgb(0.6f));
     made.add_room({-2, 0, -2}, {2, 3, 2}, grey);
-    made.add_quad({-0.5f, 2.9f, -0.5f}, {0.5f, 2.9f, -0.5f}, {0.5f, 2.9f, 0.5f}, {-0.5f, 2.9f, 0.5f}, matte(Rgb(0.0f), Rgb(5.0f)));
+    made.add_quad({-0.5f, 2.9f, -0.5f}, {0.5f, 2.9f, -0.5f}, {0.5f, 2.9f, 0.5f}, {-0.5f, 2.9f, 0.5f},
+                  matte(Rgb(0.0f), Rgb(5.0f)));
     Material metal = matte(Rgb(0.9f));
     metal.metallic = 1;
     metal.roughness = 0.3f;
@@ -223,7 +232,8 @@ struct RoomWithMirror {
   }
 };
 
-std::array<double, kLayerCount> means(const RenderScene& scene, const CameraView& view, const KnownLight* known, int samples) {
+std::array<double, kLayerCount> means(const RenderScene& scene, const CameraView& view, const KnownLight* known,
+                                      int samples) {
   FrameOptions options;
   options.samples = samples;
   options.known = known;
@@ -233,12 +243,13 @@ std::array<double, kLayerCount> means(const RenderScene& scene, const CameraView
   return sum;
 }
 
-/// Layer by layer against path tracing: points alone, records and points, each without a photon map, when paths find the caustic
-/// light, and with one. What is counted twice or lost would be a whole kind of light.
+/// Layer by layer against path tracing: points alone, records and points, each without a photon map, when paths find
+/// the caustic light, and with one. What is counted twice or lost would be a whole kind of light.
 ///
-/// Emission, direct light and caustic light without photons are of the very samples of the path tracer: equal but for the order of
-/// sums. Else the path tracer's own noise of 2304 x 256 samples is 0.1 % of indirect, 1.5 % of specular and 2.5 % of caustic light (between
-/// seeds); points and the photons of one seed err by 1 %, records that are valid four pixels around them, 0.2 m here, by 2 %.
+/// Emission, direct light and caustic light without photons are of the very samples of the path tracer: equal but for
+/// the order of sums. Else the path tracer's own noise of 2304 x 256 samples is 0.1 % of indirect, 1.5 % of specular
+/// and 2.5 % of caustic light (between seeds); points and the photons of one seed err by 1 %, records that are valid
+/// four pixels around them, 0.2 m here, by 2 %.
 TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   RoomWithMirror room;
   Chain chain(room.made, 400000, 8000, 500);
@@ -251,8 +262,9 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   const PhotonLight photons(chain.tracer, chain.traced.photons, {}, caustics);
   const RenderScene scene{chain.tracer, chain.lights};
   constexpr int kSamples = 32;
-  const std::array<double, kLayerCount> path = means(scene, view, nullptr, 256), same = means(scene, view, nullptr, kSamples);
-  const auto layers = std::size_t(Layer::volume);   // the room has no media
+  const std::array<double, kLayerCount> path = means(scene, view, nullptr, 256),
+                                        same = means(scene, view, nullptr, kSamples);
+  const auto layers = std::size_t(Layer::volume);  // the room has no media
   for (std::size_t l = 0; l < layers; ++l) ASSERT_GT(path[l], 0.002) << kLayerNames[l];
   for (const bool with_records : {false, true})
     for (const bool with_photons : {false, true}) {
@@ -263,15 +275,17 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
       const std::array<double, kLayerCount> here = means(scene, view, &known, kSamples);
       for (std::size_t l = 0; l < layers; ++l) {
         const Layer layer{std::uint8_t(l)};
-        const bool equal = layer == Layer::emission || layer == Layer::direct || (layer == Layer::caustic && !with_photons);
+        const bool equal =
+            layer == Layer::emission || layer == Layer::direct || (layer == Layer::caustic && !with_photons);
         EXPECT_NEAR(here[l] / (equal ? same : path)[l], 1, equal ? 1e-6 : 0.04)
             << kLayerNames[l] << (with_records ? ", records" : "") << (with_photons ? ", photons" : "");
       }
     }
 }
 
-/// A room with a point lamp: from a place whose indirect and caustic light is known a ray could meet a light only where one can be met. Without that ray the
-/// same light to the bit, and no bounce but those of gloss, of which a matte room has none.
+/// A room with a point lamp: from a place whose indirect and caustic light is known a ray could meet a light only where
+/// one can be met. Without that ray the same light to the bit, and no bounce but those of gloss, of which a matte room
+/// has none.
 TEST(KnownPaths, NoRayGoesOnWhereNoLightCanBeMet) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
@@ -285,7 +299,8 @@ TEST(KnownPaths, NoRayGoesOnWhereNoLightCanBeMet) {
   std::array<RayCounts, 2> counts;
   for (const bool met : {false, true}) {
     known.lights_are_met = met;
-    counts[met] = look_everywhere(chain, known, 1000, [&](const Layers& layers) { seen[met].push_back(total(layers)); });
+    counts[met] =
+        look_everywhere(chain, known, 1000, [&](const Layers& layers) { seen[met].push_back(total(layers)); });
   }
   EXPECT_EQ(seen[0], seen[1]);
   EXPECT_EQ(counts[0].bounce, 0u);

@@ -1,4 +1,5 @@
-// Localised light: updated records where little changes, gathered ones where much does and on what moves, both in between.
+// Localised light: updated records where little changes, gathered ones where much does and on what moves, both in
+// between.
 #include "lib/render/localised_light.h"
 
 #include <gtest/gtest.h>
@@ -28,12 +29,15 @@ SurfacePoint place(Vec3 position, std::uint32_t object = 0) {
   return point;
 }
 
-/// Three records 10 m apart with static irradiance 10 and E_t = 8, of relative influence 0, .105 and 1; E_y = 4 beside the last two.
+/// Three records 10 m apart with static irradiance 10 and E_t = 8, of relative influence 0, .105 and 1; E_y = 4 beside
+/// the last two.
 struct Records {
   std::vector<IrradianceRecord> standing{record({0, 0, 0}, 10), record({10, 0, 0}, 10), record({20, 0, 0}, 10)};
   std::vector<RecordChange> changes{{Rgb(8.0f), 0}, {Rgb(8.0f), 1.05f}, {Rgb(8.0f), 10}};
   std::vector<IrradianceRecord> gathered{record({10, 0, 0}, 4), record({20, 0, 0}, 4)};
-  LocalisedLight light() const { return {standing, changes, gathered, 0.9f, {}, MovingObjects({false, false, false, true})}; }
+  LocalisedLight light() const {
+    return {standing, changes, gathered, 0.9f, {}, MovingObjects({false, false, false, true})};
+  }
 };
 
 float at(const LocalisedLight& light, const SurfacePoint& point) {
@@ -53,7 +57,7 @@ TEST(LocalisedLight, InfluenceDecidesWhichRecordsAreRead) {
 TEST(LocalisedLight, OnWhatMovesOnlyGatheredRecordsCount) {
   const LocalisedLight light = Records().light();
   EXPECT_EQ(at(light, place({10, 0, 0}, kMover)), 4);
-  EXPECT_EQ(at(light, place({0, 0, 0}, kMover)), -1);   // none gathered there: a ray of the hemisphere is to find it
+  EXPECT_EQ(at(light, place({0, 0, 0}, kMover)), -1);  // none gathered there: a ray of the hemisphere is to find it
 }
 
 TEST(LocalisedLight, WhatIsMissingIsNotMadeUp) {
@@ -61,7 +65,7 @@ TEST(LocalisedLight, WhatIsMissingIsNotMadeUp) {
   EXPECT_EQ(at(light, place({5, 0, 0})), -1);
   Records few;
   few.gathered.clear();
-  EXPECT_EQ(at(few.light(), place({10, 0, 0})), -1);    // half of E_t alone would be too dark
+  EXPECT_EQ(at(few.light(), place({10, 0, 0})), -1);  // half of E_t alone would be too dark
   EXPECT_EQ(at(few.light(), place({0, 0, 0})), 8);
 }
 

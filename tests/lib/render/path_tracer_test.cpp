@@ -11,13 +11,17 @@ namespace tempolux {
 namespace {
 
 using test::HandMadeScene;
-using test::Shape;
 using test::matte;
+using test::Shape;
 
 struct Estimate {
   double sum = 0, sum2 = 0;
   int count = 0;
-  void add(double x) { sum += x; sum2 += x * x; ++count; }
+  void add(double x) {
+    sum += x;
+    sum2 += x * x;
+    ++count;
+  }
   double mean() const { return sum / count; }
   double sigma() const { return std::sqrt(std::max(0.0, sum2 / count - mean() * mean()) / count); }
 };
@@ -49,7 +53,8 @@ TEST_P(ClosedBoxTest, MeanIndirectIrradianceIsTheGeometricSeries) {
     from.normal = from.normal_geometric;
     from.offset = 1e-5f;
     const Vec3 travel = Frame(from.normal).to_world(sample_hemisphere_cos(random.get2(2, Purpose::test)));
-    const Layers seen = trace_eye_path({tracer, lights}, spawn_ray(from, travel), PixelRandom(3, std::uint64_t(i), 0), nullptr, counts);
+    const Layers seen =
+        trace_eye_path({tracer, lights}, spawn_ray(from, travel), PixelRandom(3, std::uint64_t(i), 0), nullptr, counts);
     green.add(double(kPi) * total(seen, 1));
   }
   const double expected = double(box.flux.g) * double(rho) / (area.area() * (1 - double(rho)));
@@ -73,7 +78,8 @@ TEST(PathTracer, FurnaceIsUniform) {
   Estimate mean[3];
   for (int i = 0; i < 60000; ++i) {
     const Vec3 travel = sample_sphere(PathRandom(1, std::uint64_t(i)).get2(0, Purpose::test));
-    const Layers seen = trace_eye_path({tracer, lights}, {{0.3f, -0.2f, 0.1f}, travel, 0, INFINITY}, PixelRandom(7, std::uint64_t(i), 0), nullptr, counts);
+    const Layers seen = trace_eye_path({tracer, lights}, {{0.3f, -0.2f, 0.1f}, travel, 0, INFINITY},
+                                       PixelRandom(7, std::uint64_t(i), 0), nullptr, counts);
     for (int c = 0; c < 3; ++c) mean[c].add(total(seen, c));
   }
   const double expected[3] = {2.0, 5.0, 1.25};

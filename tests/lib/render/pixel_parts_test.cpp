@@ -12,8 +12,9 @@ namespace {
 using test::Cornell;
 using test::HandMadeScene;
 
-/// Of 7 camera rays that share 3, 7, 10 or 28 samples each has floor or ceiling of its share, all together that number, and numbers of
-/// samples go on without a gap. Over 4000 pixels each ray has the same share, within 4 sigma of a number that is one or the other.
+/// Of 7 camera rays that share 3, 7, 10 or 28 samples each has floor or ceiling of its share, all together that number,
+/// and numbers of samples go on without a gap. Over 4000 pixels each ray has the same share, within 4 sigma of a number
+/// that is one or the other.
 TEST(PixelParts, AreDealtOutEvenly) {
   for (const int count : {3, 7, 10, 28}) {
     constexpr int kPixels = 4000;
@@ -38,7 +39,8 @@ TEST(PixelParts, AreDealtOutEvenly) {
   }
 }
 
-/// Mean of a layer over a picture of 64 x 36, by parts of given numbers, each divided by its own; and its error by 16 seeds.
+/// Mean of a layer over a picture of 64 x 36, by parts of given numbers, each divided by its own; and its error by 16
+/// seeds.
 struct Told {
   double mean = 0, error = 0;
 };
@@ -52,7 +54,8 @@ Told tell(const RenderScene& scene, const CameraView& view, Layer layer, const P
     options.seed = seed;
     for (int y = 0; y < view.height(); ++y)
       for (int x = 0; x < view.width(); ++x) {
-        const PixelSum of = sample_pixel(scene, view, options, std::size_t(y * view.width() + x), x, y, {}, count, nullptr, rays);
+        const PixelSum of =
+            sample_pixel(scene, view, options, std::size_t(y * view.width() + x), x, y, {}, count, nullptr, rays);
         all += of.own[layer].g / count.own + of.lit[layer].g / count.lit + of.onward[layer].g / count.onward;
       }
     sum += all;
@@ -62,8 +65,9 @@ Told tell(const RenderScene& scene, const CameraView& view, Layer layer, const P
   return {mean, std::sqrt(std::max(0.0, square / kSeeds - mean * mean) / (kSeeds - 1))};
 }
 
-/// A wide lamp near walls, whose light both parts find: were a part's number left out of its weight, or the two weights not made
-/// for one sample each, direct light would be 10 % off and more. Indirect light is the onward part's alone. 4 sigma.
+/// A wide lamp near walls, whose light both parts find: were a part's number left out of its weight, or the two weights
+/// not made for one sample each, direct light would be 10 % off and more. Indirect light is the onward part's alone. 4
+/// sigma.
 TEST(PixelParts, NoNumberChangesTheMean) {
   const Cornell c;
   for (const Layer layer : {Layer::direct, Layer::indirect}) {

@@ -17,8 +17,8 @@ Layers grey_light(float direct, float emission = 0) {
   return layers;
 }
 
-/// The mean of n samples of variance 1 has variance 1/n, for odd n too. 20 000 pixels; an estimate with one degree of freedom
-/// scatters by sqrt(2) of its value: 4 sigma of the mean are 4 %.
+/// The mean of n samples of variance 1 has variance 1/n, for odd n too. 20 000 pixels; an estimate with one degree of
+/// freedom scatters by sqrt(2) of its value: 4 sigma of the mean are 4 %.
 TEST(PixelVariance, IsThatOfTheMeanOfIndependentSamples) {
   std::mt19937 random(1);
   std::normal_distribution<float> normal(5, 1);
@@ -47,11 +47,11 @@ TEST(PixelVariance, EmissionCountsInTheImageAndNotInDiffuseLight) {
   halves.add(0, {grey_light(1, 0), {}, {}}, {});
   halves.add(1, {grey_light(1, 4), {}, {}}, {});
   EXPECT_EQ(halves.variance(kDiffuseLayers), Rgb(0.0f));
-  EXPECT_EQ(halves.variance(kImageLayers), Rgb(4.0f));   // (1 - 5)^2 / 4
+  EXPECT_EQ(halves.variance(kImageLayers), Rgb(4.0f));  // (1 - 5)^2 / 4
 }
 
-/// Each part is divided by its own number of samples: of 6 camera rays, 12 samples of light of variance 1 and 3 rays onward of variance 4 the
-/// mean has 1/12 + 4/3. 20 000 pixels as above.
+/// Each part is divided by its own number of samples: of 6 camera rays, 12 samples of light of variance 1 and 3 rays
+/// onward of variance 4 the mean has 1/12 + 4/3. 20 000 pixels as above.
 TEST(PixelVariance, PartsAreDividedByTheirOwnNumbers) {
   std::mt19937 random(2);
   std::normal_distribution<float> normal(0, 1);
@@ -61,18 +61,23 @@ TEST(PixelVariance, PartsAreDividedByTheirOwnNumbers) {
     SampleHalves halves;
     for (int s = 0; s < 6; ++s) {
       const std::uint32_t onward = s % 2;
-      halves.add(s >= 3, {grey_light(1), grey_light(6 + normal(random) + normal(random)), grey_light(onward ? 9 + 2 * normal(random) : 0)}, {2, onward, 0, 0});
+      halves.add(s >= 3,
+                 {grey_light(1), grey_light(6 + normal(random) + normal(random)),
+                  grey_light(onward ? 9 + 2 * normal(random) : 0)},
+                 {2, onward, 0, 0});
     }
     EXPECT_EQ(halves.samples(), 6);
     sum += double(halves.variance(kDiffuseLayers).g);
   }
-  // Of 3 rays onward one half has one and the other two: the estimate is (n_a n_b)^(1/2) / n of the difference, 4/3 in the mean.
+  // Of 3 rays onward one half has one and the other two: the estimate is (n_a n_b)^(1/2) / n of the difference, 4/3 in
+  // the mean.
   EXPECT_NEAR(sum / kPixels, 1.0 / 12 + 4.0 / 3, 0.04 * (1.0 / 12 + 4.0 / 3));
 }
 
-/// Of a frame, eight samples a pixel, its variance summed over pixels against that between 24 seeds. Halves of stratified samples
-/// are less well stratified than the whole: where the error's variance falls as n^-2, as at straight edges, that makes twice too much; 24 seeds know it within a fifth. (Samples of even
-/// and odd number, each half of them in one half of the pixel, come out nine times too large.)
+/// Of a frame, eight samples a pixel, its variance summed over pixels against that between 24 seeds. Halves of
+/// stratified samples are less well stratified than the whole: where the error's variance falls as n^-2, as at straight
+/// edges, that makes twice too much; 24 seeds know it within a fifth. (Samples of even and odd number, each half of
+/// them in one half of the pixel, come out nine times too large.)
 TEST(PixelVariance, KnowsStratification) {
   const test::Cornell c;
   const test::NoLight none(c.tracer);
@@ -124,11 +129,12 @@ TEST(PixelVariance, EverySampleIsCounted) {
   EXPECT_EQ(mean_samples(halves.half[1]), 2);
 }
 
-/// The channels' halves m + n and m - n are uncorrelated: the covariance of their errors over 48 seeds, averaged over pixels, is 0 beside
-/// their variance v. Each pixel's estimate of the covariance scatters by v / sqrt(47); over n pixels like these, of which few carry most
-/// (the sum of v^2 over the square of the sum of v, here 1 / 150), by v / sqrt(47 x 150) = .012 v. The share of a frame is known by its 84
-/// pixels that are rendered twice, of which some 20 count: by sqrt(3 / 20) = .4 of itself, over the seeds by .06. The band is .15. (Without
-/// the share the covariance is -.42 v.)
+/// The channels' halves m + n and m - n are uncorrelated: the covariance of their errors over 48 seeds, averaged over
+/// pixels, is 0 beside their variance v. Each pixel's estimate of the covariance scatters by v / sqrt(47); over n
+/// pixels like these, of which few carry most (the sum of v^2 over the square of the sum of v, here 1 / 150), by v /
+/// sqrt(47 x 150) = .012 v. The share of a frame is known by its 84 pixels that are rendered twice, of which some 20
+/// count: by sqrt(3 / 20) = .4 of itself, over the seeds by .06. The band is .15. (Without the share the covariance is
+/// -.42 v.)
 TEST(PixelVariance, ChannelHalvesAreUncorrelated) {
   const test::Cornell c;
   const test::NoLight none(c.tracer);
@@ -148,8 +154,8 @@ TEST(PixelVariance, ChannelHalvesAreUncorrelated) {
       const double share = std::sqrt(frame.mean.difference_share[kDirect]);
       for (std::size_t p = 0; p < pixels; ++p) {
         const SampleHalves& halves = frame.mean.sample_halves[p];
-        const double m = double(frame.mean.pixels[p][Layer::direct].g), n = share * double(halves.difference(kDirect).g), x = m + n,
-                     y = m - n;
+        const double m = double(frame.mean.pixels[p][Layer::direct].g),
+                     n = share * double(halves.difference(kDirect).g), x = m + n, y = m - n;
         EXPECT_NEAR(m, double(halves.mean(kDirect).g), 1e-5 * m);
         a[p] += x, b[p] += y, ab[p] += x * y, aa[p] += x * x, bb[p] += y * y;
       }
@@ -164,8 +170,8 @@ TEST(PixelVariance, ChannelHalvesAreUncorrelated) {
   }
 }
 
-/// Two samples, 1 and 5, in one half each: half their difference, -2, times the root of a share of a quarter. What was taken from the
-/// pixel, 1.5 of 3, is taken from it as well.
+/// Two samples, 1 and 5, in one half each: half their difference, -2, times the root of a share of a quarter. What was
+/// taken from the pixel, 1.5 of 3, is taken from it as well.
 TEST(PixelVariance, NoiseIsAShareOfTheHalvesDifference) {
   LayerImage layers;
   layers.width = 2, layers.height = 1;

@@ -13,22 +13,25 @@ RoughFrame rough_of(const SceneFrame& frame, int width = 64, std::uint64_t photo
   const EmissionTable table = build_emission_table(std::span(&frame, 1));
   const Tracer tracer(frame);
   const Lights lights(frame, table);
-  PlacedCamera camera;   // orthographic, 3.2 x 1.8 m, looking along -z
+  PlacedCamera camera;  // orthographic, 3.2 x 1.8 m, looking along -z
   camera.camera.kind = Camera::Kind::orthographic;
   camera.camera.ymag_m = 0.9f;
   camera.scene_from_camera.translation = {2, 2, 3.8};
-  return rough_frame({tracer, lights}, lights, CameraView(camera, {}, width, width * 9 / 16), {.kinds = "indirect", .pixel_error = 0.016, .photons = photons, .seen = {}, .seed = 0});
+  return rough_frame({tracer, lights}, lights, CameraView(camera, {}, width, width * 9 / 16),
+                     {.kinds = "indirect", .pixel_error = 0.016, .photons = photons, .seen = {}, .seed = 0});
 }
 
 SceneFrame room(test::HandMadeScene& scene) {
   scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
-  scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f}, test::matte(Rgb(0.0f), Rgb(5.0f)));
+  scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f},
+                 test::matte(Rgb(0.0f), Rgb(5.0f)));
   return scene.frame();
 }
 
-/// A closed room without gloss: every camera ray meets a wall, no ray leaves. A path takes two rays at least. One that ends at a point takes the camera ray,
-/// the ray onward and their light samples, and no more where points stand for hits: less than a path. The variance of all light is that of
-/// direct and of indirect light, which are drawn apart and are not opposed: at least the former's.
+/// A closed room without gloss: every camera ray meets a wall, no ray leaves. A path takes two rays at least. One that
+/// ends at a point takes the camera ray, the ray onward and their light samples, and no more where points stand for
+/// hits: less than a path. The variance of all light is that of direct and of indirect light, which are drawn apart and
+/// are not opposed: at least the former's.
 TEST(RoughFrame, OfAClosedRoom) {
   test::HandMadeScene scene;
   const RoughFrame rough = rough_of(room(scene));
@@ -44,20 +47,23 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_EQ(rough.missed_caustic.square, 0);
 }
 
-/// Records do not get more when pixels do, as long as radii are not limited by pixels: 20 cm and more here, as what is seen is 1 m away and more, and a pixel of
-/// 64 is 5 cm wide: a record is then valid over 4 of them. Of 640 pixels it is valid over 40. Places differ between the two: a fifth.
+/// Records do not get more when pixels do, as long as radii are not limited by pixels: 20 cm and more here, as what is
+/// seen is 1 m away and more, and a pixel of 64 is 5 cm wide: a record is then valid over 4 of them. Of 640 pixels it
+/// is valid over 40. Places differ between the two: a fifth.
 TEST(RoughFrame, CountsRecordsByWhatTheySee) {
   test::HandMadeScene scene;
   const SceneFrame frame = room(scene);
   EXPECT_NEAR(rough_of(frame, 640).records / rough_of(frame, 320).records, 1, 0.2);
 }
 
-/// Squared error of a record's light: twice as bright a lamp gives four times as much, and so does what a pixel may err by. So nothing changes, to rounding.
+/// Squared error of a record's light: twice as bright a lamp gives four times as much, and so does what a pixel may err
+/// by. So nothing changes, to rounding.
 TEST(RoughFrame, DoesNotDependOnTheStrengthOfLight) {
   const auto lit_by = [](float radiance) {
     test::HandMadeScene scene;
     scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
-    scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f}, test::matte(Rgb(0.0f), Rgb(radiance)));
+    scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f},
+                   test::matte(Rgb(0.0f), Rgb(radiance)));
     return rough_of(scene.frame());
   };
   const RoughFrame weak = lit_by(1), strong = lit_by(1024);
@@ -66,11 +72,13 @@ TEST(RoughFrame, DoesNotDependOnTheStrengthOfLight) {
   EXPECT_NEAR(strong.samples / weak.samples, 1, 1e-3);
 }
 
-/// A board before nothing, lit by a lamp before it: no ray from it meets a surface that could send light back but the lamp, which is black.
+/// A board before nothing, lit by a lamp before it: no ray from it meets a surface that could send light back but the
+/// lamp, which is black.
 TEST(RoughFrame, OfABoardAloneHasNoIndirectLight) {
   test::HandMadeScene scene;
   scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, test::matte(Rgb(0.5f)));
-  scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f}, test::matte(Rgb(0.0f), Rgb(5.0f)));
+  scene.add_quad({1.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 1.5f}, {2.5f, 3.9f, 2.5f}, {1.5f, 3.9f, 2.5f},
+                 test::matte(Rgb(0.0f), Rgb(5.0f)));
   const RoughFrame rough = rough_of(scene.frame());
   EXPECT_EQ(rough.path.all, rough.path.other);
   EXPECT_EQ(rough.record_error, 0);

@@ -36,14 +36,19 @@ Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
   camera.camera.ymag_m = 0.9f;
   camera.scene_from_camera.translation = {2, 1.5f, 7};
   const CameraView view(camera, {}, 64, 36);
-  const RoughFrame rough = rough_frame({tracer, lights}, lights, view, {.kinds = "caustic,indirect", .pixel_error = 0.016, .photons = 100'000, .seen = {}, .seed = 0});
+  const RoughFrame rough =
+      rough_frame({tracer, lights}, lights, view,
+                  {.kinds = "caustic,indirect", .pixel_error = 0.016, .photons = 100'000, .seen = {}, .seed = 0});
   const formats::PhotonBlock photons = pilot_photons(tracer, lights, "caustic,indirect", 32768, 0);
-  return {see_photons({tracer, lights}, view, photons, formats::PathKind::caustic), see_photons({tracer, lights}, view, photons, formats::PathKind::indirect), rough, ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
+  return {see_photons({tracer, lights}, view, photons, formats::PathKind::caustic),
+          see_photons({tracer, lights}, view, photons, formats::PathKind::indirect), rough,
+          ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
 }
 
-/// A point lamp 2 m before the wall and as high, I = 1 W/sr, over a mirror: it lights the wall once more from 2 m below the floor. The mean
-/// of rho / pi I cos / d^2 over the picture, cos = 2 / d, is what photons tell: of 32768 paths one in 70 arrives in the picture, which is
-/// 5 % of noise if they were independent; evenly spread they are better. No path can find that light, so it is all of their error.
+/// A point lamp 2 m before the wall and as high, I = 1 W/sr, over a mirror: it lights the wall once more from 2 m below
+/// the floor. The mean of rho / pi I cos / d^2 over the picture, cos = 2 / d, is what photons tell: of 32768 paths one
+/// in 70 arrives in the picture, which is 5 % of noise if they were independent; evenly spread they are better. No path
+/// can find that light, so it is all of their error.
 TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
   test::HandMadeScene scene;
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
@@ -56,13 +61,15 @@ TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
     }
   EXPECT_NEAR(photons.mean / expected, 1, 0.1);
   EXPECT_NEAR(photons.mean_error / expected, 0.05, 0.02);
-  EXPECT_GT(rough.missed_caustic.square, 0.5 * photons.square / (rough.radiance * rough.radiance)) << "no path finds it";
+  EXPECT_GT(rough.missed_caustic.square, 0.5 * photons.square / (rough.radiance * rough.radiance))
+      << "no path finds it";
   EXPECT_TRUE(ways.front().map);
   EXPECT_EQ(indirect.mean, 0) << "a single wall lights nothing";
   EXPECT_EQ(ways.front().method, IndirectMethod::paths);
 }
 
-/// A ceiling that shines, over gloss: paths that leave the wall for the floor meet the ceiling by way of the floor. They find what photons find.
+/// A ceiling that shines, over gloss: paths that leave the wall for the floor meet the ceiling by way of the floor.
+/// They find what photons find.
 TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
   test::HandMadeScene scene;
   scene.add_quad({-4, 6, 0}, {8, 6, 0}, {8, 6, 8}, {-4, 6, 8}, test::matte(Rgb(0.0f), Rgb(1.0f)));

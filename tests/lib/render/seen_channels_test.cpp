@@ -8,7 +8,8 @@
 namespace tempolux {
 namespace {
 
-/// The camera looks down from z = 1, orthographic. At z = 0 lies a mirror on the left and a matte floor on the right; a matte ceiling of reflectance .25 hangs at z = 3.
+/// The camera looks down from z = 1, orthographic. At z = 0 lies a mirror on the left and a matte floor on the right; a
+/// matte ceiling of reflectance .25 hangs at z = 3.
 Image seen_of_mirror(bool asked) {
   test::HandMadeScene made;
   Material mirror;
@@ -30,14 +31,15 @@ Image seen_of_mirror(bool asked) {
   return image;
 }
 
-/// The ray goes 1 m down and 3 m up: the ceiling's image lies 4 m below the camera. Beyond the ceiling's edge (x < -.5, column 16) nothing is seen; on the right the floor
-/// itself is, at 1 m, whose light in layer specular is none: its albedo is 1.
+/// The ray goes 1 m down and 3 m up: the ceiling's image lies 4 m below the camera. Beyond the ceiling's edge (x < -.5,
+/// column 16) nothing is seen; on the right the floor itself is, at 1 m, whose light in layer specular is none: its
+/// albedo is 1.
 TEST(SeenChannels, AMirrorShowsWhatIsAboveIt) {
   const Image image = seen_of_mirror(true);
   const auto at = [&](const char* name, int x) { return image.find(name)->values[std::size_t(18 * 64 + x)]; };
   EXPECT_NEAR(at("seen.Z", 24), 4, 1e-4f);
   EXPECT_NEAR(at("seen.albedo.G", 24), 0.25f, 1e-4f);
-  EXPECT_NEAR(at("seen.N.Z", 24), -1, 1e-5f);   // the side that the ray meets
+  EXPECT_NEAR(at("seen.N.Z", 24), -1, 1e-5f);  // the side that the ray meets
   EXPECT_EQ(at("seen.Z", 4), 0);
   EXPECT_EQ(at("seen.albedo.G", 4), 1);
   EXPECT_NEAR(at("seen.Z", 48), 1, 1e-5f);

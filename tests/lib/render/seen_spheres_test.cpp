@@ -75,14 +75,16 @@ TEST(SpheresAround, NothingSeenHasNone) {
 
 /// All places at one point: one cell, of finite size, however deep it could go.
 TEST(SpheresAround, OnePlaceIsOneCell) {
-  const std::vector<formats::ViewSphere> spheres = spheres_around({WeighedPlace{{10, 1, 3}, 1, 2}, WeighedPlace{{10, 1, 3}, 1, 2}}, 1000);
+  const std::vector<formats::ViewSphere> spheres =
+      spheres_around({WeighedPlace{{10, 1, 3}, 1, 2}, WeighedPlace{{10, 1, 3}, 1, 2}}, 1000);
   ASSERT_EQ(spheres.size(), 1u);
   EXPECT_EQ(spheres[0].radius, 0.5 * 0.875);
 }
 
 /// A step of a millimetre moves places of a room of 4 m, but no cell.
 TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
-  const std::vector<WeighedPlace> before = room({100.3, 2.2, -40.6}, 4, 3000), after = room({100.301, 2.2, -40.6}, 4, 3000);
+  const std::vector<WeighedPlace> before = room({100.3, 2.2, -40.6}, 4, 3000),
+                                  after = room({100.301, 2.2, -40.6}, 4, 3000);
   EXPECT_EQ(formats::view_text(spheres_around(before, 700)), formats::view_text(spheres_around(after, 700)));
 }
 
@@ -92,7 +94,8 @@ TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
 PlacedCamera camera_at(Vec3d eye, double yaw) {
   PlacedCamera placed;
   placed.camera.yfov_rad = 1;
-  placed.scene_from_camera.row = {Vec3d{std::cos(yaw), 0, std::sin(yaw)}, Vec3d{0, 1, 0}, Vec3d{-std::sin(yaw), 0, std::cos(yaw)}};
+  placed.scene_from_camera.row = {Vec3d{std::cos(yaw), 0, std::sin(yaw)}, Vec3d{0, 1, 0},
+                                  Vec3d{-std::sin(yaw), 0, std::cos(yaw)}};
   placed.scene_from_camera.translation = eye;
   return placed;
 }
@@ -101,7 +104,8 @@ class CamerasOfARoom : public testing::Test {
  protected:
   CamerasOfARoom() {
     scene_.add_room({-2, 0, -2}, {2, 2.6f, 2}, test::matte(Rgb(0.5f)));
-    scene_.add_quad({-300, -0.1f, 300}, {300, -0.1f, 300}, {300, -0.1f, -300}, {-300, -0.1f, -300}, test::matte(Rgb(0.5f)));
+    scene_.add_quad({-300, -0.1f, 300}, {300, -0.1f, 300}, {300, -0.1f, -300}, {-300, -0.1f, -300},
+                    test::matte(Rgb(0.5f)));
     tracer_.emplace(scene_.frame());
   }
   SeenAround look(const PlacedCamera& camera) {
@@ -113,7 +117,8 @@ class CamerasOfARoom : public testing::Test {
   std::optional<Tracer> tracer_;
 };
 
-/// Walls are seen from about 2 m, half of the picture is 1.1 m high there: cells are 1 m wide, with planes at 2/3 and 5/3 m. A step of directions is 19 degrees.
+/// Walls are seen from about 2 m, half of the picture is 1.1 m high there: cells are 1 m wide, with planes at 2/3 and
+/// 5/3 m. A step of directions is 19 degrees.
 TEST_F(CamerasOfARoom, OfACellSeeTheSame) {
   const SeenAround first = look(camera_at({0.2, 1.2, 1}, 0.02));
   ASSERT_FALSE(first.places.empty());

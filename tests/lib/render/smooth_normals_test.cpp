@@ -15,7 +15,7 @@ using test::HandMadeScene;
 using test::matte;
 
 struct Light {
-  double walls = 0, ball = 0;   ///< mean irradiance after one scattering or more, green
+  double walls = 0, ball = 0;  ///< mean irradiance after one scattering or more, green
 };
 
 constexpr std::uint32_t kWalls = 0, kBall = 1;
@@ -33,7 +33,8 @@ Light by_photons(const Tracer& tracer, const Lights& lights, std::uint64_t count
 }
 
 /// From paths that start at uniform points into directions by the cosine to the shading normal.
-Light by_paths(const Tracer& tracer, const Lights& lights, const test::AreaSampler& area, std::size_t triangles, Vec3 centre, int count) {
+Light by_paths(const Tracer& tracer, const Lights& lights, const test::AreaSampler& area, std::size_t triangles,
+               Vec3 centre, int count) {
   RayCounts counts;
   double sum[2] = {0, 0};
   int n[2] = {0, 0};
@@ -44,25 +45,29 @@ Light by_paths(const Tracer& tracer, const Lights& lights, const test::AreaSampl
     const bool ball = i % 2 != 0;
     const double room = area.cumulative[11] / area.area(), both = area.cumulative[11 + triangles] / area.area();
     const double u = double(random.get1(0, Purpose::test));
-    area.sample(float(ball ? room + u * (both - room) : u * room), random.get2(1, Purpose::test), from.position, from.normal_geometric);
+    area.sample(float(ball ? room + u * (both - room) : u * room), random.get2(1, Purpose::test), from.position,
+                from.normal_geometric);
     from.normal = ball ? normalize(from.position - centre) : from.normal_geometric;
     from.offset = 1e-5f;
     const Vec3 travel = Frame(from.normal).to_world(sample_hemisphere_cos(random.get2(2, Purpose::test)));
     ++n[ball];
     if (!(dot(travel, from.normal_geometric) > 0)) continue;
-    const Layers seen = trace_eye_path({tracer, lights}, spawn_ray(from, travel), PixelRandom(3, std::uint64_t(i), 0), nullptr, counts);
-    for (std::size_t l = std::size_t(Layer::specular); l < kLayerCount; ++l) sum[ball] += M_PI * double(seen.value[l].g);
+    const Layers seen =
+        trace_eye_path({tracer, lights}, spawn_ray(from, travel), PixelRandom(3, std::uint64_t(i), 0), nullptr, counts);
+    for (std::size_t l = std::size_t(Layer::specular); l < kLayerCount; ++l)
+      sum[ball] += M_PI * double(seen.value[l].g);
   }
   return {sum[0] / n[0], sum[1] / n[1]};
 }
 
-class SmoothBall : public testing::TestWithParam<std::tuple<int, int>> {};   // material, subdivisions
+class SmoothBall : public testing::TestWithParam<std::tuple<int, int>> {};  // material, subdivisions
 
-/// A ball of 72 triangles, normals up to 13 degrees off, or of 32, fills a good part of a closed room. Photons: 800000 paths
-/// leave 0.15 %. Paths: deviation 0.7 of the mean, 240000 places each: 0.15 %. 1.2 % is 3 sigma and the 0.5 % of the ball of 72 (below).
-/// Mirror and glass, of 8 triangles too, by 2.5 times as many: what they show of the lamp has more noise, 0.35 % then. Did photons
-/// not go where the eye falls back on the geometric normal (grazing), of a mirror 4.6, 1.9 and 1.2 % were missing.
-/// (For the interpolated normal on the ball its exact one is taken here: the same at the corners, 0.1 deg off between.)
+/// A ball of 72 triangles, normals up to 13 degrees off, or of 32, fills a good part of a closed room. Photons: 800000
+/// paths leave 0.15 %. Paths: deviation 0.7 of the mean, 240000 places each: 0.15 %. 1.2 % is 3 sigma and the 0.5 % of
+/// the ball of 72 (below). Mirror and glass, of 8 triangles too, by 2.5 times as many: what they show of the lamp has
+/// more noise, 0.35 % then. Did photons not go where the eye falls back on the geometric normal (grazing), of a
+/// mirror 4.6, 1.9 and 1.2 % were missing. (For the interpolated normal on the ball its exact one is taken here: the
+/// same at the corners, 0.1 deg off between.)
 TEST_P(SmoothBall, PhotonsAndPathsAgree) {
   const auto [kind, subdivisions] = GetParam();
   const std::size_t triangles = std::size_t(8 * subdivisions * subdivisions);
@@ -76,7 +81,7 @@ TEST_P(SmoothBall, PhotonsAndPathsAgree) {
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   const Vec3 centre{0.1f, -0.1f, 0.05f};
   scene.add_sphere(centre, 0.75f, subdivisions, ball, false, true);
-  Material lamp = matte(Rgb(0.0f), Rgb(1.0f));   // that paths can meet behind mirror and glass
+  Material lamp = matte(Rgb(0.0f), Rgb(1.0f));  // that paths can meet behind mirror and glass
   lamp.double_sided = false;
   scene.add_quad({0.2f, 0.95f, -0.9f}, {0.9f, 0.95f, -0.9f}, {0.9f, 0.95f, -0.2f}, {0.2f, 0.95f, -0.2f}, lamp);
   const SceneFrame& frame = scene.frame();
@@ -88,9 +93,7 @@ TEST_P(SmoothBall, PhotonsAndPathsAgree) {
   const Light photons = by_photons(tracer, lights, std::uint64_t(200000 * times), wall_area, ball_area);
   const Light paths = by_paths(tracer, lights, area, triangles, centre, 120000 * times);
   EXPECT_NEAR(photons.walls / paths.walls, 1, 0.012) << photons.walls;
-  if (kind == 0) {
-    EXPECT_NEAR(photons.ball / paths.ball, 1, 0.012) << photons.ball;
-  }
+  if (kind == 0) { EXPECT_NEAR(photons.ball / paths.ball, 1, 0.012) << photons.ball; }
   RecordProperty("walls", std::to_string(photons.walls / paths.walls));
   RecordProperty("ball", std::to_string(photons.ball / paths.ball));
 }

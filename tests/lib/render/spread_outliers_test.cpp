@@ -28,7 +28,11 @@ struct Even {
   std::vector<std::uint8_t> mask;
   std::function<double(double)> error = [](double) { return double(kError); };
   Even(int w, int h)
-      : width(w), height(h), parts(std::size_t(w * h)), counts(parts.size(), PartCounts{4, 4, 4}), brightest(parts.size()) {
+      : width(w),
+        height(h),
+        parts(std::size_t(w * h)),
+        counts(parts.size(), PartCounts{4, 4, 4}),
+        brightest(parts.size()) {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       parts[p].own.coverage = 1;
       set(p, {Rgb(1.0f), Rgb(1.0f), Rgb(1.0f), Rgb(1.0f)});
@@ -62,8 +66,9 @@ double sum_of(const std::vector<Layers>& pixels, Layer layer, int channel) {
   return sum;
 }
 
-/// A sample of 1000 among ones: its pixel shows 250.75, of which it may keep the error .05 and the 1 around beside the .75 of its other samples. The other
-/// 248.95 go to so many pixels that none gets more than .05; the sum stays, by float rounding of 96000 pixels near 1: 6e-8 each.
+/// A sample of 1000 among ones: its pixel shows 250.75, of which it may keep the error .05 and the 1 around beside the
+/// .75 of its other samples. The other 248.95 go to so many pixels that none gets more than .05; the sum stays, by
+/// float rounding of 96000 pixels near 1: 6e-8 each.
 TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
   Even even(320, 300);
   const std::size_t middle = 150 * 320 + 160;
@@ -74,12 +79,13 @@ TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
     ASSERT_GE(now, left - 1e-4f) << p;
     ASSERT_LE(now, left + kError + 1e-4f) << p;
   }
-  EXPECT_GT(pixels[middle + 40][Layer::indirect].g, 1.005f);   // boxes of 65 pixels, as 33 would leave it 249 x .5625 / 33^2 = .13
+  EXPECT_GT(pixels[middle + 40][Layer::indirect].g,
+            1.005f);  // boxes of 65 pixels, as 33 would leave it 249 x .5625 / 33^2 = .13
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
 }
 
-/// In a corner, of a picture so small that all is near a border, beside pixels that show nothing, and with errors that differ: the sum stays and nothing arrives where nothing is seen.
-/// A red sample gives no green.
+/// In a corner, of a picture so small that all is near a border, beside pixels that show nothing, and with errors that
+/// differ: the sum stays and nothing arrives where nothing is seen. A red sample gives no green.
 TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
   Even even(37, 23);
   even.error = [](double level) { return 0.05 * std::sqrt(level); };
@@ -93,7 +99,10 @@ TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
     even.set(p, {Rgb(1.0f), Rgb(500.0f, 1.0f, 1.0f), Rgb(1.0f), Rgb(1.0f)});
   const std::vector<Layers> before = even.sums(), pixels = even.spread();
   EXPECT_LT(pixels[0][Layer::indirect].r, 10);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum_of(pixels, Layer::indirect, c), sum_of(before, Layer::indirect, c), 1e-6 * sum_of(before, Layer::indirect, c)) << c;
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(sum_of(pixels, Layer::indirect, c), sum_of(before, Layer::indirect, c),
+                1e-6 * sum_of(before, Layer::indirect, c))
+        << c;
   for (std::size_t p = 0; p < pixels.size(); ++p) {
     if (p % 37 > 30) {
       EXPECT_EQ(pixels[p][Layer::indirect].r, 0) << p;
@@ -111,9 +120,10 @@ TEST(SpreadOutliers, MaskedPixelsShareAmongThemselves) {
   even.mask[alone] = 1;
   for (std::size_t y = 25; y < 36; ++y)
     for (std::size_t x = 35; x < 46; ++x) even.mask[y * 64 + x] = 1;
-  for (const std::size_t p : {alone, inside}) even.set(p, {Rgb(1.0f), Rgb(13.0f), Rgb(1.0f), Rgb(1.0f)});   // 4: 2.2 too much
+  for (const std::size_t p : {alone, inside})
+    even.set(p, {Rgb(1.0f), Rgb(13.0f), Rgb(1.0f), Rgb(1.0f)});  // 4: 2.2 too much
   const std::vector<Layers> before = even.sums(), pixels = even.spread();
-  EXPECT_NEAR(pixels[alone][Layer::indirect].g, 4, 0.2);   // its place and the sheet are boxes of 9 apart
+  EXPECT_NEAR(pixels[alone][Layer::indirect].g, 4, 0.2);  // its place and the sheet are boxes of 9 apart
   EXPECT_LT(pixels[inside][Layer::indirect].g, 2);
   EXPECT_GT(pixels[inside + 3][Layer::indirect].g, 1.005f);
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(before, Layer::indirect, 1), 64 * 48 * 6e-8);
@@ -121,11 +131,12 @@ TEST(SpreadOutliers, MaskedPixelsShareAmongThemselves) {
     if (!even.mask[p]) { EXPECT_EQ(pixels[p][Layer::indirect].g, 1) << p; }
 }
 
-/// Light that a pixel's samples agree on, that the pixels around show too, or that the camera itself sees is none that one sample alone claims.
+/// Light that a pixel's samples agree on, that the pixels around show too, or that the camera itself sees is none that
+/// one sample alone claims.
 TEST(SpreadOutliers, WhatOthersSeeTooStays) {
   Even agreed(64, 48), line(64, 48), lamp(64, 48);
   agreed.set(24 * 64 + 32, {Rgb(50.0f), Rgb(52.0f), Rgb(48.0f), Rgb(50.0f)});
-  for (std::size_t x = 0; x < 64; ++x)   // every fourth sample of a line is bright: 5 of the 24 around are of it
+  for (std::size_t x = 0; x < 64; ++x)  // every fourth sample of a line is bright: 5 of the 24 around are of it
     line.set(24 * 64 + x, {Rgb(0.0f), Rgb(4.0f), Rgb(1.0f), Rgb(1.0f)});
   lamp.set(24 * 64 + 32, {Rgb(0.0f), Rgb(1000.0f), Rgb(0.0f), Rgb(0.0f)}, Layer::emission);
   for (const Even* even : {&agreed, &line, &lamp}) {
@@ -135,7 +146,8 @@ TEST(SpreadOutliers, WhatOthersSeeTooStays) {
   }
 }
 
-/// A picture whose lattice of first samples was black says nothing of errors: all stays, and nothing is divided by 0. So does what is not finite.
+/// A picture whose lattice of first samples was black says nothing of errors: all stays, and nothing is divided by 0.
+/// So does what is not finite.
 TEST(SpreadOutliers, WithoutAnErrorNothingMoves) {
   Even black(64, 48), wild(64, 48);
   black.error = [](double) { return 0.0; };
@@ -163,8 +175,8 @@ TEST(SpreadOutliers, ForAFilterMirrorsAlone) {
   EXPECT_EQ(mirrors.onward.radiance.g, 0);
 }
 
-/// A room by paths, two samples a pixel, one onward: each layer's sum is that without spreading, to float rounding, and the squared error of
-/// indirect light against 256 samples is less.
+/// A room by paths, two samples a pixel, one onward: each layer's sum is that without spreading, to float rounding, and
+/// the squared error of indirect light against 256 samples is less.
 TEST(SpreadOutliers, AFrameKeepsItsLayersAndErrsLess) {
   const test::Cornell c;
   FrameOptions options;
@@ -180,7 +192,8 @@ TEST(SpreadOutliers, AFrameKeepsItsLayersAndErrsLess) {
   double before = 0, after = 0;
   for (std::size_t p = 0; p < kept.mean.pixels.size(); ++p) {
     const auto error = [&](const RenderedFrame& frame) {
-      return std::pow(double(frame.mean.pixels[p][Layer::indirect].g) - double(reference.mean.pixels[p][Layer::indirect].g), 2);
+      return std::pow(
+          double(frame.mean.pixels[p][Layer::indirect].g) - double(reference.mean.pixels[p][Layer::indirect].g), 2);
     };
     before += error(kept);
     after += error(spread);
@@ -192,8 +205,9 @@ TEST(SpreadOutliers, AFrameKeepsItsLayersAndErrsLess) {
   }
 }
 
-/// One of four samples brings 41, which four samples are too few to judge: twelve more are asked for, three of which bring it, too. Then it stays, to the bit. Of twelve that bring 1 it leaves: the pixel may keep
-/// the error and the 1 around. A pixel of sixteen samples is not asked for more.
+/// One of four samples brings 41, which four samples are too few to judge: twelve more are asked for, three of which
+/// bring it, too. Then it stays, to the bit. Of twelve that bring 1 it leaves: the pixel may keep the error and the 1
+/// around. A pixel of sixteen samples is not asked for more.
 TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
   Even even(64, 48);
   const std::size_t claims = 20 * 64 + 30;
@@ -213,12 +227,14 @@ TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
     EXPECT_NEAR(pixels[claims][Layer::indirect].g, left, mean > 1 ? 0 : kError + 1e-4) << mean;
   }
   samples.further_of = {};
-  even.counts[claims] = {16, 16, 16};   // of which one brought 161
+  even.counts[claims] = {16, 16, 16};  // of which one brought 161
   EXPECT_EQ(pixels_to_judge(samples, even.sums()), std::vector<std::size_t>{});
 }
 
-/// Sheets of a quarter of a pixel, 50 times as bright as the ground under a sky of radiance 1, twelve pixels apart: each of four stratified samples meets one of them once or twice, rightly. Spread or not, their pixels keep their
-/// light: the mean over all of them and eight seeds agrees within 5 %. Judged by the four samples alone they keep a third.
+/// Sheets of a quarter of a pixel, 50 times as bright as the ground under a sky of radiance 1, twelve pixels apart:
+/// each of four stratified samples meets one of them once or twice, rightly. Spread or not, their pixels keep their
+/// light: the mean over all of them and eight seeds agrees within 5 %. Judged by the four samples alone they keep a
+/// third.
 TEST(SpreadOutliers, ThingsSmallerThanPixelsKeepTheirContrast) {
   test::HandMadeScene made;
   made.add_quad({-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}, smooth_metal(0.02f));
@@ -228,7 +244,8 @@ TEST(SpreadOutliers, ThingsSmallerThanPixelsKeepTheirContrast) {
   for (int j = 3; j < 36; j += 12)
     for (int i = 3; i < 64; i += 12) {
       const float x = (float(i) + 0.25f) * kPixel - 1, y = 0.5625f - (float(j) + 0.25f) * kPixel;
-      made.add_quad({x, y - kPixel / 2, 0.1f}, {x + kPixel / 2, y - kPixel / 2, 0.1f}, {x + kPixel / 2, y, 0.1f}, {x, y, 0.1f}, smooth_metal(1));
+      made.add_quad({x, y - kPixel / 2, 0.1f}, {x + kPixel / 2, y - kPixel / 2, 0.1f}, {x + kPixel / 2, y, 0.1f},
+                    {x, y, 0.1f}, smooth_metal(1));
       stars.push_back(std::size_t(j * 64 + i));
     }
   const SceneFrame& frame = made.frame();

@@ -38,7 +38,7 @@ HandMadeScene half_dark_lamp(bool alpha = false) {
   if (alpha) {
     lamp.alpha_mode = Material::Alpha::blend;
     lamp.textures->base_color = texture_of_image();
-    scene.set_images({png_image(2, 1, 4, {255, 255, 255, 51, 255, 255, 255, 0})});   // alpha 0.2 and 0
+    scene.set_images({png_image(2, 1, 4, {255, 255, 255, 51, 255, 255, 255, 0})});  // alpha 0.2 and 0
   } else {
     lamp.textures->emission = texture_of_image();
     scene.set_images({png_image(2, 1, 3, {188, 188, 188, 0, 0, 0})});
@@ -47,7 +47,7 @@ HandMadeScene half_dark_lamp(bool alpha = false) {
   scene.set_uvs(kLampUvs);
   return scene;
 }
-constexpr float kHalf = 0.502886f;   // sRGB code 188
+constexpr float kHalf = 0.502886f;  // sRGB code 188
 
 TEST(EmissiveTexture, IrradianceIsThatOfTheBrightHalf) {
   // Samples have L cos / pdf between 0 and about twice their mean; N = 2^14 stratified in two dimensions but for the
@@ -58,7 +58,8 @@ TEST(EmissiveTexture, IrradianceIsThatOfTheBrightHalf) {
     const double radiance = 2 * (alpha ? 0.2 : double(kHalf));
     for (const Vec3 point : {Vec3{0, 0, 0}, Vec3{-0.5f, 0.3f, 0.7f}, Vec3{3, 1, -2}}) {
       const Vec3 normal{0, 0, 1};
-      const double expected = radiance * polygon_irradiance(point, normal, {{-1, -1, 1}, {-1, 1, 1}, {0, 1, 1}, {0, -1, 1}});
+      const double expected =
+          radiance * polygon_irradiance(point, normal, {{-1, -1, 1}, {-1, 1, 1}, {0, 1, 1}, {0, -1, 1}});
       double sum = 0;
       constexpr int kSide = 128;
       for (int i = 0; i < kSide; ++i)
@@ -89,7 +90,7 @@ TEST(EmissiveTexture, PhotonsCarryTheTexelsLight) {
         sum += double(photon.flux.r) / (kSide * kSide);
       }
     EXPECT_NEAR(sum, expected, 0.01 * expected) << alpha;
-    EXPECT_NEAR(lights.total_flux().r, expected, 0.05 * expected) << alpha;   // the mean by 64 points
+    EXPECT_NEAR(lights.total_flux().r, expected, 0.05 * expected) << alpha;  // the mean by 64 points
   }
 }
 
@@ -141,7 +142,8 @@ TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
   }
   const std::vector<SceneFrame> frames{hidden.frame(), shown.frame()};
   const EmissionTable table = build_emission_table(frames);
-  EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 0.01 * 8 * M_PI, 1e-4);   // the least share: for whom all is hidden
+  EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 0.01 * 8 * M_PI,
+              1e-4);  // the least share: for whom all is hidden
   EXPECT_NEAR(Lights(frames[1], table).total_flux().r, 8 * M_PI, 1e-4);
 }
 
@@ -153,7 +155,7 @@ HandMadeScene veil(Material::Alpha mode, float alpha, bool textured) {
   material.alpha = alpha;
   if (textured) {
     material.textures.emplace().base_color = texture_of_image();
-    scene.set_images({png_image(2, 1, 4, {255, 255, 255, 204, 255, 255, 255, 51})});   // 0.8 and 0.2
+    scene.set_images({png_image(2, 1, 4, {255, 255, 255, 204, 255, 255, 255, 51})});  // 0.8 and 0.2
   }
   scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, material);
   scene.set_uvs({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
@@ -194,7 +196,7 @@ TEST(VertexColours, MultiplyBaseColour) {
   material.textures.emplace().vertex_colors = true;
   scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, material);
   scene.set_colors({{1, 0, 1, 1}, {1, 0, 1, 1}, {0, 1, 1, 0}, {0, 1, 1, 0}});
-  scene.add_quad({2, -1, 0}, {4, -1, 0}, {4, 1, 0}, {2, 1, 0}, material);   // the same material, no colours
+  scene.add_quad({2, -1, 0}, {4, -1, 0}, {4, 1, 0}, {2, 1, 0}, material);  // the same material, no colours
   const Tracer tracer(scene.frame());
   const auto colour_at = [&](float x, float y) {
     Hit hit;
@@ -202,13 +204,14 @@ TEST(VertexColours, MultiplyBaseColour) {
     SurfacePoint point = tracer.surface_point(hit);
     return SurfaceMaterial(scene.frame(), point, 0).values().base_color;
   };
-  for (const float x : {-0.7f, 0.6f})   // in either triangle
+  for (const float x : {-0.7f, 0.6f})  // in either triangle
     for (const auto& [channel, expected] : {std::pair{&Rgb::r, 0.25f * 0.8f}, {&Rgb::g, 0.75f * 0.4f}, {&Rgb::b, 0.6f}})
       EXPECT_NEAR(colour_at(x, 0.5f).*channel, expected, 1e-6f) << x;
   EXPECT_EQ(colour_at(3, 0.5f), (Rgb{0.8f, 0.4f, 0.6f}));
 }
 
-/// Alpha .2 below, .6 above, times that of the texture: .8 on the left, .2 on the right. 4 sigma of 20000 draws as above.
+/// Alpha .2 below, .6 above, times that of the texture: .8 on the left, .2 on the right. 4 sigma of 20000 draws as
+/// above.
 TEST(VertexColours, MultiplyAlpha) {
   for (const bool textured : {false, true})
     for (const bool occlusion : {false, true}) {
@@ -222,7 +225,7 @@ TEST(VertexColours, MultiplyAlpha) {
       EXPECT_NEAR(met(tracer, 0.5f, occlusion), 0.4 * (textured ? 0.2 : 1), 0.0141);
     }
   HandMadeScene mask = veil(Material::Alpha::mask, 1, false);
-  mask.set_colors({{1, 1, 1, 0}, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 0}});   // from left to right
+  mask.set_colors({{1, 1, 1, 0}, {1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 0}});  // from left to right
   SceneFrame frame = mask.frame();
   frame.materials[0].textures.emplace().vertex_colors = true;
   const Tracer tracer(frame);
@@ -246,7 +249,8 @@ TEST(Alpha, RaysThatMeasureAVeilMeetItAlwaysOneByOneAndInLists) {
   HandMadeScene scene = veil(Material::Alpha::blend, 0.01f, false);
   const Tracer tracer(scene.frame());
   std::vector<Ray> rays;
-  for (int i = 0; i < 40; ++i) rays.push_back({{0.02f * float(i) - 0.4f, 0.2f, 1}, {0, 0, -1}, 0, INFINITY, i % 2 == 0});
+  for (int i = 0; i < 40; ++i)
+    rays.push_back({{0.02f * float(i) - 0.4f, 0.2f, 1}, {0, 0, -1}, 0, INFINITY, i % 2 == 0});
   std::vector<Hit> hits(rays.size());
   tracer.intersect(rays, hits);
   int met_by_chance = 0;
@@ -256,17 +260,17 @@ TEST(Alpha, RaysThatMeasureAVeilMeetItAlwaysOneByOneAndInLists) {
     if (rays[i].all_blend) EXPECT_EQ(hits[i].surface, 0u) << i;
     else met_by_chance += hits[i].surface != kNone;
   }
-  EXPECT_LE(met_by_chance, 3);   // 20 draws of 0.01: more than 3 once in 25 000 scenes
+  EXPECT_LE(met_by_chance, 3);  // 20 draws of 0.01: more than 3 once in 25 000 scenes
 }
 
 TEST(Alpha, MaskIsThereOrNot) {
   for (const bool occlusion : {false, true}) {
-    HandMadeScene scene = veil(Material::Alpha::mask, 1, true);   // cut-off 0.5
+    HandMadeScene scene = veil(Material::Alpha::mask, 1, true);  // cut-off 0.5
     const Tracer tracer(scene.frame());
     EXPECT_EQ(met(tracer, -0.5f, occlusion), 1);
     EXPECT_EQ(met(tracer, 0.5f, occlusion), 0);
     HandMadeScene half = veil(Material::Alpha::mask, 0.5f, false);
-    EXPECT_EQ(met(Tracer(half.frame()), 0.5f, occlusion), 1);   // alpha = cut-off: there
+    EXPECT_EQ(met(Tracer(half.frame()), 0.5f, occlusion), 1);  // alpha = cut-off: there
   }
 }
 
@@ -330,17 +334,19 @@ TEST(NormalMap, TiltsAsTheSpecificationSays) {
     return point.normal;
   };
   const float s = std::sqrt(0.5f);
-  const auto expect = [&](Vec3 normal, Vec3 wanted) { EXPECT_GT(dot(normal, wanted), 0.9999f) << normal.x << " " << normal.y << " " << normal.z; };
-  const std::vector<Vec2> upright{{0, 1}, {1, 1}, {1, 0}, {0, 0}};     // the image's top at y = 1
+  const auto expect = [&](Vec3 normal, Vec3 wanted) {
+    EXPECT_GT(dot(normal, wanted), 0.9999f) << normal.x << " " << normal.y << " " << normal.z;
+  };
+  const std::vector<Vec2> upright{{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // the image's top at y = 1
   expect(tilted(upright, false), {s, 0, s});
   expect(tilted(upright, true), {0, s, s});
-  const std::vector<Vec2> mirrored{{1, 1}, {0, 1}, {0, 0}, {1, 0}};    // the image's right at x = 0
+  const std::vector<Vec2> mirrored{{1, 1}, {0, 1}, {0, 0}, {1, 0}};  // the image's right at x = 0
   expect(tilted(mirrored, false), {-s, 0, s});
   expect(tilted(mirrored, true), {0, s, s});
-  const std::vector<Vec2> turned{{0, 0}, {0, 1}, {1, 1}, {1, 0}};      // the image's right at y = 1, its top at x = 0
+  const std::vector<Vec2> turned{{0, 0}, {0, 1}, {1, 1}, {1, 0}};  // the image's right at y = 1, its top at x = 0
   expect(tilted(turned, false), {0, s, s});
   expect(tilted(turned, true), {-s, 0, s});
-  expect(tilted(upright, false, true), {s, 0, -s});                    // the other side is the front
+  expect(tilted(upright, false, true), {s, 0, -s});  // the other side is the front
   const std::vector<Vec2> nowhere(4, Vec2{0.3f, 0.3f});
   expect(tilted(nowhere, false), {0, 0, 1});
 }
@@ -363,7 +369,8 @@ TEST(NormalMap, ATiltedNormalIsLitLikeATiltedPlane) {
   EXPECT_NEAR(layers[Layer::direct].g, 0.8 / M_PI * std::sqrt(0.5), 2e-3);
 }
 
-/// A plate of side 2 under a normal map of stripes that lean 45 degrees to the left and to the right by turns; no stripes: plain.
+/// A plate of side 2 under a normal map of stripes that lean 45 degrees to the left and to the right by turns; no
+/// stripes: plain.
 void add_ridges(int stripes, HandMadeScene& scene) {
   Material plate = matte(Rgb(0.5f));
   if (stripes > 0) {
@@ -396,8 +403,9 @@ constexpr float kSlanting = 75 * kPi / 180;
 /// Cosines of light at 75 degrees to a stripe that leans 45 degrees towards it, and to the plate.
 const double kTowards = std::cos(kPi / 6), kLevel = std::cos(kSlanting);
 
-/// A lamp 3 m off at 75 degrees; h and a: what it is above a place and aside of it. A stripe that leans towards it gets (a + h) / (h sqrt 2) times
-/// what the plane gets, the next one nothing. 3 800 photons: 1.7 % of noise, most of it the same on both; codes are good for 1 %.
+/// A lamp 3 m off at 75 degrees; h and a: what it is above a place and aside of it. A stripe that leans towards it gets
+/// (a + h) / (h sqrt 2) times what the plane gets, the next one nothing. 3 800 photons: 1.7 % of noise, most of it the
+/// same on both; codes are good for 1 %.
 TEST(NormalMap, PhotonsOnFineRidgesFollowEachOfThem) {
   const Vec3 lamp{-3 * std::sin(kSlanting), 0, 3 * std::cos(kSlanting)};
   double plain = 0, ridges = 0;
@@ -408,11 +416,12 @@ TEST(NormalMap, PhotonsOnFineRidgesFollowEachOfThem) {
       plain += double(to.z) / (d * d * d);
       ridges += double(to.z - to.x) * std::sqrt(0.5) / 2 / (d * d * d);
     }
-  EXPECT_NEAR(flux_on_ridges(128, lamp, 100'000) / flux_on_ridges(0, lamp, 100'000), ridges / plain, 0.03 * ridges / plain);
+  EXPECT_NEAR(flux_on_ridges(128, lamp, 100'000) / flux_on_ridges(0, lamp, 100'000), ridges / plain,
+              0.03 * ridges / plain);
 }
 
-/// Two halves that lean 45 degrees inwards, a lamp 50 m above: cos 45 of what the plane gets, and 1 % more, as the lamp is
-/// half a metre to the side on which either leans.
+/// Two halves that lean 45 degrees inwards, a lamp 50 m above: cos 45 of what the plane gets, and 1 % more, as the lamp
+/// is half a metre to the side on which either leans.
 TEST(NormalMap, PhotonsOnBroadRidgesFollowThem) {
   const double plain = flux_on_ridges(0, {0, 0, 50}, 1'000'000);
   EXPECT_NEAR(flux_on_ridges(2, {0, 0, 50}, 1'000'000), std::sqrt(0.5) * 1.01 * plain, 0.01 * plain);
@@ -425,7 +434,8 @@ struct RidgesUnderAPane {
   Tracer tracer;
   Lights lights;
   formats::PhotonBlock photons;
-  explicit RidgesUnderAPane(int stripes) : frame(frame_of(made, stripes)), tracer(frame), lights(frame, build_emission_table({&frame, 1})) {
+  explicit RidgesUnderAPane(int stripes)
+      : frame(frame_of(made, stripes)), tracer(frame), lights(frame, build_emission_table({&frame, 1})) {
     PhotonOptions options;
     options.photon_count = 400'000;
     options.set_kinds("caustic");
@@ -450,10 +460,12 @@ struct RidgesUnderAPane {
   /// 1 - F: a thin wall reflects as one face does.
   static double transmittance() {
     const double mu = std::cos(kSlanting), c = std::sqrt(1 - (1 - mu * mu) / 2.25);
-    const double rs = (mu - 1.5 * c) / (mu + 1.5 * c), rp = (1.5 * mu - c) / (1.5 * mu + c), f = (rs * rs + rp * rp) / 2;
+    const double rs = (mu - 1.5 * c) / (mu + 1.5 * c), rp = (1.5 * mu - c) / (1.5 * mu + c),
+                 f = (rs * rs + rp * rp) / 2;
     return 1 - f;
   }
-  /// Mean caustic radiance of 400 rays from just above, each of which stands for `width` of the plate, times pi / rho: E.
+  /// Mean caustic radiance of 400 rays from just above, each of which stands for `width` of the plate, times pi / rho:
+  /// E.
   double seen(float width) const {
     PhotonLightOptions options;
     options.caustic_only = true;
@@ -464,7 +476,9 @@ struct RidgesUnderAPane {
     double sum = 0;
     for (std::uint32_t i = 0; i < 400; ++i) {
       const Vec3 eye{-0.6f + 1.2f * radical(i, 2), -0.6f + 1.2f * radical(i, 3), 0.1f};
-      sum += double(trace_eye_path({tracer, lights}, {eye, {0, 0, -1}, 0, INFINITY}, PixelRandom(1, 7, i), &known, counts, {width, 0})[Layer::caustic].g);
+      sum += double(trace_eye_path({tracer, lights}, {eye, {0, 0, -1}, 0, INFINITY}, PixelRandom(1, 7, i), &known,
+                                   counts, {width, 0})[Layer::caustic]
+                        .g);
     }
     return sum / 400 * kPi / 0.5;
   }
@@ -475,9 +489,10 @@ struct RidgesUnderAPane {
   }
 };
 
-/// Who tells the stripes apart sees T cos 30 on every other one and nothing on those between; who does not sees the plate, T cos 75, as path
-/// tracing has it: 1.67 times less. 16 000 photons there: 1 % of noise; 7 % of the mean of the finer view are who of 400 rays meets which stripe;
-/// codes are half a code off, 0.0055 of the normal, which is 2.1 % of cos 75.
+/// Who tells the stripes apart sees T cos 30 on every other one and nothing on those between; who does not sees the
+/// plate, T cos 75, as path tracing has it: 1.67 times less. 16 000 photons there: 1 % of noise; 7 % of the mean of the
+/// finer view are who of 400 rays meets which stripe; codes are half a code off, 0.0055 of the normal, which is 2.1 %
+/// of cos 75.
 TEST(NormalMap, CausticLightOnRidgesIsSeenAsTheEyeTellsThemApart) {
   const RidgesUnderAPane ridges(128), plain(0);
   const double arriving = RidgesUnderAPane::transmittance();
@@ -525,8 +540,9 @@ TEST(Unlit, ShowsItselfToTheEyeAndLightsNothing) {
                                        PixelRandom(1, 7, i), nullptr, counts);
     EXPECT_EQ(wall[Layer::emission], (Rgb{0.25f, 0.5f, 1.0f}));
     EXPECT_EQ(wall[Layer::direct], Rgb(0.0f));
-    const Layers table_top = trace_eye_path({tracer, lights}, {{0, 0, 0.2f}, normalize(Vec3{0.1f, 0.1f, -1}), 0, INFINITY},
-                                            PixelRandom(1, 7, i), nullptr, counts);
+    const Layers table_top =
+        trace_eye_path({tracer, lights}, {{0, 0, 0.2f}, normalize(Vec3{0.1f, 0.1f, -1}), 0, INFINITY},
+                       PixelRandom(1, 7, i), nullptr, counts);
     EXPECT_EQ(table_top[Layer::emission], Rgb(0.0f));
     EXPECT_GT(table_top[Layer::direct].g, 0);
     EXPECT_EQ(table_top[Layer::indirect], Rgb(0.0f));
@@ -556,7 +572,8 @@ HandMadeScene two_coloured_sphere() {
   scene.add_point_light({}, Rgb(1.0f));
   return scene;
 }
-const double kMeanReflectance = (std::pow((231 / 255.0 + 0.055) / 1.055, 2.4) + std::pow((124 / 255.0 + 0.055) / 1.055, 2.4)) / 2;
+const double kMeanReflectance =
+    (std::pow((231 / 255.0 + 0.055) / 1.055, 2.4) + std::pow((124 / 255.0 + 0.055) / 1.055, 2.4)) / 2;
 
 TEST(TexturedReflectance, PhotonsInASphere) {
   HandMadeScene scene = two_coloured_sphere();
@@ -578,7 +595,7 @@ TEST(TexturedReflectance, EyePathsInASphere) {
   const Tracer tracer(scene.frame());
   const Lights lights(scene.frame(), table_of(scene));
   const double wall = 2 * kMeanReflectance, dark = std::pow((124 / 255.0 + 0.055) / 1.055, 2.4), bright = wall - dark;
-  const double irradiance = 1.0;   // I / r^2
+  const double irradiance = 1.0;  // I / r^2
   RayCounts counts;
   for (const float side : {-1.0f, 1.0f}) {
     const double rho = side < 0 ? bright : dark;
@@ -598,9 +615,9 @@ TEST(TexturedReflectance, EyePathsInASphere) {
   }
 }
 
-/// A closed room of side 2 of one reflectance, from an atlas: each face shows the middle quarter of an image of 128 texels,
-/// 32 of them per metre. Two texels around it are like it; all else is black, and must not be seen in any light.
-/// Cones of a tenth, which mix in what is beside, lose 2 % at each reflection, 8 % in all.
+/// A closed room of side 2 of one reflectance, from an atlas: each face shows the middle quarter of an image of 128
+/// texels, 32 of them per metre. Two texels around it are like it; all else is black, and must not be seen in any
+/// light. Cones of a tenth, which mix in what is beside, lose 2 % at each reflection, 8 % in all.
 HandMadeScene room_of_charts(float emission) {
   HandMadeScene scene;
   Material wall = matte(Rgb(1.0f), Rgb(emission));
@@ -615,7 +632,7 @@ HandMadeScene room_of_charts(float emission) {
   for (const float side : {-1.0f, 1.0f})
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto first = std::uint32_t(corners.size());
-      for (const Vec2 at : {Vec2{-1, -1}, Vec2{side, -side}, Vec2{1, 1}, Vec2{-side, side}}) {   // fronts inwards
+      for (const Vec2 at : {Vec2{-1, -1}, Vec2{side, -side}, Vec2{1, 1}, Vec2{-side, side}}) {  // fronts inwards
         Vec3 p{side, side, side};
         p[int(axis + 1) % 3] = at.x;
         p[int(axis + 2) % 3] = at.y;
@@ -657,16 +674,18 @@ TEST(TexturedReflectance, EyePathsSeeNothingBesideAChart) {
   for (int i = 0; i < kSamples; ++i) {
     const Ray ray{{0.1f, 0.05f, 0.02f}, normalize(Vec3{1, 0.3f * float(i % 97) / 97, 0.2f}), 0, INFINITY};
     const Layers layers = trace_eye_path({tracer, lights}, ray, PixelRandom(3, 5, std::uint32_t(i)), nullptr, counts);
-    for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect}) sum += double(layers[layer].g) / kSamples;
+    for (const Layer layer : {Layer::emission, Layer::direct, Layer::indirect})
+      sum += double(layers[layer].g) / kSamples;
   }
   // A furnace: 1 / (1 - rho) everywhere. As above, sigma = 1 / sqrt(rho N) = 0.8 %.
   const double expected = 1 / (1 - kChart);
   EXPECT_NEAR(sum, expected, 4 * 0.008 * expected);
 }
 
-/// A plate of stripes 0.2 m wide, by turns white metal and black plastic of the same roughness, 20 m below a lamp and the
-/// top of a sphere that stores photons. kind: 0 stripes, 1 all metal, 2 all plastic. The light that goes from the
-/// stripes is the mean of metal's and plastic's: F0 is 0.52 in the mean; by the mean colour and metalness it would be 0.27.
+/// A plate of stripes 0.2 m wide, by turns white metal and black plastic of the same roughness, 20 m below a lamp and
+/// the top of a sphere that stores photons. kind: 0 stripes, 1 all metal, 2 all plastic. The light that goes from the
+/// stripes is the mean of metal's and plastic's: F0 is 0.52 in the mean; by the mean colour and metalness it would be
+/// 0.27.
 HandMadeScene striped_plate(int kind) {
   HandMadeScene scene;
   Material plate = matte(Rgb(kind == 2 ? 0.0f : 1.0f));
@@ -676,8 +695,9 @@ HandMadeScene striped_plate(int kind) {
   if (kind == 0) {
     MaterialTextures& textures = plate.textures.emplace();
     textures.base_color = textures.metallic_roughness = texture_of_image();
-    std::vector<std::uint8_t> texels;   // green, the roughness, is 1 everywhere
-    for (int i = 0; i < 128 * 128; ++i) texels.insert(texels.end(), {std::uint8_t(i % 2 * 255), 255, std::uint8_t(i % 2 * 255)});
+    std::vector<std::uint8_t> texels;  // green, the roughness, is 1 everywhere
+    for (int i = 0; i < 128 * 128; ++i)
+      texels.insert(texels.end(), {std::uint8_t(i % 2 * 255), 255, std::uint8_t(i % 2 * 255)});
     scene.set_images({png_image(128, 128, 3, texels)});
   }
   scene.add_quad({-12.8f, -12.8f, 0}, {12.8f, -12.8f, 0}, {12.8f, 12.8f, 0}, {-12.8f, 12.8f, 0}, plate);
@@ -690,7 +710,9 @@ HandMadeScene striped_plate(int kind) {
 /// Means of three; sigma of what the first differs from the others' mean by, of their mean.
 struct Stripes {
   double mean[3] = {}, square[3] = {};
-  void add(int kind, double value, double count) { mean[kind] += value / count, square[kind] += value * value / count / count; }
+  void add(int kind, double value, double count) {
+    mean[kind] += value / count, square[kind] += value * value / count / count;
+  }
   double expected() const { return (mean[1] + mean[2]) / 2; }
   double sigma() const { return std::sqrt(square[0] + (square[1] + square[2]) / 4); }
 };
@@ -708,7 +730,7 @@ TEST(TexturedGloss, PhotonsFromAfarMeetWhatIsThere) {
       if (photon.kind == formats::PathKind::caustic) flux.add(kind, double(photon.flux[0]), 1);
   }
   EXPECT_NEAR(flux.mean[0], flux.expected(), 4 * flux.sigma());
-  EXPECT_LT(4 * flux.sigma(), 0.1 * flux.expected());   // else it could not tell
+  EXPECT_LT(4 * flux.sigma(), 0.1 * flux.expected());  // else it could not tell
 }
 
 TEST(TexturedGloss, EyePathsFromAfarMeetWhatIsThere) {

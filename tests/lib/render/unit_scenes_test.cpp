@@ -51,7 +51,8 @@ nlohmann::json expected(const std::string& name) {
 }
 
 /// Irradiance of a horizontal point below a polygon of radiance 1, Lambert's formula:
-/// 1/2 sum over the edges of (angle between their ends seen from the point) x (vertical part of the edge plane's normal).
+/// 1/2 sum over the edges of (angle between their ends seen from the point) x (vertical part of the edge plane's
+/// normal).
 double polygon_irradiance(const std::vector<Vec3d>& corners, Vec3d point) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -87,9 +88,11 @@ TEST_P(UnitScenes, PathTracerWithinThreePerMille) {
   constexpr int kSamples = 1 << 18;
   Rgbd sum{0.0};
   for (std::uint32_t s = 0; s < kSamples; ++s)
-    for (const Rgb& layer : trace_eye_path({unit.tracer, unit.lights}, unit.centre_ray(), PixelRandom(1, 0, s), nullptr, counts).value)
+    for (const Rgb& layer :
+         trace_eye_path({unit.tracer, unit.lights}, unit.centre_ray(), PixelRandom(1, 0, s), nullptr, counts).value)
       sum += Rgbd(layer);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kSamples / centre[std::size_t(c)].get<double>(), 1, 0.003) << "channel " << c;
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(sum[c] / kSamples / centre[std::size_t(c)].get<double>(), 1, 0.003) << "channel " << c;
 }
 
 /// Photons of all kinds that arrive within r of the centre, on the side the camera sees, over pi r^2, times
@@ -132,8 +135,8 @@ TEST_P(UnitScenes, PhotonDensityWithinOnePercent) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Units, UnitScenes,
-                         testing::Values("U1_point", "U2_directional", "U3_spot", "U4_furnace_quad", "U5_furnace_closed",
-                                         "U6_area_quad", "U7_area_close", "U8_area_low_offset"));
+                         testing::Values("U1_point", "U2_directional", "U3_spot", "U4_furnace_quad",
+                                         "U5_furnace_closed", "U6_area_quad", "U7_area_close", "U8_area_low_offset"));
 
 }  // namespace
 }  // namespace tempolux

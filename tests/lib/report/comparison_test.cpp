@@ -64,9 +64,7 @@ std::string refusal(const std::string& content) {
   const std::string path = temporary("refused.json", content);
   try {
     read_comparison(path);
-  } catch (const InputError& error) {
-    return std::string(error.what()).substr(path.size());
-  }
+  } catch (const InputError& error) { return std::string(error.what()).substr(path.size()); }
   return "accepted";
 }
 

@@ -11,8 +11,7 @@ namespace tempolux {
 namespace {
 
 /// Points at t = first, first*step, ... with e^2 = a t^(2 slope) + b.
-std::vector<CurvePoint> power_curve(int count, double a, double slope, double b, double first = 0.1,
-                                    double step = 4) {
+std::vector<CurvePoint> power_curve(int count, double a, double slope, double b, double first = 0.1, double step = 4) {
   std::vector<CurvePoint> points;
   for (int i = 0; i < count; ++i) {
     const double t = first * std::pow(step, i);
@@ -21,8 +20,7 @@ std::vector<CurvePoint> power_curve(int count, double a, double slope, double b,
   return points;
 }
 
-MeasuredRun run_of(const std::string& curve, double x, double cpu_s, double mse,
-                   const std::string& seed = "1") {
+MeasuredRun run_of(const std::string& curve, double x, double cpu_s, double mse, const std::string& seed = "1") {
   MeasuredRun run;
   run.scene = "S";
   run.curve = run.label = curve;
@@ -45,8 +43,7 @@ TEST(CurveFitTest, MonteCarloCurveHasSlopeMinusOneHalfAndNoFloor) {
 }
 
 TEST(CurveFitTest, FloorIsFoundAndItsPointsLeftOutOfTheSlope) {
-  const auto points =
-      power_curve(8, 1e-4, -0.5, 1e-6);  // a/t = 10 b at t = 10: points .1 .4 1.6 6.4 are before
+  const auto points = power_curve(8, 1e-4, -0.5, 1e-6);  // a/t = 10 b at t = 10: points .1 .4 1.6 6.4 are before
   const CurveFit fit = fit_curve(points);
   ASSERT_TRUE(fit.floor);
   EXPECT_NEAR(*fit.floor, 1e-3, 1e-9);
@@ -106,8 +103,7 @@ TEST(TimeAtErrorTest, InterpolatesPowerLawsExactlyAndNeverExtrapolates) {
 }
 
 TEST(TimeAtErrorTest, ANoisyCurveCountsFromWhereItFirstGetsThere) {
-  const std::vector<CurvePoint> points{
-      {1, 1, 1e-2, 1}, {2, 10, 1e-4, 1}, {3, 100, 1e-3, 1}, {4, 1000, 1e-5, 1}};
+  const std::vector<CurvePoint> points{{1, 1, 1e-2, 1}, {2, 10, 1e-4, 1}, {3, 100, 1e-3, 1}, {4, 1000, 1e-5, 1}};
   EXPECT_NEAR(*time_at_error(points, std::sqrt(1e-3)), std::sqrt(10.0), 1e-9);
 }
 

@@ -32,10 +32,8 @@ MeasuredRun run_of(const std::string& curve, double x, double cpu_s, double mse)
 
 ReportInput example() {
   ReportInput input;
-  for (int i = 0; i < 5; ++i)
-    input.runs.push_back(run_of("path", 1 << 2 * i, 1 << 2 * i, 1e-2 / (1 << 2 * i)));
-  for (int i = 0; i < 5; ++i)
-    input.runs.push_back(run_of("map's", 1 << 2 * i, 1 << 2 * i, 1e-3 / (1 << 2 * i) + 1e-5));
+  for (int i = 0; i < 5; ++i) input.runs.push_back(run_of("path", 1 << 2 * i, 1 << 2 * i, 1e-2 / (1 << 2 * i)));
+  for (int i = 0; i < 5; ++i) input.runs.push_back(run_of("map's", 1 << 2 * i, 1 << 2 * i, 1e-3 / (1 << 2 * i) + 1e-5));
   input.points.push_back({"S <2>", "peer", "", 8, 0.02});
   return input;
 }
@@ -49,14 +47,13 @@ const Table& table_of(const SceneReport& report, const std::string& heading) {
 TEST(ReportTest, CsvHasALinePerRunWithSecondsByPhaseAndCounts) {
   ReportInput input;
   input.runs = {run_of("path", 4, 2, 0.0625)};
-  EXPECT_EQ(
-      report_csv(input),
-      "scene,curve,label,x,parameters,stages,cpu_s,wall_s,peak_memory_bytes,photon-trace.trace cpu_s,"
-      "photon-trace.rays,layer,pixels,frames,rmse,mse,mse_standard_error,relmse,bias,bias_standard_error,"
-      "worst_object_bias,psnr_db,flicker\n"
-      "S <2>,path,\"path, 4\",4,,photon-trace "
-      "frame-render,2.000000,0.000000,5000000,1,4000000,,0,0,0.25,0.0625"
-      ",,,,,,,\n");
+  EXPECT_EQ(report_csv(input),
+            "scene,curve,label,x,parameters,stages,cpu_s,wall_s,peak_memory_bytes,photon-trace.trace cpu_s,"
+            "photon-trace.rays,layer,pixels,frames,rmse,mse,mse_standard_error,relmse,bias,bias_standard_error,"
+            "worst_object_bias,psnr_db,flicker\n"
+            "S <2>,path,\"path, 4\",4,,photon-trace "
+            "frame-render,2.000000,0.000000,5000000,1,4000000,,0,0,0.25,0.0625"
+            ",,,,,,,\n");
 }
 
 // Curve "map's" falls as 1e-3/t + 1e-5: floor sqrt(1e-5), ten times that at t = 10: points 1 and 4 carry the
@@ -75,7 +72,7 @@ TEST(ReportTest, TablesCarrySlopeFloorSpeedUpAndGivenPoints) {
   EXPECT_EQ(faster.rows[0][3], "1");  // at the map's first point, e^2 = .00101: path needs .01/.00101 = 9.9 s
   EXPECT_EQ(faster.rows[0][5], "9.90");
   const Table& given = table_of(report, "Given points, not measured here");
-  EXPECT_EQ(given.rows[0][3], "0.32");    // path: .01/.0004 = 25 s; 8 / 25
+  EXPECT_EQ(given.rows[0][3], "0.32");  // path: .01/.0004 = 25 s; 8 / 25
 }
 
 TEST(ReportTest, PagesEscapeNamesAndEmbedPlots) {
@@ -92,8 +89,7 @@ TEST(ReportTest, PagesEscapeNamesAndEmbedPlots) {
 }
 
 TEST(ReportTest, PlotShowsSlopeAndFloorAndQuotesNames) {
-  const std::string script =
-      plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::svg);
+  const std::string script = plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::svg);
   EXPECT_NE(script.find("title 'path, slope -0.50'"), std::string::npos);
   EXPECT_NE(script.find("title 'map''s, slope "), std::string::npos);
   EXPECT_NE(script.find(", bias floor 0.0032'"), std::string::npos);
@@ -101,8 +97,7 @@ TEST(ReportTest, PlotShowsSlopeAndFloorAndQuotesNames) {
 }
 
 TEST(GnuplotTest, DrawsTheSamePlotTwiceAndTellsOnWhatItFails) {
-  const std::string script =
-      plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::svg);
+  const std::string script = plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::svg);
   std::string drawn;
   try {
     drawn = run_gnuplot(script, 60);
@@ -113,8 +108,7 @@ TEST(GnuplotTest, DrawsTheSamePlotTwiceAndTellsOnWhatItFails) {
   EXPECT_NE(drawn.find("<svg"), std::string::npos);
   EXPECT_EQ(drawn, run_gnuplot(script, 60));
   EXPECT_TRUE(
-      run_gnuplot(plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::png),
-                  60)
+      run_gnuplot(plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::png), 60)
           .starts_with("\x89PNG"));
   try {
     run_gnuplot("plot nonsense(x)\n", 60);

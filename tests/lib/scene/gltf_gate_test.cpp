@@ -45,9 +45,7 @@ TEST(GltfGate, EveryBadFileIsOneLineQuicklyAndWithoutMuchMemory) {
       const Scene scene = load_gltf(entry.path().string());
       require_lights(scene);
       ADD_FAILURE() << entry.path() << " was accepted";
-    } catch (const InputError& error) {
-      message = error.what();
-    }
+    } catch (const InputError& error) { message = error.what(); }
     EXPECT_TRUE(message.starts_with(entry.path().string() + ": ")) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     EXPECT_LT(message.size(), 500u);
@@ -60,8 +58,7 @@ TEST(GltfGate, EveryBadFileIsOneLineQuicklyAndWithoutMuchMemory) {
 
 TEST(GltfGate, DeeplyNestedJsonIsRefused) {
   const std::string depth(200'000, '[');
-  const std::string text =
-      R"({"asset":{"version":"2.0"},"extras":)" + depth + std::string(200'000, ']') + "}";
+  const std::string text = R"({"asset":{"version":"2.0"},"extras":)" + depth + std::string(200'000, ']') + "}";
   EXPECT_CONTAINS(load_error(write_file("deep.gltf", text)), "nested deeper than 64 levels");
 }
 
@@ -89,13 +86,11 @@ TEST(GltfGate, UrisMustStayInTheScenesFolder) {
   write_file("outside.bin", std::string(36, '\0'));
   for (const char* uri :
        {"../outside.bin", "a/../../outside.bin", "%2e%2e/outside.bin", "../../../../../etc/hostname"}) {
-    const std::string path =
-        write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", uri}}).text());
+    const std::string path = write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", uri}}).text());
     EXPECT_CONTAINS(load_error(path), "leads out of the scene's folder");
   }
   const std::string absolute = (temporary_folder() / "outside.bin").string();
-  const std::string path =
-      write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", absolute}}).text());
+  const std::string path = write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", absolute}}).text());
   EXPECT_CONTAINS(load_error(path), "is an absolute path");
 }
 
@@ -130,13 +125,12 @@ TEST(GltfGate, OtherUrisAreRefused) {
   struct Case {
     const char *uri, *part;
   };
-  for (const Case& c :
-       {Case{"http://example.org/a.bin", "is not a relative path"},
-        Case{"file:///etc/hostname", "is not a relative path"}, Case{"", "is empty"},
-        Case{"a%zz.bin", "hexadecimal"}, Case{"a%", "hexadecimal"}, Case{"a%00.bin", "zero byte"},
-        Case{"none.bin", "buffers[0].uri: "}, Case{"none.bin", "cannot be opened"}, Case{".", "not a regular file"},
-        Case{"data:text/html,hello", "must be base64"}, Case{"data:a/b;base64,!!!!", "not base64"},
-        Case{"data:a/b;base64,AAAA", "decodes to 3 bytes"}})
+  for (const Case& c : {Case{"http://example.org/a.bin", "is not a relative path"},
+                        Case{"file:///etc/hostname", "is not a relative path"}, Case{"", "is empty"},
+                        Case{"a%zz.bin", "hexadecimal"}, Case{"a%", "hexadecimal"}, Case{"a%00.bin", "zero byte"},
+                        Case{"none.bin", "buffers[0].uri: "}, Case{"none.bin", "cannot be opened"},
+                        Case{".", "not a regular file"}, Case{"data:text/html,hello", "must be base64"},
+                        Case{"data:a/b;base64,!!!!", "not base64"}, Case{"data:a/b;base64,AAAA", "decodes to 3 bytes"}})
     EXPECT_CONTAINS(error_of(with_buffer({{"byteLength", 36}, {"uri", c.uri}})), c.part);
 }
 
@@ -277,8 +271,7 @@ TEST(GltfGate, NoChangedByteCrashesOrHangs) {
       try {
         load_gltf(write_file("changed.glb", changed));
         ++loaded;  // names, padding and coordinates may hold anything
-      } catch (const InputError&) {
-      }
+      } catch (const InputError&) {}
     }
   EXPECT_GT(loaded, 0);
 }
@@ -311,9 +304,8 @@ TEST(GltfGate, SmallFilesThatAskForMuchMemoryAreRefused) {
   GltfMaker maker = one_triangle();
   maker.json["accessors"][0].erase("bufferView");
   maker.json["accessors"][0]["count"] = 100'000'000;
-  maker.json["accessors"][0]["sparse"] = {{"count", 1},
-                                          {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
-                                          {"values", {{"bufferView", 0}}}};
+  maker.json["accessors"][0]["sparse"] = {
+      {"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5125}}}, {"values", {{"bufferView", 0}}}};
   EXPECT_CONTAINS(error_of(maker), "far more memory");
 }
 

@@ -39,9 +39,7 @@ TEST(GltfLoad, AllMadeScenesLoadWithTheirTriangles) {
       EXPECT_EQ(triangle_count(scene), known->second) << entry.path();
     }
     const bool only_volume = entry.path().filename().string().starts_with("V");
-    if (!only_volume) {
-      EXPECT_NO_THROW(require_lights(scene)) << entry.path();
-    }
+    if (!only_volume) { EXPECT_NO_THROW(require_lights(scene)) << entry.path(); }
     ++count;
   }
   EXPECT_GE(count, 17);
@@ -93,10 +91,8 @@ TEST(GltfLoad, StripsAndFansBecomeTrianglesWithTheirWinding) {
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"mode", 6}})}});
   const Scene scene = maker.load();
   // glTF 2.0, 3.7.2.1: strip p_i = {v_i, v_(i+1+i%2), v_(i+2-i%2)}, fan p_i = {v_(i+1), v_(i+2), v_0}
-  EXPECT_EQ(scene.meshes[0].primitives[0].triangles,
-            (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
-  EXPECT_EQ(scene.meshes[1].primitives[0].triangles,
-            (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+  EXPECT_EQ(scene.meshes[0].primitives[0].triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+  EXPECT_EQ(scene.meshes[1].primitives[0].triangles, (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
 }
 
 TEST(GltfLoad, PointsAndLinesAreIgnoredByName) {
@@ -118,9 +114,8 @@ TEST(GltfLoad, QuantizedAttributesBecomeNumbers) {
   maker.json["accessors"][normals]["normalized"] = true;
   maker.json["accessors"][uvs]["normalized"] = true;
   maker.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-  maker.add_node(
-      {{"mesh", maker.add_mesh(
-                    {{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes",
+                                            {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}}})}});
   const Scene scene = maker.load();
   const Primitive& primitive = scene.meshes[0].primitives[0];
   EXPECT_EQ(primitive.positions[0], (Vec3{-1, -1, 0}));  // the lowest integer also means -1
@@ -132,8 +127,7 @@ TEST(GltfLoad, QuantizedAttributesBecomeNumbers) {
 
 TEST(GltfLoad, IntegersThatAreNotNormalisedKeepTheirValue) {
   GltfMaker maker;
-  const int positions =
-      maker.add_accessor<std::uint16_t>({0, 0, 0, 1000, 0, 0, 0, 65535, 0}, 5123, "VEC3", 3);
+  const int positions = maker.add_accessor<std::uint16_t>({0, 0, 0, 1000, 0, 0, 0, 65535, 0}, 5123, "VEC3", 3);
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
   EXPECT_EQ(maker.load().meshes[0].primitives[0].positions[2], (Vec3{0, 65535, 0}));
 }
@@ -144,8 +138,7 @@ TEST(GltfLoad, InterleavedVerticesAreReadByTheirStride) {
   maker.json["bufferViews"][0]["byteStride"] = 24;
   maker.json["accessors"][0]["count"] = 3;
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
-  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions,
-            (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
 TEST(GltfLoad, SparseAccessorsReplaceSomeElements) {
@@ -156,8 +149,7 @@ TEST(GltfLoad, SparseAccessorsReplaceSomeElements) {
       {"count", 1},
       {"indices", {{"bufferView", maker.json["accessors"][indices]["bufferView"]}, {"componentType", 5123}}},
       {"values", {{"bufferView", maker.json["accessors"][values]["bufferView"]}}}};
-  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions,
-            (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}}));
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}}));
   maker.json["accessors"][0].erase("bufferView");  // the rest is then zero
   maker.json["accessors"][0]["count"] = 3;
   EXPECT_CONTAINS(error_of(maker), "no node of the scene has a mesh with triangles");
@@ -177,10 +169,8 @@ TEST(GltfLoad, MissingNormalsMeanFlatShading) {
 TEST(GltfLoad, NormalsBecomeUnitAndZeroOnesAreMadeFromTheirTriangles) {
   GltfMaker maker;
   const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0});
-  const int long_ones = maker.add_vec3({0, 0, 3, 0, 3, 0, 3, 0, 0}),
-            zero = maker.add_vec3({0, 0, 1, 0, 0, 0, 0, 0, 1});
-  maker.add_node(
-      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", long_ones}}}})}});
+  const int long_ones = maker.add_vec3({0, 0, 3, 0, 3, 0, 3, 0, 0}), zero = maker.add_vec3({0, 0, 1, 0, 0, 0, 0, 0, 1});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", long_ones}}}})}});
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", zero}}}})}});
   const Scene scene = maker.load();
   EXPECT_EQ(scene.meshes[0].primitives[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
@@ -192,18 +182,21 @@ TEST(GltfLoad, NormalsBecomeUnitAndZeroOnesAreMadeFromTheirTriangles) {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
-/// A corner of a cube at (1, 1, 1), one of its three squares cut through the corner: four triangles there, angles 90, 90, 45, 45.
+/// A corner of a cube at (1, 1, 1), one of its three squares cut through the corner: four triangles there, angles 90,
+/// 90, 45, 45.
 GltfMaker cube_corner(const std::vector<float>& normals) {
   GltfMaker maker;
   const int positions = maker.add_vec3({1, 1, 1, 1, 0, 1, 1, 1, 0, 0, 1, 1, 1, 0, 0});
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", maker.add_vec3(normals)}}},
-                                           // x = 1 in two, y = 1, z = 1
-                                           {"indices", maker.add_indices({0, 1, 4, 0, 4, 2, 0, 2, 3, 0, 3, 1})}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", maker.add_vec3(normals)}}},
+                                // x = 1 in two, y = 1, z = 1
+                                {"indices", maker.add_indices({0, 1, 4, 0, 4, 2, 0, 2, 3, 0, 3, 1})}})}});
   return maker;
 }
 
 TEST(GltfLoad, NormalsOfNanAreTheMeanOfTheirTrianglesByAngle) {
-  // By angle each of the three sides counts 90 degrees: (1, 1, 1) / sqrt 3. By triangles x would count twice: (2, 1, 1) / sqrt 6.
+  // By angle each of the three sides counts 90 degrees: (1, 1, 1) / sqrt 3. By triangles x would count twice: (2, 1, 1)
+  // / sqrt 6.
   std::vector<float> normals{kNan, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 1, 0, 0};
   const float third = 1 / std::sqrt(3.0f);
   for (const float wrong : {kNan, kInfinity, -kInfinity}) {
@@ -224,7 +217,8 @@ TEST(GltfLoad, NormalsOfNanAreTheMeanOfTheirTrianglesByAngle) {
 
 TEST(GltfLoad, TriangleBackToBackHasNoNormalToBeMade_FlatShaded) {
   GltfMaker maker;
-  const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0}), normals = maker.add_vec3(std::vector<float>(9, kNan));
+  const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0}),
+            normals = maker.add_vec3(std::vector<float>(9, kNan));
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}},
                                            {"indices", maker.add_indices({0, 1, 2, 0, 2, 1})}})}});
   const Scene scene = maker.load();
@@ -265,8 +259,8 @@ TEST(GltfLoad, WeightsAndDisplacementsThatAreNoneAreLeftOut) {
   const auto weight = [&](std::size_t vertex, std::size_t i) { return read.influences[vertex * 4 + i].weight; };
   EXPECT_EQ(weight(0, 0), 0.5f);
   EXPECT_EQ(weight(1, 0), 0);
-  EXPECT_EQ(weight(1, 1), 1);    // alone, so all
-  EXPECT_EQ(weight(2, 0), 1);    // NaN spoils the four of its vertex, which follows its first joint
+  EXPECT_EQ(weight(1, 1), 1);  // alone, so all
+  EXPECT_EQ(weight(2, 0), 1);  // NaN spoils the four of its vertex, which follows its first joint
   EXPECT_EQ(read.targets[0].positions[1], (Vec3{0, 0, 0}));
   EXPECT_EQ(read.targets[0].positions[2], (Vec3{2, 2, 2}));
   EXPECT_TRUE(has_warning(scene, "joint weights below 0, NaN or infinite are left out (2)"));
@@ -307,7 +301,7 @@ TEST(LightUnits, LampsOfBlendersDefaultExportAreDoubted) {
 TEST(GltfLoad, ABuildingWithNormalsOfNanIsLoaded) {
   const fs::path file = shared_scenes() / "mend/building/subpass_scene_opaque.gltf";
   if (!fs::exists(file)) GTEST_SKIP() << "../shared/scenes/mend is not there";
-  const Scene scene = load_gltf(file);   // the vertices with NaN are those of triangles of zero area, which are left out
+  const Scene scene = load_gltf(file);  // the vertices with NaN are those of triangles of zero area, which are left out
   for (const Mesh& mesh : scene.meshes)
     for (const Primitive& primitive : mesh.primitives)
       for (const Vec3& normal : primitive.normals) EXPECT_NEAR(length2(normal), 1, 1e-5);
@@ -323,7 +317,8 @@ TEST(GltfLoad, AnUnknownInterpolationIsPlayedAsLinear) {
     ASSERT_EQ(scene.animations.size(), 1u);
     EXPECT_EQ(scene.animations[0].tracks[0].interpolation, AnimationTrack::Interpolation::linear);
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_CONTAINS(scene.warnings[0], "channels[0]: channels whose interpolation \"WOBBLY\" glTF does not have are played as LINEAR");
+    EXPECT_CONTAINS(scene.warnings[0],
+                    "channels[0]: channels whose interpolation \"WOBBLY\" glTF does not have are played as LINEAR");
   }
 }
 
@@ -344,8 +339,7 @@ TEST(GltfLoad, TrianglesOfZeroAreaAreDroppedAndCounted) {
   GltfMaker maker;
   const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 1, 0, 0});
   const int indices = maker.add_indices({0, 1, 2, 0, 0, 1, 0, 1, 3, 1, 4, 2, 0, 3, 2});
-  maker.add_node(
-      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
   const Scene scene = maker.load();
   // of five: two corners equal, collinear, two corners at one place
   EXPECT_EQ(scene.meshes[0].primitives[0].triangles.size(), 2u);
@@ -355,9 +349,8 @@ TEST(GltfLoad, TrianglesOfZeroAreaAreDroppedAndCounted) {
 TEST(GltfLoad, ATinyTriangleIsNoZeroTriangle) {
   GltfMaker maker;
   const float e = std::ldexp(1.0f, -23);
-  maker.add_node(
-      {{"mesh", maker.add_mesh(
-                    {{"attributes", {{"POSITION", maker.add_vec3({1, 1, 0, 1 + e, 1, 0, 1, 1 + e, 0})}}}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes",
+                                            {{"POSITION", maker.add_vec3({1, 1, 0, 1 + e, 1, 0, 1, 1 + e, 0})}}}})}});
   EXPECT_EQ(maker.load().meshes[0].primitives[0].triangles.size(), 1u);
 }
 
@@ -366,8 +359,7 @@ TEST(GltfLoad, PrimitivesKeepOnlyTheVerticesTheyUse) {
   const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0});
   const int normals = maker.add_vec3({1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
   const Json attributes = {{"POSITION", positions}, {"NORMAL", normals}};
-  maker.add_node(
-      {{"mesh", maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices({5, 3, 4})}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices({5, 3, 4})}})}});
   const Scene scene = maker.load();
   const Primitive& primitive = scene.meshes[0].primitives[0];
   EXPECT_EQ(primitive.positions, (std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}, {5, 1, 0}}));
@@ -407,8 +399,7 @@ TEST(GltfLoad, MaterialsAreReadWithTheirExtensions) {
 
 TEST(GltfLoad, ReflectanceOutsideZeroToOneIsClampedWithAWarning) {
   GltfMaker maker;
-  maker.add_material(
-      {{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});
+  maker.add_material({{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});
   maker.add_node({{"mesh", maker.add_triangle(0)}});
   const Scene scene = maker.load();
   EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 0, 0.5f}));
@@ -427,23 +418,23 @@ TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
   maker.add_light({{"type", "point"}, {"range", 10}});
   maker.animate(0, "translation", {0}, {0, 0, 0});
   Json pointer = maker.json["animations"][0]["channels"][0];
-  pointer["target"] = {{"path", "pointer"},
-                       {"extensions", {{"KHR_animation_pointer", {{"pointer", "/materials/0"}}}}}};
+  pointer["target"] = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/materials/0"}}}}}};
   maker.json["animations"][0]["channels"].push_back(pointer);
   const Scene scene = maker.load();
-  for (const char* part :
-       {"occlusion textures", "second and further vertex colours", "skins of meshes without JOINTS_0",
-        "range of lights", "animation of /materials/0"})
+  for (const char* part : {"occlusion textures", "second and further vertex colours",
+                           "skins of meshes without JOINTS_0", "range of lights", "animation of /materials/0"})
     EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
-/// Bytes count 255ths, float colours stay what they are, RGB has alpha 1; the material is told that it varies, no other is.
+/// Bytes count 255ths, float colours stay what they are, RGB has alpha 1; the material is told that it varies, no other
+/// is.
 TEST(GltfLoad, ColoursOfVertices) {
   GltfMaker maker;
   for (int i = 0; i < 4; ++i) maker.add_material(Json::object());
   const int bytes = maker.add_accessor<std::uint8_t>({255, 0, 51, 102, 0, 255, 0, 255, 0, 0, 255, 0}, 5121, "VEC4", 4);
   maker.json["accessors"][std::size_t(bytes)]["normalized"] = true;
-  const std::vector<int> accessors{bytes, maker.add_vec3({0.5f, 0, 0, 0, 0.25f, 0, 0, 2, 1}), maker.add_vec3(std::vector<float>(9, 1))};
+  const std::vector<int> accessors{bytes, maker.add_vec3({0.5f, 0, 0, 0, 0.25f, 0, 0, 2, 1}),
+                                   maker.add_vec3(std::vector<float>(9, 1))};
   for (int m = 0; m < 3; ++m) {
     maker.add_node({{"mesh", maker.add_triangle(m)}});
     maker.json["meshes"][std::size_t(m)]["primitives"][0]["attributes"]["COLOR_0"] = accessors[std::size_t(m)];
@@ -505,22 +496,19 @@ TEST(GltfLoad, NumbersThatAreNotFiniteAreRefusedWithMeshAndAccessor) {
   GltfMaker maker;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   maker.add_node(
-      {{"mesh",
-        maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, nan, 0, 1, 0})}}}})}});
+      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, nan, 0, 1, 0})}}}})}});
   EXPECT_CONTAINS(error_of(maker), "meshes[0].primitives[0].POSITION: accessor 0 holds NaN");
 }
 
 TEST(GltfLoad, IndicesBeyondTheVerticesAreRefused) {
   GltfMaker maker;
-  maker.add_node(
-      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0})}}},
-                                {"indices", maker.add_indices({0, 1, 3})}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0})}}},
+                                           {"indices", maker.add_indices({0, 1, 3})}})}});
   EXPECT_CONTAINS(error_of(maker), "index 3 is beyond the 3 vertices");
 }
 
 TEST(GltfLoad, ABadChannelIsNotPlayedWithAWarning_AskedForByNameItIsRefused) {
-  const auto animated = [](const char* path, std::vector<float> times, std::vector<float> values,
-                           const char* how) {
+  const auto animated = [](const char* path, std::vector<float> times, std::vector<float> values, const char* how) {
     GltfMaker maker;
     maker.add_node({{"mesh", maker.add_triangle()}});
     maker.animate(0, path, times, values, how);
@@ -536,8 +524,7 @@ TEST(GltfLoad, ABadChannelIsNotPlayedWithAWarning_AskedForByNameItIsRefused) {
     EXPECT_EQ(scene.warnings[0], refused + "; this channel is not played");
     return refused;
   };
-  EXPECT_CONTAINS(trouble_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")),
-                  "times must increase");
+  EXPECT_CONTAINS(trouble_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")), "times must increase");
   EXPECT_CONTAINS(trouble_of(animated("translation", {0, 1}, {0, 0, 0}, "LINEAR")), "1 values for 2 keys");
   EXPECT_CONTAINS(trouble_of(animated("translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "CUBICSPLINE")), "three each");
   EXPECT_CONTAINS(trouble_of(animated("rotation", {0}, {0, 0, 0, 0}, "LINEAR")), "quaternion of zero length");
@@ -580,9 +567,7 @@ TEST(GltfLoad, CamerasAreFoundByNameAndTheirAbsenceSaysWhatToTick) {
   try {
     maker.load().camera_node("auto");
     ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_CONTAINS(error.what(), "Include > Cameras");
-  }
+  } catch (const InputError& error) { EXPECT_CONTAINS(error.what(), "Include > Cameras"); }
   maker.add_camera({{"name", "First"}});
   maker.add_camera({{"name", "Second"}});
   const Scene scene = maker.load();
@@ -591,9 +576,7 @@ TEST(GltfLoad, CamerasAreFoundByNameAndTheirAbsenceSaysWhatToTick) {
   try {
     scene.camera_node("Third");
     ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_CONTAINS(error.what(), "First, Second");
-  }
+  } catch (const InputError& error) { EXPECT_CONTAINS(error.what(), "First, Second"); }
   maker.add_camera(Json::object());
   const Scene with_unnamed = maker.load();
   EXPECT_EQ(with_unnamed.camera_node("camera 2"), 3);
@@ -606,9 +589,7 @@ TEST(GltfLoad, ASceneWithoutLightSaysWhatToTick) {
   try {
     require_lights(maker.load());
     ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_CONTAINS(error.what(), "Punctual Lights");
-  }
+  } catch (const InputError& error) { EXPECT_CONTAINS(error.what(), "Punctual Lights"); }
   GltfMaker lamp = maker, emitter = maker;
   lamp.add_light({{"type", "point"}});
   EXPECT_NO_THROW(require_lights(lamp.load()));

@@ -52,10 +52,8 @@ inline std::string base64(const std::string& bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }
@@ -66,8 +64,7 @@ struct GltfMaker {
   std::string bytes;
 
   template <class T>
-  int add_accessor(const std::vector<T>& values, int component_type, const char* type,
-                   std::size_t per_element) {
+  int add_accessor(const std::vector<T>& values, int component_type, const char* type, std::size_t per_element) {
     while (bytes.size() % 4) bytes += '\0';
     json["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
@@ -81,9 +78,7 @@ struct GltfMaker {
   int add_vec3(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC3", 3); }
   int add_vec4(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC4", 4); }
   int add_scalars(const std::vector<float>& values) { return add_accessor(values, 5126, "SCALAR", 1); }
-  int add_indices(const std::vector<std::uint16_t>& values) {
-    return add_accessor(values, 5123, "SCALAR", 1);
-  }
+  int add_indices(const std::vector<std::uint16_t>& values) { return add_accessor(values, 5123, "SCALAR", 1); }
 
   int add_material(const Json& material) { return add("materials", material); }
   int add_mesh(const Json& primitive) { return add("meshes", {{"primitives", {primitive}}}); }
@@ -109,22 +104,19 @@ struct GltfMaker {
   }
   int add_camera(const Json& node = {{"name", "Camera"}}) {
     Json with = node;
-    with["camera"] =
-        add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
+    with["camera"] = add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
     return add_node(with);
   }
   int add_light(const Json& light, const Json& node = Json::object()) {
     json["extensions"]["KHR_lights_punctual"]["lights"].push_back(light);
     Json with = node;
-    with["extensions"]["KHR_lights_punctual"]["light"] =
-        json["extensions"]["KHR_lights_punctual"]["lights"].size() - 1;
+    with["extensions"]["KHR_lights_punctual"]["light"] = json["extensions"]["KHR_lights_punctual"]["lights"].size() - 1;
     return add_node(with);
   }
   /// One animated property; values as in the file.
   void animate(int node, const char* path, const std::vector<float>& times, const std::vector<float>& values,
                const char* interpolation = "LINEAR") {
-    if (!json.contains("animations"))
-      json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
+    if (!json.contains("animations")) json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
     Json& animation = json["animations"][0];
     const int output = std::string(path) == "rotation" ? add_vec4(values) : add_vec3(values);
     animation["samplers"].push_back(
@@ -166,9 +158,7 @@ struct GltfMaker {
 inline std::string load_error(const std::string& path, const GltfOptions& options = {}) {
   try {
     load_gltf(path, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  } catch (const InputError& error) { return error.what(); }
   ADD_FAILURE() << path << " was loaded";
   return {};
 }

@@ -13,9 +13,7 @@ using test::plain_square;
 using test::Square;
 using test::webp_square;
 
-SceneHashes hashes_of(const Scene& scene) {
-  return scene_at_frame(scene, segment_of(scene, 0, {}), 0, {}).hashes;
-}
+SceneHashes hashes_of(const Scene& scene) { return scene_at_frame(scene, segment_of(scene, 0, {}), 0, {}).hashes; }
 
 const Primitive& primitive_of(const Scene& scene) { return scene.meshes.at(0).primitives.at(0); }
 
@@ -32,8 +30,7 @@ std::string error_of(const GltfMaker& maker) { return load_error(write_file("pac
 TEST(GltfPacked, LosslessPackingsGiveThePlainScene) {
   const Scene plain = plain_square().load();
   const SceneHashes expected = hashes_of(plain);
-  for (const GltfMaker& maker :
-       {draco_square(), meshopt_square(), meshopt_square("KHR_meshopt_compression")}) {
+  for (const GltfMaker& maker : {draco_square(), meshopt_square(), meshopt_square("KHR_meshopt_compression")}) {
     const Scene scene = maker.load();
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_EQ(primitive_of(scene).triangles, primitive_of(plain).triangles);
@@ -47,8 +44,8 @@ TEST(GltfPacked, AGlbHoldsPackedDataInItsBinaryChunk) {
 }
 
 TEST(GltfPacked, TheUsualDracoMethodKeepsPositionsWithinAQuantum) {
-  // 14 bits over the largest extent, 1 m: steps of 1 / 16383 m, so at most half of that. Vertices come in another order:
-  // each of ours is looked for.
+  // 14 bits over the largest extent, 1 m: steps of 1 / 16383 m, so at most half of that. Vertices come in another
+  // order: each of ours is looked for.
   const Scene scene = draco_square(14).load();
   const Primitive& primitive = primitive_of(scene);
   const Square square;
@@ -57,8 +54,9 @@ TEST(GltfPacked, TheUsualDracoMethodKeepsPositionsWithinAQuantum) {
   for (std::size_t v = 0; v < 4; ++v) {
     double nearest = 1;
     for (const Vec3 p : primitive.positions)
-      nearest = std::min(nearest, double(length(p - Vec3(square.positions[3 * v], square.positions[3 * v + 1],
-                                                         square.positions[3 * v + 2]))));
+      nearest = std::min(
+          nearest,
+          double(length(p - Vec3(square.positions[3 * v], square.positions[3 * v + 1], square.positions[3 * v + 2]))));
     EXPECT_LE(nearest, std::sqrt(3) * 0.5 / 16383);
   }
 }
@@ -86,7 +84,8 @@ TEST(GltfPacked, OctahedralNormalsAreUnitAndNear) {
   maker.json["buffers"].push_back({{"byteLength", packed.size()}, {"uri", "data:a/b;base64," + base64(packed)}});
   Json& view = maker.json["bufferViews"][1];
   view["byteLength"] = 16, view["byteStride"] = 4;
-  view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 2}, {"byteLength", packed.size()}, {"byteStride", 4}, {"count", 4},
+  view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 2},          {"byteLength", packed.size()},
+                                                   {"byteStride", 4},      {"count", 4},
                                                    {"mode", "ATTRIBUTES"}, {"filter", "OCTAHEDRAL"}};
   maker.json["accessors"][1]["componentType"] = 5120, maker.json["accessors"][1]["normalized"] = true;
   const Scene scene = maker.load();
@@ -116,13 +115,15 @@ TEST(GltfPacked, DamagedDataIsRefusedWithItsPlaceAndRemedy) {
   GltfMaker draco = draco_square();
   draco.bytes[0] = 'X';
   const std::string message = error_of(draco);
-  EXPECT_CONTAINS(message, "packed.gltf: meshes[0].primitives[0].extensions.KHR_draco_mesh_compression: tempolux-decode ");
+  EXPECT_CONTAINS(message,
+                  "packed.gltf: meshes[0].primitives[0].extensions.KHR_draco_mesh_compression: tempolux-decode ");
   EXPECT_CONTAINS(message, "; unpack it with `gltf-transform cp IN.glb OUT.glb`, or export without Compression");
   EXPECT_EQ(message.find('\n'), std::string::npos);
 
   GltfMaker meshopt = meshopt_square();
   meshopt.json["bufferViews"][2]["extensions"]["EXT_meshopt_compression"]["byteLength"] = 3;  // after two sound ones
-  EXPECT_CONTAINS(error_of(meshopt), "bufferViews[2].extensions.EXT_meshopt_compression: tempolux-decode cannot decode");
+  EXPECT_CONTAINS(error_of(meshopt),
+                  "bufferViews[2].extensions.EXT_meshopt_compression: tempolux-decode cannot decode");
 
   const std::string webp = test::webp_bytes(2, 2, 3, texels(3, 0));
   const Scene cut = webp_square(webp.substr(0, webp.size() - 8)).load();
@@ -130,7 +131,8 @@ TEST(GltfPacked, DamagedDataIsRefusedWithItsPlaceAndRemedy) {
     decode_image(cut.images->encoded(0), 1000);
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_CONTAINS(e.what(), "images[0]: tempolux-decode cannot decode it: it is damaged or cut short; convert it to PNG or JPEG");
+    EXPECT_CONTAINS(
+        e.what(), "images[0]: tempolux-decode cannot decode it: it is damaged or cut short; convert it to PNG or JPEG");
   }
   EXPECT_CONTAINS(error_of(webp_square(webp.substr(0, 20))), "the WebP is damaged or cut short");
 }

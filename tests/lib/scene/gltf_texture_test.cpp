@@ -65,17 +65,17 @@ TEST(GltfTexture, WhatCannotBeUsedIsRefused) {
   };
   const std::string png = small_png();
   std::string bomb = png;
-  bomb[16] = bomb[20] = 0, bomb[17] = bomb[21] = 1;   // 65538 x 65538
-  for (const Case& c : {Case{{{"uri", "none.png"}}, "bad.gltf: images[0]: "},
-                        Case{{{"uri", "none.png"}}, "none.png cannot be opened: No such file or directory; copy all files of the scene"},
-                        Case{{{"uri", "http://example.org/a.png"}}, "not a relative path"},
-                        Case{{{"uri", "data:image/png,abc"}}, "must be base64"},
-                        Case{{{"uri", "data:image/png;base64,!!!!"}}, "not base64"},
-                        Case{{{"name", "x"}}, "neither uri nor bufferView"},
-                        Case{{{"bufferView", 77}}, "does not exist"},
-                        Case{{{"uri", data_uri("RIFF1234WEBPVP8 ")}}, "the WebP is damaged"},
-                        Case{{{"uri", data_uri("abc")}}, "neither PNG nor JPEG"},
-                        Case{{{"uri", data_uri(bomb)}}, "over the limit"}}) {
+  bomb[16] = bomb[20] = 0, bomb[17] = bomb[21] = 1;  // 65538 x 65538
+  for (const Case& c :
+       {Case{{{"uri", "none.png"}}, "bad.gltf: images[0]: "},
+        Case{{{"uri", "none.png"}},
+             "none.png cannot be opened: No such file or directory; copy all files of the scene"},
+        Case{{{"uri", "http://example.org/a.png"}}, "not a relative path"},
+        Case{{{"uri", "data:image/png,abc"}}, "must be base64"},
+        Case{{{"uri", "data:image/png;base64,!!!!"}}, "not base64"},
+        Case{{{"name", "x"}}, "neither uri nor bufferView"}, Case{{{"bufferView", 77}}, "does not exist"},
+        Case{{{"uri", data_uri("RIFF1234WEBPVP8 ")}}, "the WebP is damaged"},
+        Case{{{"uri", data_uri("abc")}}, "neither PNG nor JPEG"}, Case{{{"uri", data_uri(bomb)}}, "over the limit"}}) {
     const std::string error = load_error(write_file("bad.gltf", textured(c.image).text()));
     EXPECT_CONTAINS(error, c.part);
   }
@@ -91,11 +91,11 @@ TEST(GltfTexture, WhatCannotBeUsedIsRefused) {
 }
 
 TEST(GltfTexture, SamplersAndTransforms) {
-  GltfMaker maker = textured({{"uri", data_uri(small_png())}},
-                             {{"index", 0},
-                              {"extensions",
-                               {{"KHR_texture_transform",
-                                 {{"offset", {0.1, 0.2}}, {"rotation", M_PI / 6}, {"scale", {2, 3}}}}}}});
+  GltfMaker maker =
+      textured({{"uri", data_uri(small_png())}},
+               {{"index", 0},
+                {"extensions",
+                 {{"KHR_texture_transform", {{"offset", {0.1, 0.2}}, {"rotation", M_PI / 6}, {"scale", {2, 3}}}}}}});
   maker.json["textures"][0]["sampler"] = 0;
   maker.json["samplers"] = {{{"wrapS", 33648}, {"wrapT", 33071}, {"magFilter", 9728}}};
   const Texture texture = maker.load().materials[0].textures->base_color;
@@ -138,7 +138,7 @@ TEST(GltfTexture, NormalMapsFollowTheTangentsOfTheFile) {
   EXPECT_NEAR_VEC(bent_normal(with_tangents(true, -1)), (Vec3{s, 0, s}), kCode);
   // Nodes turn, stretch and mirror them with the surface; normals that are left out take the tangents with them.
   GltfMaker turned = with_tangents(false, 1), mirrored = with_tangents(true, 1), flat = with_tangents(false, 1);
-  turned.json["nodes"][0]["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};   // y to -x
+  turned.json["nodes"][0]["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};  // y to -x
   EXPECT_NEAR_VEC(bent_normal(turned), (Vec3{-s, 0, s}), kCode);
   mirrored.json["nodes"][0]["scale"] = {-3, 1, 1};
   EXPECT_NEAR_VEC(bent_normal(mirrored), (Vec3{s, 0, s}), kCode);

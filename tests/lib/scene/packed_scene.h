@@ -32,8 +32,9 @@ inline GltfMaker plain_square() {
   const int position = maker.add_vec3(square.positions), normal = maker.add_vec3(square.normals);
   const int uv = maker.add_accessor<float>(square.uvs, 5126, "VEC2", 2);
   const int indices = maker.add_indices({square.indices.begin(), square.indices.end()});
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}}},
-                                           {"indices", indices}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}}},
+                                {"indices", indices}})}});
   return maker;
 }
 
@@ -45,9 +46,11 @@ inline GltfMaker draco_square(int bits = 0) {
   maker.json["bufferViews"] = Json::array();
   for (Json& accessor : maker.json["accessors"]) accessor.erase("bufferView");
   using Kind = DracoAttribute::Kind;
-  const int view = add_view(maker, draco_bytes(square.indices, {{Kind::position, 3, square.positions},
-                                                               {Kind::normal, 3, square.normals},
-                                                               {Kind::uv, 2, square.uvs}}, bits));
+  const int view = add_view(
+      maker,
+      draco_bytes(square.indices,
+                  {{Kind::position, 3, square.positions}, {Kind::normal, 3, square.normals}, {Kind::uv, 2, square.uvs}},
+                  bits));
   maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   maker.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
       {"bufferView", view}, {"attributes", {{"POSITION", 0}, {"NORMAL", 1}, {"TEXCOORD_0", 2}}}};
@@ -71,10 +74,17 @@ inline GltfMaker meshopt_square(const std::string& name = "EXT_meshopt_compressi
   std::size_t unpacked = 0;
   for (std::size_t i = 0; i < packed.size(); ++i) {
     const Packed& p = packed[i];
-    maker.json["bufferViews"][i] = {{"buffer", 1}, {"byteOffset", unpacked}, {"byteLength", p.count * p.stride},
-                                    {"extensions", {{name, {{"buffer", 0}, {"byteOffset", maker.bytes.size()},
-                                                            {"byteLength", p.bytes.size()}, {"byteStride", p.stride},
-                                                            {"count", p.count}, {"mode", p.mode}}}}}};
+    maker.json["bufferViews"][i] = {{"buffer", 1},
+                                    {"byteOffset", unpacked},
+                                    {"byteLength", p.count * p.stride},
+                                    {"extensions",
+                                     {{name,
+                                       {{"buffer", 0},
+                                        {"byteOffset", maker.bytes.size()},
+                                        {"byteLength", p.bytes.size()},
+                                        {"byteStride", p.stride},
+                                        {"count", p.count},
+                                        {"mode", p.mode}}}}}};
     unpacked += p.count * p.stride;
     maker.bytes += p.bytes;
   }

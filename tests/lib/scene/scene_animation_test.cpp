@@ -68,8 +68,7 @@ TEST(SceneAnimation, CubicSplineIsTheHermiteCurve) {
   // in, value, out per key; dt = 2 s. At half: v0/2 + v1/2 + dt (out0 - in1) / 8 = 0 + 0.5 + 2 (4 - 2) / 8 =
   // 1; at a quarter: v1 (3/16 - 2/64) + dt (out0 (1/64 - 2/16 + 1/4) + in1 (1/64 - 1/16)) = 0.15625 + 1.125 -
   // 0.1875.
-  const Animated moved("translation", {0, 2}, {9, 0, 0, 0, 0, 0, 4, 0, 0, 2, 0, 0, 1, 0, 0, 9, 0, 0},
-                       "CUBICSPLINE");
+  const Animated moved("translation", {0, 2}, {9, 0, 0, 0, 0, 0, 4, 0, 0, 2, 0, 0, 1, 0, 0, 9, 0, 0}, "CUBICSPLINE");
   EXPECT_NEAR(moved.corner(24).x, 1 + 1.0, kRounding);
   EXPECT_NEAR(moved.corner(12).x, 1 + 1.09375, kRounding);
 }
@@ -85,8 +84,7 @@ TEST(SceneAnimation, CubicSplineRotationsAreNormalised) {
 TEST(SceneAnimation, ChildrenFollowTheirParents) {
   GltfMaker maker;
   const int child = maker.add_node({{"mesh", maker.add_triangle()}, {"translation", {1, 0, 0}}}, false);
-  const int parent =
-      maker.add_node({{"children", {child}}, {"scale", {2, 2, 2}}, {"translation", {0, 0, 5}}});
+  const int parent = maker.add_node({{"children", {child}}, {"scale", {2, 2, 2}}, {"translation", {0, 0, 5}}});
   maker.animate(parent, "rotation", {0, 1}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});
   const Scene scene = maker.load();
   const SceneFrame at = scene_at_frame(scene, segment_of(scene, 24, {}), 24, {});
@@ -96,8 +94,7 @@ TEST(SceneAnimation, ChildrenFollowTheirParents) {
 
 TEST(SceneAnimation, MatricesAreColumnMajor) {
   GltfMaker maker;
-  maker.add_node(
-      {{"mesh", maker.add_triangle()}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
+  maker.add_node({{"mesh", maker.add_triangle()}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
   const Scene scene = maker.load();
   const SceneFrame at = scene_at_frame(scene, segment_of(scene, 0, {}), 0, {});
   EXPECT_EQ(at.surfaces[0].positions[1], (Vec3{5, 7, 7}));

@@ -14,8 +14,8 @@ SceneFrame first_frame(const Scene& scene, const TimeOptions& options = {}) {
 /// Normal of a surface's first triangle by its winding as `flipped` says.
 Vec3 facing(const Surface& surface) {
   const auto& t = surface.primitive->triangles[0];
-  const Vec3 n = normalize(cross(surface.positions[t[1]] - surface.positions[t[0]],
-                                 surface.positions[t[2]] - surface.positions[t[0]]));
+  const Vec3 n = normalize(
+      cross(surface.positions[t[1]] - surface.positions[t[0]], surface.positions[t[2]] - surface.positions[t[0]]));
   return surface.flipped ? -n : n;
 }
 
@@ -79,8 +79,7 @@ TEST(SceneAtFrame, AFlatScaleLeavesNoNaN) {
 TEST(SceneAtFrame, VerticesBeyondAllNumbersAreRefused) {
   for (const double scale : {1e16, 1e200, 1e308}) {
     GltfMaker maker;
-    maker.add_node(
-        {{"mesh", maker.add_square()}, {"scale", {scale, scale, scale}}, {"translation", {scale, 0, 0}}});
+    maker.add_node({{"mesh", maker.add_square()}, {"scale", {scale, scale, scale}}, {"translation", {scale, 0, 0}}});
     const Scene scene = maker.load();
     EXPECT_THROW(first_frame(scene), InputError) << scale;
   }

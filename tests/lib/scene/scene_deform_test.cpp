@@ -249,7 +249,10 @@ GltfMaker lit_square() {
                       {"emissiveFactor", {0.5, 0.25, 0}},
                       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 2}}}}}});
   maker.add_node({{"mesh", maker.add_square(0)}});
-  maker.add_light({{"name", "Lamp"}, {"type", "spot"}, {"intensity", 10}, {"color", {1, 0.5, 0.25}},
+  maker.add_light({{"name", "Lamp"},
+                   {"type", "spot"},
+                   {"intensity", 10},
+                   {"color", {1, 0.5, 0.25}},
                    {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.5}}}});
   maker.add_camera();
   return maker;

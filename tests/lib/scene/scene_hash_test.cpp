@@ -53,8 +53,7 @@ using Names = std::set<std::string>;
 
 TEST(SceneHash, HasThirtyTwoDigitsEach) {
   const SceneHashes h = hashes(room());
-  for (const std::string& hash :
-       {h.camera, h.static_geometry, h.moving_geometry, h.lights, h.materials, h.media}) {
+  for (const std::string& hash : {h.camera, h.static_geometry, h.moving_geometry, h.lights, h.materials, h.media}) {
     EXPECT_EQ(hash.size(), 32u);
     EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
   }
@@ -69,8 +68,7 @@ TEST(SceneHash, NamesAndOrderAndFileDoNotCount) {
             }),
             Names{});
   const GltfMaker maker = room();
-  const Scene a = load_gltf(write_file("one.gltf", maker.text())),
-              b = load_gltf(write_file("two.glb", maker.glb()));
+  const Scene a = load_gltf(write_file("one.gltf", maker.text())), b = load_gltf(write_file("two.glb", maker.glb()));
   EXPECT_EQ(changed(scene_at_frame(a, segment_of(a, 5, {}), 5, {}).hashes,
                     scene_at_frame(b, segment_of(b, 5, {}), 5, {}).hashes),
             Names{});
@@ -106,10 +104,7 @@ TEST(SceneHash, UnusedPartsDoNotCount) {
 }
 
 TEST(SceneHash, TheCameraChangesOnlyItsOwn) {
-  EXPECT_EQ(changed_by([](Json& json) {
-              json["nodes"][kCamera]["translation"] = {0, 0, 6};
-            }),
-            Names{"camera"});
+  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kCamera]["translation"] = {0, 0, 6}; }), Names{"camera"});
   EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["perspective"]["yfov"] = 0.9; }), Names{"camera"});
   EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["perspective"]["znear"] = 0.2; }), Names{});
   GltfMaker walking = room();
@@ -118,30 +113,21 @@ TEST(SceneHash, TheCameraChangesOnlyItsOwn) {
 }
 
 TEST(SceneHash, ALampChangesOnlyLights) {
-  EXPECT_EQ(
-      changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 4; }),
-      Names{"lights"});
-  EXPECT_EQ(
-      changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = "x"; }),
-      Names{});
-  EXPECT_EQ(changed_by([](Json& json) {
-              json["nodes"][kBulb]["translation"] = {0, 1.5, 0};
-            }),
+  EXPECT_EQ(changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 4; }),
             Names{"lights"});
+  EXPECT_EQ(changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = "x"; }),
+            Names{});
+  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kBulb]["translation"] = {0, 1.5, 0}; }), Names{"lights"});
   EXPECT_EQ(changed_by([](Json& json) {
               json["nodes"][kBulb]["rotation"] = {1, 0, 0, 0};
             }),
             Names{});  // a point light has no direction
-  EXPECT_EQ(changed_by([](Json& json) {
-              json["materials"][1]["emissiveFactor"] = {1, 0.5, 1};
-            }),
-            Names{"lights"});
+  EXPECT_EQ(changed_by([](Json& json) { json["materials"][1]["emissiveFactor"] = {1, 0.5, 1}; }), Names{"lights"});
 }
 
 TEST(SceneHash, AMaterialChangesOnlyMaterials) {
-  EXPECT_EQ(
-      changed_by([](Json& json) { json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5; }),
-      Names{"materials"});
+  EXPECT_EQ(changed_by([](Json& json) { json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5; }),
+            Names{"materials"});
   EXPECT_EQ(changed_by([](Json& json) {
               json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = {0, 0, 0, 1};
             }),
@@ -149,10 +135,7 @@ TEST(SceneHash, AMaterialChangesOnlyMaterials) {
 }
 
 TEST(SceneHash, GeometryChangesItsOwnPart) {
-  EXPECT_EQ(changed_by([](Json& json) {
-              json["nodes"][kFloor]["translation"] = {0, -1, 0};
-            }),
-            Names{"static"});
+  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kFloor]["translation"] = {0, -1, 0}; }), Names{"static"});
   EXPECT_EQ(changed_by([](Json& json) {
               json["nodes"][kPanel]["translation"] = {0, 3, 0};
             }),
@@ -162,8 +145,9 @@ TEST(SceneHash, GeometryChangesItsOwnPart) {
   other.json.erase("animations");
   other.animate(2, "translation", {0, 1}, {0, 0, 0, 2, 0, 0});
   EXPECT_EQ(changed(hashes(room()), hashes(other)), Names{"moving"});
-  GltfMaker coloured = room();   // the square that stands is the one that moves
-  coloured.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = coloured.add_vec3({1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+  GltfMaker coloured = room();  // the square that stands is the one that moves
+  coloured.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      coloured.add_vec3({1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1});
   EXPECT_EQ(changed(hashes(room()), hashes(coloured)), (Names{"static", "moving"}));
 }
 
@@ -188,8 +172,7 @@ TEST(SceneHash, OneCameraHasAHashOfItsOwn) {
   maker.add_camera({{"name", "Second"}});
   const Scene scene = maker.load();
   const SceneFrame at = scene_at_frame(scene, segment_of(scene, 0, {}), 0, {});
-  EXPECT_NE(camera_hash(at.camera(scene.camera_node("Camera"))),
-            camera_hash(at.camera(scene.camera_node("Second"))));
+  EXPECT_NE(camera_hash(at.camera(scene.camera_node("Camera"))), camera_hash(at.camera(scene.camera_node("Second"))));
 }
 
 TEST(SceneHash, ReexportedEqualDependsOnNoMemoryOrTime) {

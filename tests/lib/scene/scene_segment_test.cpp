@@ -64,9 +64,8 @@ TEST(SceneSegment, WhatMovesIsDecidedByValueWithinTheSegment) {
   GltfMaker maker;
   for (int i = 0; i < 3; ++i)
     maker.add_node({{"name", std::string(1, char('A' + i))}, {"mesh", i == 0 ? maker.add_triangle() : 0}});
-  maker.animate(0, "translation", {0, 1, 2, 3},
-                {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0});          // only from 1 s to 2 s
-  maker.animate(1, "translation", {0, 3}, {4, 5, 6, 4, 5, 6});  // equal keys
+  maker.animate(0, "translation", {0, 1, 2, 3}, {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0});  // only from 1 s to 2 s
+  maker.animate(1, "translation", {0, 3}, {4, 5, 6, 4, 5, 6});                          // equal keys
   const Scene scene = maker.load();
   EXPECT_EQ(segment_of(scene, 0, {}).node_moves, (std::vector<std::uint8_t>{0, 0, 0}));
   const Segment middle = segment_of(scene, 30, {});
@@ -148,8 +147,8 @@ Scene box_at(double x, double y, double z) {
   for (int c = 0; c < 8; ++c)
     for (int axis = 0; axis < 3; ++axis) corners.push_back(float(c >> axis & 1));
   const int positions = maker.add_vec3(corners);
-  const int indices = maker.add_indices({0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5});
+  const int indices = maker.add_indices(
+      {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5});
   const double a = 0.3;  // turned about y, so that coordinates are no round numbers
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})},
                   {"translation", {x, y, z}},
@@ -172,8 +171,8 @@ TEST(SceneOrigin, ABoxFarAwayKeepsItsShape) {
     EXPECT_NEAR_VEC(at.origin + Vec3d(at.surfaces[0].positions[std::size_t(k)]), world, 3e-7);
   }
   EXPECT_NEAR_VEC(at.origin + Vec3d(at.lights[0].position), (Vec3d{x, y + 2, z}), 3e-7);
-  EXPECT_NEAR_VEC(at.origin + at.camera(scene.camera_node("auto")).scene_from_camera.translation,
-                  (Vec3d{x, y, z + 5}), 1e-9);
+  EXPECT_NEAR_VEC(at.origin + at.camera(scene.camera_node("auto")).scene_from_camera.translation, (Vec3d{x, y, z + 5}),
+                  1e-9);
 }
 
 TEST(SceneOrigin, IsZeroForAnOrdinaryScene) {

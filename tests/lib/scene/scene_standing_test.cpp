@@ -1,4 +1,5 @@
-// The scene without what moves: hashes of the file with the mover taken out, surfaces that no ray meets, lights that are off.
+// The scene without what moves: hashes of the file with the mover taken out, surfaces that no ray meets, lights that
+// are off.
 #include "lib/scene/standing.h"
 
 #include <algorithm>
@@ -30,7 +31,9 @@ Scene scene_with(bool there, bool lamp_moves = false) {
   return maker.load();
 }
 
-SceneFrame frame_of(const Scene& scene, int frame) { return scene_at_frame(scene, segment_of(scene, frame, {}), frame, {}); }
+SceneFrame frame_of(const Scene& scene, int frame) {
+  return scene_at_frame(scene, segment_of(scene, frame, {}), frame, {});
+}
 
 TEST(Standing, HashesAreThoseOfTheFileWithoutTheMover) {
   const Scene with = scene_with(true), without = scene_with(false);
@@ -43,7 +46,7 @@ TEST(Standing, HashesAreThoseOfTheFileWithoutTheMover) {
   EXPECT_EQ(still.hashes.lights, other.hashes.lights);
   EXPECT_EQ(still.hashes.materials, other.hashes.materials);
   EXPECT_EQ(standing.hashes.moving_geometry, still.hashes.moving_geometry);
-  EXPECT_NE(standing.hashes.lights, moving.hashes.lights);   // the mover emits
+  EXPECT_NE(standing.hashes.lights, moving.hashes.lights);  // the mover emits
   // Every frame of the segment has the same.
   const SceneFrame later = standing_scene(frame_of(with, 9));
   EXPECT_EQ(later.hashes.static_geometry, standing.hashes.static_geometry);
@@ -76,13 +79,14 @@ TEST(Standing, WhatHasAnAnimatedMaterialMoves) {
   maker.json["meshes"][std::size_t(mesh)]["primitives"][0]["material"] = 0;
   maker.add_node({{"mesh", mesh}});
   maker.json["extensionsUsed"] = {"KHR_animation_pointer"};
-  maker.json["animations"] = {{{"samplers", {{{"input", maker.add_scalars({0, 1})}, {"output", maker.add_scalars({0, 1})}}}},
-                               {"channels",
-                                {{{"sampler", 0},
-                                  {"target",
-                                   {{"path", "pointer"},
-                                    {"extensions",
-                                     {{"KHR_animation_pointer", {{"pointer", "/materials/0/pbrMetallicRoughness/roughnessFactor"}}}}}}}}}}}};
+  maker.json["animations"] = {
+      {{"samplers", {{{"input", maker.add_scalars({0, 1})}, {"output", maker.add_scalars({0, 1})}}}},
+       {"channels",
+        {{{"sampler", 0},
+          {"target",
+           {{"path", "pointer"},
+            {"extensions",
+             {{"KHR_animation_pointer", {{"pointer", "/materials/0/pbrMetallicRoughness/roughnessFactor"}}}}}}}}}}}};
   const Scene scene = maker.load();
   const Segment segment = segment_of(scene, 0, {});
   EXPECT_EQ(segment.node_moves[0], 1);
@@ -100,30 +104,36 @@ TEST(Standing, BoxesHoldWhatMoves) {
   EXPECT_TRUE(moving_boxes(frame_of(scene_with(false), 0)).all.empty());
 }
 
-/// Pieces of a ball, and of the same ball in two frames: every triangle lies in one of them, and they are a good deal smaller than the ball's box.
+/// Pieces of a ball, and of the same ball in two frames: every triangle lies in one of them, and they are a good deal
+/// smaller than the ball's box.
 TEST(Standing, PiecesHoldAllTriangles) {
   const auto ball_at = [](float x) {
     test::HandMadeScene scene;
     scene.add_sphere({x, 2, -3}, 0.5f, 8, test::matte(Rgb(0.5f)), false, false, true);
     MovingBoxes boxes = moving_boxes(scene.frame());
     const auto inside = [](const Box3& a, const Box3& b) {
-      return a.lower.x >= b.lower.x && a.lower.y >= b.lower.y && a.lower.z >= b.lower.z && a.upper.x <= b.upper.x && a.upper.y <= b.upper.y && a.upper.z <= b.upper.z;
+      return a.lower.x >= b.lower.x && a.lower.y >= b.lower.y && a.lower.z >= b.lower.z && a.upper.x <= b.upper.x &&
+             a.upper.y <= b.upper.y && a.upper.z <= b.upper.z;
     };
-    return std::tuple(boxes, [positions = scene.last_positions(), triangles = scene.frame().surfaces[0].primitive->triangles, inside](const MovingBoxes& of) {
-      for (const auto& corners : triangles) {
-        Box3 triangle;
-        for (const std::uint32_t corner : corners) triangle.add(positions[corner]);
-        if (std::ranges::none_of(of.pieces_of(0), [&](const Box3& piece) { return inside(triangle, piece); })) return false;
-      }
-      return true;
-    });
+    return std::tuple(
+        boxes, [positions = scene.last_positions(), triangles = scene.frame().surfaces[0].primitive->triangles,
+                inside](const MovingBoxes& of) {
+          for (const auto& corners : triangles) {
+            Box3 triangle;
+            for (const std::uint32_t corner : corners) triangle.add(positions[corner]);
+            if (std::ranges::none_of(of.pieces_of(0), [&](const Box3& piece) { return inside(triangle, piece); }))
+              return false;
+          }
+          return true;
+        });
   };
   auto [first, holds_first] = ball_at(0);
   const auto [second, holds_second] = ball_at(0.25f);
   ASSERT_EQ(first.pieces_of(0).size(), 64u);
   EXPECT_TRUE(holds_first(first));
   EXPECT_FALSE(holds_second(first));
-  for (const Box3& piece : first.pieces_of(0)) EXPECT_TRUE(piece.empty() || piece.diagonal() < 0.5f * first.surfaces[0].diagonal());
+  for (const Box3& piece : first.pieces_of(0))
+    EXPECT_TRUE(piece.empty() || piece.diagonal() < 0.5f * first.surfaces[0].diagonal());
   first.add(second);
   EXPECT_TRUE(holds_first(first));
   EXPECT_TRUE(holds_second(first));
@@ -132,7 +142,7 @@ TEST(Standing, PiecesHoldAllTriangles) {
   EXPECT_EQ(none.pieces_of(0).size(), 64u);
   none.surfaces.assign(1, Box3{{0, 0, 0}, {1, 1, 1}}), none.pieces.clear();
   none.add(second);
-  EXPECT_TRUE(none.pieces_of(0).empty());   // of one of them the box is all that is known
+  EXPECT_TRUE(none.pieces_of(0).empty());  // of one of them the box is all that is known
 }
 
 }  // namespace

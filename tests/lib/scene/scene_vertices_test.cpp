@@ -129,8 +129,8 @@ TEST(Vertices, OfAStripWithEverythingAgreeWithASecondReader) {
          {"indices", {{"bufferView", maker.json["accessors"][std::size_t(at)]["bufferView"]}, {"componentType", 5121}}},
          {"values", {{"bufferView", maker.json["accessors"][std::size_t(values)]["bufferView"]}}}}}});
   const int target = int(maker.json["accessors"].size()) - 1;
-  const int mesh = maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices(indices)},
-                                   {"targets", {{{"POSITION", target}}}}});
+  const int mesh = maker.add_mesh(
+      {{"attributes", attributes}, {"indices", maker.add_indices(indices)}, {"targets", {{{"POSITION", target}}}}});
   maker.json["extensionsUsed"] = maker.json["extensionsRequired"] = {"KHR_mesh_quantization"};
   maker.add_node({{"mesh", mesh}, {"skin", 0}});
   const int tip = maker.add_node({{"translation", {0.5, 0, 0}}}, false);

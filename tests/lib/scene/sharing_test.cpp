@@ -55,7 +55,7 @@ TEST(Sharing, NotWhereRoundingWouldShow) {
   EXPECT_TRUE(instanced(scene, stretched(21)));
   EXPECT_FALSE(instanced(scene, stretched(22)));
   EXPECT_FALSE(instanced(scene, stretched(0)));
-  EXPECT_TRUE(instanced(scene, moved(886)));    // 256 x 2 sqrt(3) = 886.8
+  EXPECT_TRUE(instanced(scene, moved(886)));  // 256 x 2 sqrt(3) = 886.8
   EXPECT_FALSE(instanced(scene, moved(888)));
 }
 

@@ -58,9 +58,15 @@ TEST(Tangents, FollowACylinder) {
   const auto outwards = [](float u, float) { return Vec3{std::cos(2 * kPi * u), 0, -std::sin(2 * kPi * u)}; };
   Primitive p = patch(24, 3, around, outwards, same);
   make_tangents(p, map());
-  EXPECT_EQ(p.positions.size(), 4u * 24 * 3);   // no vertex has two tangents
-  EXPECT_LT(worst(p, [](Vec3 n) { return Vec3{n.z, 0, -n.x}; }, [](Vec2) { return true; }), 1e-5f);
-  for (const float side : p.tangent_sides) EXPECT_EQ(side, 1);   // image upright as seen from outside: up is n x right
+  EXPECT_EQ(p.positions.size(), 4u * 24 * 3);  // no vertex has two tangents
+  EXPECT_LT(worst(
+                p,
+                [](Vec3 n) {
+                  return Vec3{n.z, 0, -n.x};
+                },
+                [](Vec2) { return true; }),
+            1e-5f);
+  for (const float side : p.tangent_sides) EXPECT_EQ(side, 1);  // image upright as seen from outside: up is n x right
 }
 
 // A sphere of 64 x 32 cells, u around, v from pole to pole. Every triangle has an edge along a parallel: its direction
@@ -73,7 +79,7 @@ TEST(Tangents, FollowASphere) {
     return Vec3{std::cos(phi) * std::sin(theta), std::cos(theta), -std::sin(phi) * std::sin(theta)};
   };
   Primitive p = patch(64, 32, at, at, same);
-  std::erase_if(p.triangles, [&](const auto& t) {   // at the poles
+  std::erase_if(p.triangles, [&](const auto& t) {  // at the poles
     const auto apart = [&](int a, int b) { return length(p.positions[t[a]] - p.positions[t[b]]) > 1e-4f; };
     return !(apart(0, 1) && apart(1, 2) && apart(2, 0));
   });
@@ -101,7 +107,7 @@ TEST(Tangents, VerticesOfAMirroredSeamAreParted) {
   for (std::size_t t = 0; t < 4; ++t)
     for (const std::uint32_t v : p.triangles[t]) {
       EXPECT_EQ(p.tangents[v], (t < 2 ? Vec3{-1, 0, 0} : Vec3{1, 0, 0}));
-      EXPECT_EQ(p.tangent_sides[v], t < 2 ? -1 : 1);   // up is +y on both
+      EXPECT_EQ(p.tangent_sides[v], t < 2 ? -1 : 1);  // up is +y on both
     }
   for (std::size_t v = 6; v < 8; ++v) EXPECT_EQ(p.positions[v], p.positions[p.influences[v].joint]);
 }
@@ -164,7 +170,7 @@ TEST(Tangents, FollowTransformsAndMorphTargets) {
   square.triangles = {{0, 1, 2}, {0, 2, 3}};
   Primitive turned = square;
   Texture quarter = map();
-  quarter.transform = {0, 1, 0, -1, 0, 0};   // u' = v, v' = -u: u' grows downwards on the square
+  quarter.transform = {0, 1, 0, -1, 0, 0};  // u' = v, v' = -u: u' grows downwards on the square
   make_tangents(turned, quarter);
   EXPECT_EQ(turned.tangents[0], (Vec3{0, -1, 0}));
   square.targets.resize(2);

@@ -21,12 +21,14 @@ double probability(const std::array<double, 5>& weights, std::size_t a, std::siz
   return weights[a] / sum * weights[b] / (sum - weights[a]);
 }
 
-/// 20 ordered pairs of five cells in 200000 draws: chi squared with 19 degrees of freedom is above 43.8 once in a thousand runs.
+/// 20 ordered pairs of five cells in 200000 draws: chi squared with 19 degrees of freedom is above 43.8 once in a
+/// thousand runs.
 TEST(AgeDraw, FollowsTheLawOfSequentialDraws) {
   const std::array<std::uint16_t, 5> ages{1, 2, 2, 5, 9};
   for (const AgeWeight weight : {AgeWeight::linear, AgeWeight::square}) {
     std::array<double, 5> weights{};
-    for (std::size_t c = 0; c < 5; ++c) weights[c] = weight == AgeWeight::linear ? double(ages[c]) : double(ages[c]) * double(ages[c]);
+    for (std::size_t c = 0; c < 5; ++c)
+      weights[c] = weight == AgeWeight::linear ? double(ages[c]) : double(ages[c]) * double(ages[c]);
     constexpr int kDraws = 200000;
     std::map<std::pair<std::size_t, std::size_t>, int> counts;
     AgeDraw lot;
@@ -86,11 +88,11 @@ TEST(AgeDraw, SaturatedAgesAreAlwaysDrawn) {
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.begin() + 2), (std::set<std::uint32_t>{1, 3}));
 }
 
-/// What 500 cells of which 50 are drawn in each frame come to (docs/methods/formulas.md): ages count 1 in the frame of the draw; stale: share of cells
-/// not drawn in so many frames.
+/// What 500 cells of which 50 are drawn in each frame come to (docs/methods/formulas.md): ages count 1 in the frame of
+/// the draw; stale: share of cells not drawn in so many frames.
 struct Steady {
   double mean = 0, above_10 = 0, above_20 = 0;
-  std::array<double, 4> stale{};   ///< after 5, 10, 15, 20 frames
+  std::array<double, 4> stale{};  ///< after 5, 10, 15, 20 frames
 };
 
 Steady steady(AgeWeight weight) {
@@ -102,7 +104,7 @@ Steady steady(AgeWeight weight) {
   Steady made;
   std::array<int, 4> kept{};
   int blocks = 0;
-  std::vector<int> last(kCells, -1);   // frame of the last draw
+  std::vector<int> last(kCells, -1);  // frame of the last draw
   int begin = kWarm;
   for (int f = 0; f < kFrames; ++f) {
     lot.draw(ages, kCells / 10, weight, mix64(std::uint64_t(f) + 77), drawn);
@@ -114,7 +116,7 @@ Steady steady(AgeWeight weight) {
       made.above_10 += double(age > 10) / kCells / (kFrames - kWarm);
       made.above_20 += double(age > 20) / kCells / (kFrames - kWarm);
     }
-    const int since = f - begin + 1;   // frames after a step of the light before frame `begin`
+    const int since = f - begin + 1;  // frames after a step of the light before frame `begin`
     for (std::size_t i = 0; i < 4; ++i)
       if (since == 5 * int(i + 1))
         for (const int l : last) kept[i] += l < begin;
@@ -125,10 +127,13 @@ Steady steady(AgeWeight weight) {
 }
 
 /// Within 2 %, and .002 where the share itself is a few cells.
-void expect_near(double found, double expected, const char* what) { EXPECT_NEAR(found, expected, 0.02 * expected + 0.002) << what; }
+void expect_near(double found, double expected, const char* what) {
+  EXPECT_NEAR(found, expected, 0.02 * expected + 0.002) << what;
+}
 
 TEST(AgeDraw, AgesInTheLongRunAreThoseOfTheTable) {
-  const Steady linear = steady(AgeWeight::linear), square = steady(AgeWeight::square), oldest = steady(AgeWeight::oldest);
+  const Steady linear = steady(AgeWeight::linear), square = steady(AgeWeight::square),
+               oldest = steady(AgeWeight::oldest);
   expect_near(linear.mean, 6.86, "mean age, linear");
   expect_near(linear.above_10, 0.209, "above 10, linear");
   expect_near(linear.above_20, 0.012, "above 20, linear");
@@ -137,7 +142,8 @@ TEST(AgeDraw, AgesInTheLongRunAreThoseOfTheTable) {
   expect_near(square.above_20, 0.0004, "above 20, square");
   expect_near(oldest.mean, 5.5, "mean age, oldest");
   EXPECT_EQ(oldest.above_10, 0);
-  const std::array<double, 4> of_linear{0.529, 0.209, 0.058, 0.011}, of_square{0.510, 0.146, 0.015, 0.0003}, of_oldest{0.5, 0, 0, 0};
+  const std::array<double, 4> of_linear{0.529, 0.209, 0.058, 0.011}, of_square{0.510, 0.146, 0.015, 0.0003},
+      of_oldest{0.5, 0, 0, 0};
   for (std::size_t i = 0; i < 4; ++i) {
     expect_near(linear.stale[i], of_linear[i], "stale, linear");
     expect_near(square.stale[i], of_square[i], "stale, square");

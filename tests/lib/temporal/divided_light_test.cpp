@@ -14,15 +14,15 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 
-/// A floor that is black, and high above it a bright square of 1 m, for which one point stands (spacing 1, R = 0.56 m). Seen from 8 m, beyond the fade at 6 R,
-/// all of its high part is sampled explicitly.
+/// A floor that is black, and high above it a bright square of 1 m, for which one point stands (spacing 1, R = 0.56 m).
+/// Seen from 8 m, beyond the fade at 6 R, all of its high part is sampled explicitly.
 struct Spot {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
   explicit Spot(float irradiance, bool moved = false) {
     scene.add_quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, matte(Rgb(0.0f)));
     scene.add_quad({-0.5f, 8, -0.5f}, {0.5f, 8, -0.5f}, {0.5f, 8, 0.5f}, {-0.5f, 8, 0.5f}, matte(Rgb(1.0f)));
-    const float x = moved ? 3.5f : 3;   // something small aside, that moves
+    const float x = moved ? 3.5f : 3;  // something small aside, that moves
     scene.add_quad({x, 0.5f, 0.1f}, {x + 0.1f, 0.5f, 0.1f}, {x + 0.1f, 0.5f, 0}, {x, 0.5f, 0}, matte(Rgb(0.0f)), true);
     IrradiancePoint point;
     point.position = {0, 8, 0};
@@ -54,22 +54,32 @@ KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres 
   const PointLookup lookup(now.points, 1);
   const std::vector<float> shares{high};
   const BrightPoints bright(tracer, lights, lookup, shares, {});
-  const TemporalScene scene{tracer, lights, lookup, now.points, anchored_points(frame, now.points), before ? &before->scene.frame() : nullptr,
-                            high > 0 ? std::span<const float>(shares) : std::span<const float>(), high > 0 ? "share " + std::to_string(high) : ""};
-  const TemporalGather gather(scene, {.rays = 500, .bright = high > 0 ? &bright : nullptr, .bright_samples = 16}, each_place_its_own(), {}, 8);
+  const TemporalScene scene{tracer,
+                            lights,
+                            lookup,
+                            now.points,
+                            anchored_points(frame, now.points),
+                            before ? &before->scene.frame() : nullptr,
+                            high > 0 ? std::span<const float>(shares) : std::span<const float>(),
+                            high > 0 ? "share " + std::to_string(high) : ""};
+  const TemporalGather gather(scene, {.rays = 500, .bright = high > 0 ? &bright : nullptr, .bright_samples = 16},
+                              each_place_its_own(), {}, 8);
   if (before) gather.advance(kept, counts);
   RecordStore store;
-  gather.place([&](const Look& look) -> std::optional<SeenPoint> {
-    Hit hit;
-    if (before || !tracer.intersect({{0.02f * look.x, 0.1f, 0.02f * look.y}, {0, -1, 0}}, hit)) return std::nullopt;
-    return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-  }, 10, 10, kept, store, counts);
+  gather.place(
+      [&](const Look& look) -> std::optional<SeenPoint> {
+        Hit hit;
+        if (before || !tracer.intersect({{0.02f * look.x, 0.1f, 0.02f * look.y}, {0, -1, 0}}, hit)) return std::nullopt;
+        return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+      },
+      10, 10, kept, store, counts);
   return kept;
 }
 
-// A square of 1 m at 8 m, radiance E / pi, right above: irradiance E / pi x integral of cos cos / l^2 = E / pi x 0.01551 (the square's corners are
-// at most 0.71 m aside). Explicit samples of 16 sites know it to 1 %; rays find it with 500 / pi x 0.0155 = 2.5 of 500 cells, 100 records: 1 / sqrt(250) = 6 %.
-// Whatever share is high, whether it is so from the start or comes and goes, the light is the same; and in each frame that of the frame.
+// A square of 1 m at 8 m, radiance E / pi, right above: irradiance E / pi x integral of cos cos / l^2 = E / pi x
+// 0.01551 (the square's corners are at most 0.71 m aside). Explicit samples of 16 sites know it to 1 %; rays find it
+// with 500 / pi x 0.0155 = 2.5 of 500 cells, 100 records: 1 / sqrt(250) = 6 %. Whatever share is high, whether it is so
+// from the start or comes and goes, the light is the same; and in each frame that of the frame.
 TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
   const double form = 0.01551 / M_PI;
   double exact = 0;
@@ -80,11 +90,12 @@ TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
     }
   ASSERT_NEAR(exact, 0.01551, 1e-4);
   Spot first(100), second(150, true), third(60);
-  for (const std::array<float, 3> high : {std::array{1.0f, 1.0f, 1.0f}, {0.5f, 0.9f, 0.2f}, {0.0f, 1.0f, 0.0f}, {1.0f, 0.0f, 1.0f}}) {
+  for (const std::array<float, 3> high :
+       {std::array{1.0f, 1.0f, 1.0f}, {0.5f, 0.9f, 0.2f}, {0.0f, 1.0f, 0.0f}, {1.0f, 0.0f, 1.0f}}) {
     TemporalCounts a, b, c;
     KeptHemispheres kept = spot_frame(first, nullptr, high[0], {}, a);
     ASSERT_EQ(kept.records.size(), 100u);
-    const auto tolerance = [&](float share) { return share == 1 ? 0.02 : 0.2; };   // 3 s.e. of rays alone
+    const auto tolerance = [&](float share) { return share == 1 ? 0.02 : 0.2; };  // 3 s.e. of rays alone
     EXPECT_NEAR(mean_of(kept) / (100 * form), 1, tolerance(high[0])) << high[0];
     kept = spot_frame(second, &first, high[1], std::move(kept), b);
     EXPECT_NEAR(mean_of(kept) / (150 * form), 1, tolerance(high[1])) << high[1];
@@ -96,7 +107,8 @@ TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
   // Nothing moves: nothing is sampled.
   Spot same(100);
   TemporalCounts a, still;
-  const KeptHemispheres kept = spot_frame(first, nullptr, 0.7f, {}, a), again = spot_frame(same, &first, 0.7f, kept, still);
+  const KeptHemispheres kept = spot_frame(first, nullptr, 0.7f, {}, a),
+                        again = spot_frame(same, &first, 0.7f, kept, still);
   EXPECT_EQ(still.update.rays + still.update.shadow_rays, 0u);
   ASSERT_EQ(again.records.size(), kept.records.size());
   for (std::size_t i = 0; i < kept.records.size(); ++i) {

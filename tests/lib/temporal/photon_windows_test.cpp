@@ -1,4 +1,5 @@
-// Windows of photons over time: how often stationary light closes them, what changing light makes of them, what they hold.
+// Windows of photons over time: how often stationary light closes them, what changing light makes of them, what they
+// hold.
 #include "lib/temporal/photon_windows.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ namespace {
 
 constexpr int kFrames = 33, kMiddle = 16;
 
-/// An element, the kernel's region around it, 29 times as large, the ring, nine times that, and the frame, 30 times that.
+/// An element, the kernel's region around it, 29 times as large, the ring, nine times that, and the frame, 30 times
+/// that.
 struct Simulated {
   HitSeries element{kFrames}, kernel{kFrames}, ring{kFrames}, frame{kFrames};
 
@@ -45,16 +47,17 @@ double still(int) { return 1; }
 TEST(BlockContrast, IsThatOfPhotonsDealtToBlocksAtRandom) {
   // 9 photons of 1 in one frame, 27 in two: of 36, 2/3 belong there, 24 with variance 36 x 2/9 = 8 and
   // skewness (1 - 4/3) / sqrt(2/9) / 6.
-  EXPECT_NEAR(block_contrast({9, 9, 9}, 1, {27, 27, 27}, 2), 3 / std::sqrt(8.0) + 1 / std::sqrt(2.0) / 6 * (9.0 / 8 - 1) / 6, 1e-12);
+  EXPECT_NEAR(block_contrast({9, 9, 9}, 1, {27, 27, 27}, 2),
+              3 / std::sqrt(8.0) + 1 / std::sqrt(2.0) / 6 * (9.0 / 8 - 1) / 6, 1e-12);
   EXPECT_EQ(block_contrast({}, 1, {}, 2), 0);
   // Photons of other power: one of 3 beside three of 1: S = 6, Q = 12.
   EXPECT_NEAR(block_contrast({1, 3, 9}, 1, {3, 3, 3}, 1), 0, 1e-12);
 }
 
-/// Stated: 5 %. 20000 windows, 1000 alarms +- 31: .0015. What is asked for is a fifth, .01; the tests of a window are not quite
-/// independent, and their distributions not quite Gaussian: of 8 photons a frame, where many tests have hardly enough, alarms are a
-/// quarter rarer. A full window of 2500 has 76. Seen to fail (.1 to .8) when each frame is compared with the middle one alone, or tests
-/// are not counted.
+/// Stated: 5 %. 20000 windows, 1000 alarms +- 31: .0015. What is asked for is a fifth, .01; the tests of a window are
+/// not quite independent, and their distributions not quite Gaussian: of 8 photons a frame, where many tests have
+/// hardly enough, alarms are a quarter rarer. A full window of 2500 has 76. Seen to fail (.1 to .8) when each frame is
+/// compared with the middle one alone, or tests are not counted.
 TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   std::mt19937_64 random(5);
   WindowOptions options;
@@ -68,16 +71,18 @@ TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   }
 }
 
-/// algorithms.md 2.3: light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save 12 and 29 times
-/// the photons at best. Asked for are 10 and 20. 2000 estimates: the ratio of two mean squares has a standard error of sqrt(2 x 2 / 2000)
-/// = 4.5 %.
+/// algorithms.md 2.3: light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save
+/// 12 and 29 times the photons at best. Asked for are 10 and 20. 2000 estimates: the ratio of two mean squares has a
+/// standard error of sqrt(2 x 2 / 2000) = 4.5 %.
 TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
   std::mt19937_64 random(6);
   const WindowThresholds thresholds{WindowOptions{}};
   for (const auto& [period, least] : {std::pair{60.0, 10.0}, {240.0, 20.0}}) {
     double single = 0, window = 0;
     for (int i = 0; i < 2000; ++i) {
-      const auto light = [&, phase = i / 2000.0](int f) { return 1 + 0.3 * std::sin(2 * std::numbers::pi * ((f - kMiddle) / period + phase)); };
+      const auto light = [&, phase = i / 2000.0](int f) {
+        return 1 + 0.3 * std::sin(2 * std::numbers::pi * ((f - kMiddle) / period + phase));
+      };
       const Simulated s(30, light, random);
       const Window w = s.window(thresholds);
       const double truth = 30 * light(kMiddle);
@@ -91,17 +96,17 @@ TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
   }
 }
 
-/// A lamp that doubles four frames on, 100 photons a frame: the step's contrast in one frame on each side is far beyond any threshold
-/// (one frame of 200 beside nine of 100: (200 - 110) / sqrt(1100 x .09) = 9). The other side stays open to its end.
+/// A lamp that doubles four frames on, 100 photons a frame: the step's contrast in one frame on each side is far beyond
+/// any threshold (one frame of 200 beside nine of 100: (200 - 110) / sqrt(1100 x .09) = 9). The other side stays open
+/// to its end.
 TEST(GrowWindow, AStepClosesItsSideAlone) {
   std::mt19937_64 random(7);
   const WindowThresholds thresholds{WindowOptions{}};
   for (int i = 0; i < 200; ++i) {
-    const Simulated s(100, [](int f) { return f < kMiddle + 4 ? 1.0 : 2.0; }, random);
+    const Simulated s(
+        100, [](int f) { return f < kMiddle + 4 ? 1.0 : 2.0; }, random);
     EXPECT_LE(s.window(thresholds).after, 3);
-    if (i < 100) {
-      EXPECT_GE(s.window(thresholds).before, 3);
-    }
+    if (i < 100) { EXPECT_GE(s.window(thresholds).before, 3); }
   }
 }
 
@@ -141,7 +146,8 @@ class CollectWindows : public testing::Test {
     }
     return frames;
   }
-  CollectedLight collect(const std::vector<FrameCounts>& frames, std::size_t at, std::vector<formats::MeshElement>& elements) {
+  CollectedLight collect(const std::vector<FrameCounts>& frames, std::size_t at,
+                         std::vector<formats::MeshElement>& elements) {
     std::vector<const FrameCounts*> pointers;
     for (const FrameCounts& f : frames) pointers.push_back(&f);
     elements = elements_;
@@ -157,7 +163,8 @@ class CollectWindows : public testing::Test {
   std::vector<formats::MeshElement> elements_;
 };
 
-/// One common window: the flux of all elements is the mean of the frames' flux, to the rounding of a sum of some 500 doubles.
+/// One common window: the flux of all elements is the mean of the frames' flux, to the rounding of a sum of some 500
+/// doubles.
 TEST_F(CollectWindows, KeepPower) {
   const std::vector<FrameCounts> frames = counts(0, 1);
   double wanted = 0;
@@ -181,7 +188,8 @@ TEST_F(CollectWindows, EndAtJumps) {
   collect(frames, 9, elements);
   for (const formats::MeshElement& e : elements) EXPECT_EQ(e.after, 0);
   collect(frames, 12, elements);
-  for (const formats::MeshElement& e : elements) EXPECT_LE(std::pair(e.before, e.after), std::pair(std::uint8_t(2), std::uint8_t(7)));
+  for (const formats::MeshElement& e : elements)
+    EXPECT_LE(std::pair(e.before, e.after), std::pair(std::uint8_t(2), std::uint8_t(7)));
 }
 
 /// Time that runs backwards gives the same windows, turned round.

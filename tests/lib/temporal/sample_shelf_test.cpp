@@ -18,7 +18,7 @@ TEST(SampleShelf, APlaceGivenUpIsUsedAgain) {
     shelf.put(places[i], samples, anchors);
     return samples.size();
   };
-  EXPECT_EQ(put(0, 10, 1), 10u);   // stays
+  EXPECT_EQ(put(0, 10, 1), 10u);  // stays
   EXPECT_EQ(put(1, 10, 2), 0u);
   EXPECT_EQ(put(2, 7, 3), 0u);
   EXPECT_EQ(shelf.bytes_in_file(), 12u * 17);

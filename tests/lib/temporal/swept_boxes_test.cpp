@@ -22,7 +22,8 @@ TEST(CellsTowards, HoldEveryCellThatARayThroughTheBoxLiesIn) {
     from.position = {number(3), number(4), number(5)};
     from.normal = from.normal_geometric = normal;
     from.offset = 1e-6f;
-    const Vec3 centre{number(6), number(7), number(8)}, half = Vec3{1, 1, 1} * (0.5f * std::abs(number(9) * number(10)));
+    const Vec3 centre{number(6), number(7), number(8)},
+        half = Vec3{1, 1, 1} * (0.5f * std::abs(number(9) * number(10)));
     const Box3 box{centre - half, centre + half};
     const GatherDirections directions(from, normal, kRings, kSectors, i);
     std::set<std::uint32_t> found;

@@ -17,8 +17,8 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 
-/// A floor, 4 m wide, above which a flat square of half-width `half` m, 0.6 m high, turns about its axis, z. All of it shines back
-/// radiance 1 where it is seen: reflectance 1, irradiance pi. Otherwise all is black.
+/// A floor, 4 m wide, above which a flat square of half-width `half` m, 0.6 m high, turns about its axis, z. All of it
+/// shines back radiance 1 where it is seen: reflectance 1, irradiance pi. Otherwise all is black.
 struct Turning {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -26,7 +26,8 @@ struct Turning {
   Turning(float angle, float half) {
     scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));
     const float c = half * std::cos(angle), s = half * std::sin(angle);
-    scene.add_quad({-c, 0.6f - s, half}, {c, 0.6f + s, half}, {c, 0.6f + s, -half}, {-c, 0.6f - s, -half}, matte(Rgb(1.0f)), true);
+    scene.add_quad({-c, 0.6f - s, half}, {c, 0.6f + s, half}, {c, 0.6f + s, -half}, {-c, 0.6f - s, -half},
+                   matte(Rgb(1.0f)), true);
     for (const float side : {1.0f, -1.0f}) {
       IrradiancePoint point;
       point.position = {0, 0.6f, 0};
@@ -46,10 +47,15 @@ struct Gathering {
   PointLookup lookup;
   TemporalGather gather;
 
-  Gathering(HandMadeScene& scene, std::span<const IrradiancePoint> points, const SceneFrame* before, const GatherOptions& rays,
-            const PlacementOptions& placement, const TemporalOptions& options = {}, std::function<std::optional<Vec3>(Vec3)> eye = {})
-      : frame(scene.frame()), tracer(frame), lights(frame, EmissionTable{}), lookup(points, 1),
-        gather({tracer, lights, lookup, points, anchored_points(frame, points), before, {}, {}, std::move(eye)}, rays, placement, options, 8) {}
+  Gathering(HandMadeScene& scene, std::span<const IrradiancePoint> points, const SceneFrame* before,
+            const GatherOptions& rays, const PlacementOptions& placement, const TemporalOptions& options = {},
+            std::function<std::optional<Vec3>(Vec3)> eye = {})
+      : frame(scene.frame()),
+        tracer(frame),
+        lights(frame, EmissionTable{}),
+        lookup(points, 1),
+        gather({tracer, lights, lookup, points, anchored_points(frame, points), before, {}, {}, std::move(eye)}, rays,
+               placement, options, 8) {}
 
   /// What pixel (x, y) of a picture of the floor near the origin sees: places `step` m apart.
   PixelView floor(float step) const {
@@ -69,7 +75,7 @@ PlacementOptions everywhere() {
 }
 
 struct Mean {
-  double mean = 0, error = 0;   ///< of the mean
+  double mean = 0, error = 0;  ///< of the mean
 };
 Mean mean_of(const KeptHemispheres& kept) {
   double sum = 0, square = 0;
@@ -81,11 +87,12 @@ Mean mean_of(const KeptHemispheres& kept) {
   return {sum / n, std::sqrt(std::max(0.0, square / n - sum / n * (sum / n)) / n)};
 }
 
-// A square that turns by 1.5 degrees a frame for 200 frames over 1000 places side by side: their mean irradiance is that of fresh gathering
-// within 3 standard errors of both. It fails if cells that are traced again get another direction (what hits the square is thrown away: 29 to
-// 75 % of its light is lost), or if they are left out where cells are drawn by age (what has come to hit it stays: 33 to 70 % too much).
-// The square's box fills 0.9 % of the hemisphere: of 512 rays some always meet it. A record none of whose rays do keeps all its directions: of 64 rays
-// most records would come to that state, and stay there.
+// A square that turns by 1.5 degrees a frame for 200 frames over 1000 places side by side: their mean irradiance is
+// that of fresh gathering within 3 standard errors of both. It fails if cells that are traced again get another
+// direction (what hits the square is thrown away: 29 to 75 % of its light is lost), or if they are left out where cells
+// are drawn by age (what has come to hit it stays: 33 to 70 % too much). The square's box fills 0.9 % of the
+// hemisphere: of 512 rays some always meet it. A record none of whose rays do keeps all its directions: of 64 rays most
+// records would come to that state, and stay there.
 TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
   constexpr int kWidth = 40, kHeight = 25, kFrames = 200;
   for (const float half : {0.06f, 0.15f}) {
@@ -120,7 +127,8 @@ TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
   }
 }
 
-/// A closed room, 2 m wide, reflectance 1/2, whose points all say the same irradiance: each ray brings its half over pi.
+/// A closed room, 2 m wide, reflectance 1/2, whose points all say the same irradiance: each ray brings its half over
+/// pi.
 struct Room {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -140,15 +148,18 @@ KeptHemispheres kept_in(Room& room, TemporalCounts& counts) {
   const Gathering gathering(room.scene, room.points, nullptr, {.rays = 200}, everywhere());
   KeptHemispheres kept;
   RecordStore store;
-  gathering.gather.place([&](const Look& look) {
-    Hit hit;
-    gathering.tracer.intersect({{0.1f * look.x, 0, 0.1f * look.y}, {0, -1, 0}}, hit);
-    return std::optional(SeenPoint{gathering.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
-  }, 4, 4, kept, store, counts);
+  gathering.gather.place(
+      [&](const Look& look) {
+        Hit hit;
+        gathering.tracer.intersect({{0.1f * look.x, 0, 0.1f * look.y}, {0, -1, 0}}, hit);
+        return std::optional(SeenPoint{gathering.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
+      },
+      4, 4, kept, store, counts);
   return kept;
 }
 
-KeptHemispheres advanced(Room& before, Room& now, KeptHemispheres kept, TemporalCounts& counts, const TemporalOptions& options = {}) {
+KeptHemispheres advanced(Room& before, Room& now, KeptHemispheres kept, TemporalCounts& counts,
+                         const TemporalOptions& options = {}) {
   const Gathering gathering(now.scene, now.points, &before.scene.frame(), {.rays = 200}, everywhere(), options);
   gathering.gather.advance(kept, counts);
   RecordStore store;
@@ -172,16 +183,17 @@ TEST(TemporalGather, WhatStandsStaysToTheBitWithoutARay) {
   }
 }
 
-// Light that grows by 1/2 % a frame for 24 frames: E grows by 1.005^24 = 1.127 (each step is far below a mantissa's, 1/128 to 1/256: rounded
-// down, cells would stay as they are for the ten frames they live). 16 records of 200 cells, whose 24 roundings are off by up to half a
-// step each: 0.4 % x sqrt(24 / 3200) = 0.03 %. Only a tenth of the cells is traced. Where nothing is refreshed, too.
+// Light that grows by 1/2 % a frame for 24 frames: E grows by 1.005^24 = 1.127 (each step is far below a mantissa's,
+// 1/128 to 1/256: rounded down, cells would stay as they are for the ten frames they live). 16 records of 200 cells,
+// whose 24 roundings are off by up to half a step each: 0.4 % x sqrt(24 / 3200) = 0.03 %. Only a tenth of the cells is
+// traced. Where nothing is refreshed, too.
 TEST(TemporalGather, AnchoredCellsFollowTheirPointsLittleByLittle) {
   for (const float refresh : {0.1f, 0.0f}) {
     auto before = std::make_unique<Room>(3.0f);
     TemporalCounts counts;
     KeptHemispheres kept = kept_in(*before, counts);
     const double first = mean_of(kept).mean;
-    EXPECT_NEAR(first, 3, 3 * 0.0005);   // rho E = 0.5 x 6
+    EXPECT_NEAR(first, 3, 3 * 0.0005);  // rho E = 0.5 x 6
     for (int f = 1; f <= 24; ++f) {
       auto now = std::make_unique<Room>(3 * std::pow(1.005f, float(f)));
       TemporalCounts later;
@@ -191,7 +203,7 @@ TEST(TemporalGather, AnchoredCellsFollowTheirPointsLittleByLittle) {
       before = std::move(now);
     }
     EXPECT_NEAR(mean_of(kept).mean / first, std::pow(1.005, 24), 0.001) << refresh;
-    for (const KeptHemisphere& k : kept.records) EXPECT_EQ(k.record.irradiance[2], 0);   // black stays black
+    for (const KeptHemisphere& k : kept.records) EXPECT_EQ(k.record.irradiance[2], 0);  // black stays black
   }
 }
 
@@ -206,7 +218,8 @@ TEST(KeptHemisphere, ScalingInPlaceIsKeepingTheProduct) {
     a.record.updates = std::uint32_t(i);
     keep_radiance(a, 0, Rgb(x, 0.7f * x, float(i % 3) * x));
     KeptHemisphere b = a;
-    const Rgb ratio(0.5f + 1.5f * float(i % 101) / 101, 0.5f + 1.5f * float(i % 31) / 31, 0.5f + 1.5f * float(i % 7) / 7);
+    const Rgb ratio(0.5f + 1.5f * float(i % 101) / 101, 0.5f + 1.5f * float(i % 31) / 31,
+                    0.5f + 1.5f * float(i % 7) / 7);
     const std::array<float, 3> old = formats::decode_rgbe(a.samples[0].rgbe);
     in_place += a.samples[0].rgbe[3] > 0;
     scale_radiance(a, 0, ratio);
@@ -218,14 +231,15 @@ TEST(KeptHemisphere, ScalingInPlaceIsKeepingTheProduct) {
   EXPECT_EQ(a.samples[0].rgbe, (std::array<std::uint8_t, 4>{}));
 }
 
-// Light that two points know, that of a hit near by and that where its ray came to: scaled as either it goes wrong. The ceiling shines 1.9 times as much, and then
-// for eight frames something goes on changing a little: within these each such cell is traced again once, and is what it would be if all were. Mantissas are 1/128
-// at most, twice: 2 %; what changes in eight frames is a thousandth. Without turns cells are up to 24 % off.
+// Light that two points know, that of a hit near by and that where its ray came to: scaled as either it goes wrong. The
+// ceiling shines 1.9 times as much, and then for eight frames something goes on changing a little: within these each
+// such cell is traced again once, and is what it would be if all were. Mantissas are 1/128 at most, twice: 2 %; what
+// changes in eight frames is a thousandth. Without turns cells are up to 24 % off.
 TEST(TemporalGather, NearHitsAreTracedAgainInTurn) {
   const auto lit = [](float ceiling, float wall) {
     auto room = std::make_unique<Room>(1.0f);
     for (IrradiancePoint& point : room->points) point.caustic = Rgb(1.0f), point.radius = 0.6f;
-    for (Rgb IrradiancePoint::* part : {&IrradiancePoint::indirect, &IrradiancePoint::caustic})
+    for (Rgb IrradiancePoint::*part : {&IrradiancePoint::indirect, &IrradiancePoint::caustic})
       room->points[3].*part *= ceiling, room->points[0].*part *= wall;
     return room;
   };
@@ -246,7 +260,7 @@ TEST(TemporalGather, NearHitsAreTracedAgainInTurn) {
     before = std::move(now);
   }
   EXPECT_EQ(traced, cells);
-  auto thrice = lit(5.7f, 3);   // all cells are traced again
+  auto thrice = lit(5.7f, 3);  // all cells are traced again
   for (IrradiancePoint& point : thrice->points)
     if (&point != &thrice->points[3] && &point != &thrice->points[0]) point.indirect *= 3, point.caustic *= 3;
   TemporalCounts later;
@@ -254,15 +268,17 @@ TEST(TemporalGather, NearHitsAreTracedAgainInTurn) {
   EXPECT_EQ(later.lost + later.unanchored, later.cells);
   for (std::size_t i = 0; i < kept.records.size(); ++i)
     for (std::size_t c = 0; c < kept.records[i].samples.size(); ++c) {
-      const float is = 3 * formats::decode_rgbe(kept.records[i].samples[c].rgbe)[1], should = formats::decode_rgbe(exact.records[i].samples[c].rgbe)[1];
+      const float is = 3 * formats::decode_rgbe(kept.records[i].samples[c].rgbe)[1],
+                  should = formats::decode_rgbe(exact.records[i].samples[c].rgbe)[1];
       EXPECT_NEAR(is, should, 0.02f * should) << i << ' ' << c;
     }
 }
 
-// The light that a lamp throws goes from one wall to another in four frames, beside light that stays; all 30 ways, so that nothing grows brighter on the
-// whole. A hit near by brings light that two points know. Were its anchor that which told more of it, a hit on a wall that is dark yet would follow
-// another wall and miss that its own grows bright: 1.8 % of the light is lost. Its own point does not know the other's part either; without a trend that leaves
-// a second order: .5 %.
+// The light that a lamp throws goes from one wall to another in four frames, beside light that stays; all 30 ways, so
+// that nothing grows brighter on the whole. A hit near by brings light that two points know. Were its anchor that which
+// told more of it, a hit on a wall that is dark yet would follow another wall and miss that its own grows bright: 1.8 %
+// of the light is lost. Its own point does not know the other's part either; without a trend that leaves a second
+// order: .5 %.
 TEST(TemporalGather, NearHitsDoNotGoDarkUnderAMovingLamp) {
   constexpr int kFrames = 4;
   const auto lit = [](int from, int to, int f) {
@@ -291,8 +307,8 @@ TEST(TemporalGather, NearHitsDoNotGoDarkUnderAMovingLamp) {
   EXPECT_NEAR(over_time / anew, 1, 0.01);
 }
 
-// A plate comes down to 1 cm above a record and hides it: the smallest radius, 4 pixels of 2.5 cm, is no longer its due. Seen, or with no camera, it keeps that; and
-// what lies in a corner from the start keeps it hidden, too.
+// A plate comes down to 1 cm above a record and hides it: the smallest radius, 4 pixels of 2.5 cm, is no longer its
+// due. Seen, or with no camera, it keeps that; and what lies in a corner from the start keeps it hidden, too.
 TEST(TemporalGather, WhatIsHiddenAndCloseHasNoSmallestRadius) {
   const auto stage = [](float height) {
     auto scene = std::make_unique<HandMadeScene>();
@@ -309,11 +325,13 @@ TEST(TemporalGather, WhatIsHiddenAndCloseHasNoSmallestRadius) {
     TemporalCounts counts;
     RecordStore store;
     const Gathering start(*first, none, nullptr, {.rays = 200}, placement);
-    start.gather.place([&](const Look&) {
-      Hit hit;
-      EXPECT_TRUE(start.tracer.intersect({{0, 0.005f, 0}, {0, -1, 0}}, hit));
-      return std::optional(SeenPoint{start.tracer.surface_point(hit), {0, 1, 0}, 0.025f, false});
-    }, 1, 1, kept, store, counts);
+    start.gather.place(
+        [&](const Look&) {
+          Hit hit;
+          EXPECT_TRUE(start.tracer.intersect({{0, 0.005f, 0}, {0, -1, 0}}, hit));
+          return std::optional(SeenPoint{start.tracer.surface_point(hit), {0, 1, 0}, 0.025f, false});
+        },
+        1, 1, kept, store, counts);
     std::function<std::optional<Vec3>(Vec3)> eye;
     if (eye_height > 0) eye = [eye_height](Vec3) { return std::optional<Vec3>({0.001f, eye_height, 0}); };
     const Gathering then(*second, none, &start.frame, {.rays = 200}, placement, {}, eye);
@@ -337,7 +355,8 @@ TEST(TemporalGather, WhatMustBeTracedCountsAsRefreshed) {
   EXPECT_EQ(later.aged, 0u);
 }
 
-// Light that is three times as strong at once: cells are traced again along their old rays, age as they are, and are right at once.
+// Light that is three times as strong at once: cells are traced again along their old rays, age as they are, and are
+// right at once.
 TEST(TemporalGather, BeyondHalfAndTwiceCellsAreTracedAgain) {
   Room room(1), brighter(3), dark(0);
   TemporalCounts counts, later, black, back;
@@ -363,11 +382,13 @@ TEST(TemporalGather, RecordsRideOnWhatMoves) {
   KeptHemispheres kept;
   RecordStore store;
   TemporalCounts counts, later;
-  first.gather.place([&](const Look&) {
-    Hit hit;
-    first.tracer.intersect({{0.2f, 2, 0.1f}, {0, -1, 0}}, hit);
-    return std::optional(SeenPoint{first.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
-  }, 1, 1, kept, store, counts);
+  first.gather.place(
+      [&](const Look&) {
+        Hit hit;
+        first.tracer.intersect({{0.2f, 2, 0.1f}, {0, -1, 0}}, hit);
+        return std::optional(SeenPoint{first.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
+      },
+      1, 1, kept, store, counts);
   ASSERT_EQ(kept.records.size(), 1u);
   const formats::RadsamplesRecord old = kept.records[0].record;
   EXPECT_EQ(old.set, formats::SurfaceSet::dynamic_set);
@@ -380,10 +401,11 @@ TEST(TemporalGather, RecordsRideOnWhatMoves) {
   EXPECT_NEAR(r.position[2], 0.1f, 1e-6);
   EXPECT_NEAR(r.normal[0], -std::sin(0.5f), 1e-6);
   EXPECT_NEAR(r.normal[1], std::cos(0.5f), 1e-6);
-  EXPECT_EQ(later.moved, kept.records[0].samples.size());   // its surroundings pass by: all anew
+  EXPECT_EQ(later.moved, kept.records[0].samples.size());  // its surroundings pass by: all anew
 }
 
-// What shrinks to nothing takes its records with it, and what is back gets new ones: no record without a place, nothing that is not a number.
+// What shrinks to nothing takes its records with it, and what is back gets new ones: no record without a place, nothing
+// that is not a number.
 TEST(TemporalGather, WhatIsNotThereHasNoRecords) {
   Turning there(0, 0.4f), gone(0.2f, 0), back(0.4f, 0.4f);
   const Gathering first(there.scene, there.points, nullptr, {.rays = 64}, everywhere());
@@ -403,15 +425,16 @@ TEST(TemporalGather, WhatIsNotThereHasNoRecords) {
   away.gather.advance(kept, second);
   EXPECT_EQ(second.removed, 9u);
   EXPECT_EQ(kept.records.size(), 0u);
-  away.gather.place(on_the_square(away), 3, 3, kept, second_store, second);   // on the floor
+  away.gather.place(on_the_square(away), 3, 3, kept, second_store, second);  // on the floor
   ASSERT_EQ(kept.records.size(), 9u);
   const Gathering again(back.scene, back.points, &gone.scene.frame(), {.rays = 64}, everywhere());
   again.gather.advance(kept, third);
   EXPECT_EQ(third.removed, 0u);
-  EXPECT_GT(third.moved, 0u);   // what is back is in the way of rays from the floor
+  EXPECT_GT(third.moved, 0u);  // what is back is in the way of rays from the floor
   again.gather.place(on_the_square(again), 3, 3, kept, third_store, third);
-  EXPECT_GE(kept.records.size(), 18u);   // those of the floor, and new ones
-  for (const KeptHemisphere& k : kept.records) EXPECT_TRUE(std::isfinite(k.record.irradiance[1]) && std::isfinite(k.record.normal[0]));
+  EXPECT_GE(kept.records.size(), 18u);  // those of the floor, and new ones
+  for (const KeptHemisphere& k : kept.records)
+    EXPECT_TRUE(std::isfinite(k.record.irradiance[1]) && std::isfinite(k.record.normal[0]));
 }
 
 void expect_same(const KeptHemispheres& a, const KeptHemispheres& b) {
@@ -440,12 +463,14 @@ TEST(TemporalGather, AFileHoldsAllThatCounts) {
   const KeptHemispheres kept = kept_in(room, counts);
   KeptHemispheres again;
   const formats::RadsamplesFile head = head_of(kept);
-  for (std::size_t i = 0; i < kept.records.size(); ++i) take_samples(head, i, {kept.records[i].samples, kept.records[i].anchors}, {}, again);
+  for (std::size_t i = 0; i < kept.records.size(); ++i)
+    take_samples(head, i, {kept.records[i].samples, kept.records[i].anchors}, {}, again);
   take_head(head, again);
   expect_same(advanced(room, brighter, kept, a), advanced(room, brighter, again, b));
 }
 
-// Samples in a file, all or half of them, change nothing. What stands is not looked at; of what is given up the places are used again.
+// Samples in a file, all or half of them, change nothing. What stands is not looked at; of what is given up the places
+// are used again.
 TEST(TemporalGather, SamplesOnDiskAreThoseInMemory) {
   Room room(1), brighter(1.3f), brightest(4);
   TemporalCounts counts;
@@ -465,7 +490,8 @@ TEST(TemporalGather, SamplesOnDiskAreThoseInMemory) {
     expect_same(next, expected);
     EXPECT_EQ(a.scaled, b.scaled);
     EXPECT_EQ(a.ages, b.ages);
-    expect_same(advanced(brighter, brightest, next, c), advanced(brighter, brightest, expected, d));   // beyond 2: marks are made twice
+    expect_same(advanced(brighter, brightest, next, c),
+                advanced(brighter, brightest, expected, d));  // beyond 2: marks are made twice
     EXPECT_EQ(c.lost, c.cells);
   }
 }

@@ -51,7 +51,10 @@ TEST(Tracer, NearestHitOfBothTreesAgreesWithBruteForce) {
     Hit hit;
     const bool found = tracer.intersect(ray, hit);
     const double expected = brute_force(frame, ray);
-    if (found != (expected < INFINITY)) { ++differing; continue; }  // rays along edges: rounding decides
+    if (found != (expected < INFINITY)) {
+      ++differing;
+      continue;
+    }  // rays along edges: rounding decides
     EXPECT_EQ(tracer.occluded(ray), found);
     if (!found) continue;
     ++hits;
@@ -110,8 +113,8 @@ TEST(Tracer, TheStaticSurfaceWinsATie) {
   for (const Hit& one : hits) EXPECT_EQ(tracer.surface_point(one).object, 1u);
 }
 
-/// Where a ray straight down from a height of 5 m is met: by what stands, by all. In steps of 2^-18 m: distances of 3 to 6 m
-/// are known to a few units of the last place, 5e-7 m; half a step is four of them.
+/// Where a ray straight down from a height of 5 m is met: by what stands, by all. In steps of 2^-18 m: distances of 3
+/// to 6 m are known to a few units of the last place, 5e-7 m; half a step is four of them.
 std::array<float, 2> heights(const Tracer& tracer) {
   const Ray down{{0.25f, 5, 0.125f}, {0, -1, 0}, 0, INFINITY};
   Hit standing, nearest;
@@ -136,8 +139,8 @@ TEST(Tracer, WhatStandsIsTakenFromTheFrameBefore) {
   const SceneFrame first = scene.frame(), second = with_height(first, 1, 2);
   const Tracer a(first, standing), b(second, standing);
   EXPECT_EQ(heights(b), (Heights{0, 2}));
-  EXPECT_EQ(heights(a), (Heights{0, 1}));   // still its own
-  const SceneFrame lower = with_height(second, 0, -1);   // other arrays, as in another segment
+  EXPECT_EQ(heights(a), (Heights{0, 1}));               // still its own
+  const SceneFrame lower = with_height(second, 0, -1);  // other arrays, as in another segment
   EXPECT_EQ(heights(Tracer(lower, standing)), (Heights{-1, 2}));
   SceneFrame none = second;
   none.surfaces.erase(none.surfaces.begin());
@@ -158,7 +161,7 @@ TEST(Tracer, WhatStandsIsNotTakenWhereRaysMayPass) {
   StandingTree standing;
   EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
   EXPECT_TRUE(std::isnan(heights(Tracer(*hidden, standing))[0]));
-  hidden.reset();   // a filter left in the tree would ask it
+  hidden.reset();  // a filter left in the tree would ask it
   EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
 }
 
@@ -201,7 +204,10 @@ TEST(Tracer, ARoomIsClosedAtEveryScale) {
       from.offset = 0x1p-20f * 2 * scale;
       const Vec3 travel = Frame(normal).to_world(sample_hemisphere_cos(random.get2(2, Purpose::test)));
       Hit hit;
-      if (!tracer.intersect(spawn_ray(from, travel), hit)) { ++lost; continue; }
+      if (!tracer.intersect(spawn_ray(from, travel), hit)) {
+        ++lost;
+        continue;
+      }
       const SurfacePoint to = tracer.surface_point(hit);
       own += dot(to.normal_geometric, normal) > 0.5f;  // the same wall
     }
@@ -227,7 +233,10 @@ TEST(Tracer, WhatLeavesAnEdgeStaysInTheRoom) {
     const Vec3 from = Vec3{9 * u.y - 4.5f, 0.9f * random.get1(1, Purpose::test) - 0.45f,
                            0.9f * random.get1(2, Purpose::test) - 0.45f};
     Hit hit;
-    if (!tracer.intersect({from, edge - from, 0, INFINITY}, hit)) { ++lost; continue; }
+    if (!tracer.intersect({from, edge - from, 0, INFINITY}, hit)) {
+      ++lost;
+      continue;
+    }
     const SurfacePoint point = tracer.surface_point(hit);
     const Vec3 inwards =
         dot(point.normal_geometric, from - point.position) < 0 ? -point.normal_geometric : point.normal_geometric;
@@ -332,13 +341,17 @@ TEST(Tracer, AnInstancedRoomIsClosed) {
     int lost = 0, own = 0;
     for (std::uint32_t i = 0; i < 100000; ++i) {
       const PathRandom random(5, i);
-      Hit hit{0, 0, std::min(std::uint32_t(random.get1(0, Purpose::test) * float(rooms.primitive.triangles.size())),
-                             std::uint32_t(rooms.primitive.triangles.size() - 1))};
+      Hit hit{0, 0,
+              std::min(std::uint32_t(random.get1(0, Purpose::test) * float(rooms.primitive.triangles.size())),
+                       std::uint32_t(rooms.primitive.triangles.size() - 1))};
       const Vec2 b = sample_triangle(random.get2(1, Purpose::test));
       hit.u = b.x, hit.v = b.y;
       const SurfacePoint from = tracer.surface_point(hit);
       const Vec3 travel = Frame(from.normal_geometric).to_world(sample_hemisphere_cos(random.get2(2, Purpose::test)));
-      if (!tracer.intersect(spawn_ray(from, travel), hit)) { ++lost; continue; }
+      if (!tracer.intersect(spawn_ray(from, travel), hit)) {
+        ++lost;
+        continue;
+      }
       own += dot(tracer.surface_point(hit).normal_geometric, from.normal_geometric) > 0.5f;
     }
     EXPECT_EQ(lost, 0) << rooms.copy.bounds.diagonal();

@@ -21,15 +21,16 @@ using test::place_at;
 
 constexpr Vec3 kUp{0, 1, 0};
 
-/// A square lamp of radiance 2 and half-width a straight above a place, at height 1, that shines down. From its quarters
-/// E = 2 x 4 x / sqrt(1 + x^2) atan(x / sqrt(1 + x^2)), x = a.
+/// A square lamp of radiance 2 and half-width a straight above a place, at height 1, that shines down. From its
+/// quarters E = 2 x 4 x / sqrt(1 + x^2) atan(x / sqrt(1 + x^2)), x = a.
 struct Lamp {
   static constexpr float kHalf = 0.5f;
   HandMadeScene scene;
   const SceneFrame& frame;
   Tracer tracer;
   Lights lights;
-  explicit Lamp(HandMadeScene made = lamp()) : scene(std::move(made)), frame(scene.frame()), tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
+  explicit Lamp(HandMadeScene made = lamp())
+      : scene(std::move(made)), frame(scene.frame()), tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
   static HandMadeScene lamp() {
     HandMadeScene scene;
     constexpr float a = kHalf;
@@ -42,7 +43,8 @@ struct Lamp {
   }
 };
 
-/// 4096 samples of a smooth integrand, independent: each errs by less than half of the mean, all by 0.8 %; the band is 3 of those.
+/// 4096 samples of a smooth integrand, independent: each errs by less than half of the mean, all by 0.8 %; the band is
+/// 3 of those.
 TEST(SampleDirect, MeanIsTheIrradianceOfALamp) {
   const Lamp lamp;
   const SurfacePoint place = place_at({0, 0, 0}, kUp);
@@ -57,11 +59,12 @@ TEST(SampleDirect, MeanIsTheIrradianceOfALamp) {
   EXPECT_NEAR(sum / kSamples / Lamp::irradiance(), 1, 0.024);
 }
 
-/// What comes from behind one of the normals does not count; a coat takes its share of the light by the angle; a sheet in between lets nothing through.
+/// What comes from behind one of the normals does not count; a coat takes its share of the light by the angle; a sheet
+/// in between lets nothing through.
 TEST(SampleDirect, NormalsCoatAndShadow) {
   const Lamp lamp;
   const SurfacePoint place = place_at({0, 0, 0}, kUp);
-  const Vec3 aside = normalize(Vec3{1, -0.01f, 0});   // sees none of the lamp's x < 0 side
+  const Vec3 aside = normalize(Vec3{1, -0.01f, 0});  // sees none of the lamp's x < 0 side
   Material material = matte(Rgb(0.5f));
   material.specular = 1;
   material.roughness = 0.3f;
@@ -81,8 +84,9 @@ TEST(SampleDirect, NormalsCoatAndShadow) {
   EXPECT_EQ(transmittance(shadowed.tracer, plain.shadow, {PathRandom(1, 1), 0, way_shadow}), 0);
 }
 
-/// Half of the estimate by directions drawn by the cosine, which meet the lamp, and half by light samples, each weighed by the power heuristic: the sum is the
-/// irradiance. Without the weight of one of the two it would be 1.5 times as much or more. 16384 directions err by about 1 %.
+/// Half of the estimate by directions drawn by the cosine, which meet the lamp, and half by light samples, each weighed
+/// by the power heuristic: the sum is the irradiance. Without the weight of one of the two it would be 1.5 times as
+/// much or more. 16384 directions err by about 1 %.
 TEST(WeighedEmission, JoinsLightSamplesToTheWhole) {
   const Lamp lamp;
   const SurfacePoint place = place_at({0, 0, 0}, kUp);
@@ -94,7 +98,10 @@ TEST(WeighedEmission, JoinsLightSamplesToTheWhole) {
     const float pdf = local.z * kInvPi;
     Hit hit;
     if (lamp.tracer.intersect({place.position, travel, 0, INFINITY}, hit))
-      met += double(weighed_emission(lamp.lights, lamp.tracer.surface_point(hit), -travel, {true, place.position, kUp, pdf}, 0).g * kPi);
+      met += double(
+          weighed_emission(lamp.lights, lamp.tracer.surface_point(hit), -travel, {true, place.position, kUp, pdf}, 0)
+              .g *
+          kPi);
     DirectSample direct;
     if (sample_direct(lamp.lights, {place, kUp, kUp}, random.get2(0, Purpose::light_point), direct))
       sampled += double(direct.irradiance.g * mis_power(direct.light.pdf_solid_angle, direct.light.wi.y * kInvPi));
@@ -107,7 +114,8 @@ TEST(WeighedEmission, JoinsLightSamplesToTheWhole) {
   EXPECT_EQ(weighed_emission(lamp.lights, lamp.tracer.surface_point(hit), kUp * -1.0f, {}, 0).g, 2);
 }
 
-/// Of 4096 even numbers u the share .3 survives with weight 1: the mean stays. A weight above `most` survives with that probability.
+/// Of 4096 even numbers u the share .3 survives with weight 1: the mean stays. A weight above `most` survives with that
+/// probability.
 TEST(Survives, KeepsTheMean) {
   constexpr int kTimes = 4096;
   for (const float weight : {0.3f, 5.0f}) {

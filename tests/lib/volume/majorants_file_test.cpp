@@ -14,7 +14,8 @@ namespace tempolux {
 namespace {
 
 std::string file_with(const std::string& text) {
-  const std::string path = (std::filesystem::temp_directory_path() / ("majorants_" + std::to_string(::getpid()))).string();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("majorants_" + std::to_string(::getpid()))).string();
   std::ofstream(path) << text;
   return path;
 }
@@ -37,7 +38,8 @@ TEST(MajorantsFile, GivesTheSameNumbersBack) {
 
 TEST(MajorantsFile, IsWhatItsPageShows) {
   EXPECT_EQ(majorants_text(example()),
-            "tempolux majorants 1.0\nframes 0 23\ncells 2 1 3\nlower -1 0 0.1\nupper 1 2 0.7\n0 1.5 0.1\n1e-30 7 3.0000002\n");
+            "tempolux majorants 1.0\nframes 0 23\ncells 2 1 3\nlower -1 0 0.1\nupper 1 2 0.7\n0 1.5 0.1\n1e-30 7 "
+            "3.0000002\n");
 }
 
 TEST(MajorantsFile, RefusesWhatIsDamaged) {
@@ -47,10 +49,11 @@ TEST(MajorantsFile, RefusesWhatIsDamaged) {
     text.replace(text.find(a), a.size(), b);
     return text;
   };
-  for (const std::string& text : {std::string(), replaced("1.0", "2.0"), replaced("frames 0 23", "frames 23 0"), replaced("cells 2 1 3", "cells 2 1"),
-                                  replaced("cells 2 1 3", "cells 2 1 4"), replaced("cells 2 1 3", "cells 9999999 9999999 3"),
-                                  replaced("upper 1", "upper -2"), replaced("upper 1", "upper nan"), replaced("1.5", "-1.5"),
-                                  replaced("1.5", "inf"), replaced("1.5", "x"), good + "1\n", good.substr(0, good.size() / 2)})
+  for (const std::string& text : {std::string(), replaced("1.0", "2.0"), replaced("frames 0 23", "frames 23 0"),
+                                  replaced("cells 2 1 3", "cells 2 1"), replaced("cells 2 1 3", "cells 2 1 4"),
+                                  replaced("cells 2 1 3", "cells 9999999 9999999 3"), replaced("upper 1", "upper -2"),
+                                  replaced("upper 1", "upper nan"), replaced("1.5", "-1.5"), replaced("1.5", "inf"),
+                                  replaced("1.5", "x"), good + "1\n", good.substr(0, good.size() / 2)})
     EXPECT_THROW(load_majorants(file_with(text)), InputError) << text;
   EXPECT_THROW(load_majorants("no/such/file"), InputError);
 }

@@ -35,8 +35,8 @@ Affine scaled(double s, Vec3d t = {}) {
   return a;
 }
 
-/// A cube of n blocks, density 1, `edge` m from its first to its last voxel's border; along an axis its depth is edge x sigma_t:
-/// the ramps at both ends, a voxel long, hold half a voxel each.
+/// A cube of n blocks, density 1, `edge` m from its first to its last voxel's border; along an axis its depth is edge x
+/// sigma_t: the ramps at both ends, a voxel long, hold half a voxel each.
 Media cube(int n, double edge, MediumOptions options) {
   const double voxel = edge / (8 * n);
   std::vector<Medium> media;
@@ -54,8 +54,8 @@ TEST(VoxelGrid, TrilinearBetweenVoxelsAcrossBlocks) {
   const auto linear = [](int x, int y, int z) { return float(1 + 2 * x + 3 * y + 5 * z); };
   const auto grid = grid_of(2, linear);
   for (const Vec3 p : {Vec3{0.25f, 3.5f, 6.75f}, Vec3{7.5f, 7.5f, 7.5f}, Vec3{7.999f, 8, 14.5f}, Vec3{15, 15, 15}})
-    EXPECT_NEAR(grid->at(p), 1 + 2 * p.x + 3 * p.y + 5 * p.z, 1e-4f);   // a linear field is reproduced
-  EXPECT_FLOAT_EQ(grid->at({-0.5f, 0, 0}), 0.5f);                       // half-way to the nothing outside
+    EXPECT_NEAR(grid->at(p), 1 + 2 * p.x + 3 * p.y + 5 * p.z, 1e-4f);  // a linear field is reproduced
+  EXPECT_FLOAT_EQ(grid->at({-0.5f, 0, 0}), 0.5f);                      // half-way to the nothing outside
   EXPECT_FLOAT_EQ(grid->at({0, 15.75f, 0}), 0.25f * 46);
   EXPECT_EQ(grid->at({-1, 0, 0}), 0);
   EXPECT_EQ(grid->at({16, 3, 3}), 0);
@@ -67,15 +67,15 @@ TEST(VoxelGrid, TrilinearBetweenVoxelsAcrossBlocks) {
 
 TEST(VoxelGrid, NegativePlacesSparseBlocksAndBounds) {
   VoxelBlock a{{-16, 8, 0}, {}}, b{{800, 8, 0}, {}}, nothing{{80, 80, 80}, {}};
-  a.values[0] = 2;          // voxel (-16, 8, 0): its neighbours' blocks must know it
-  b.values[511] = 3;        // voxel (807, 15, 7)
+  a.values[0] = 2;    // voxel (-16, 8, 0): its neighbours' blocks must know it
+  b.values[511] = 3;  // voxel (807, 15, 7)
   const VoxelGrid grid({a, nothing, b});
   EXPECT_FLOAT_EQ(grid.at({-16.5f, 7.5f, -0.5f}), 0.25f);
   EXPECT_FLOAT_EQ(grid.at({807.5f, 15, 7}), 1.5f);
   EXPECT_EQ(grid.at({400, 8, 0}), 0);
   EXPECT_EQ(grid.support().lower, (Vec3d{-17, 7, -1}));
   EXPECT_EQ(grid.support().upper, (Vec3d{808, 16, 8}));
-  EXPECT_EQ(grid.largest({{-20, 0, -5}, {-16.5, 20, 5}}), 2);   // the apron: trilinear reaches one voxel on
+  EXPECT_EQ(grid.largest({{-20, 0, -5}, {-16.5, 20, 5}}), 2);  // the apron: trilinear reaches one voxel on
   EXPECT_EQ(grid.largest({{0, 0, 0}, {700, 20, 20}}), 0);
   EXPECT_EQ(grid.hash(), VoxelGrid({b, a}).hash());
   EXPECT_TRUE(VoxelGrid(std::vector<VoxelBlock>{nothing}).empty());
@@ -102,18 +102,21 @@ TEST(Medium, OpticalDepthIsExact) {
   media.emplace_back(grid_of(2, [](int, int, int z) { return 0.1f * float(z); }), scaled(1), MediumOptions{});
   const Media linear(std::move(media));
   EXPECT_NEAR(linear.optical_depth({3, 3, 2.3f}, {0, 0, 1}, 6.8), (9.1 * 9.1 - 2.3 * 2.3) / 20, 1e-5);
-  // Products of linear fields are cubic along a diagonal: x y z from (1,1,1) to (6,6,6) is the integral of s^3 sqrt(3) ds.
+  // Products of linear fields are cubic along a diagonal: x y z from (1,1,1) to (6,6,6) is the integral of s^3 sqrt(3)
+  // ds.
   std::vector<Medium> cubic;
   cubic.emplace_back(grid_of(1, [](int x, int y, int z) { return float(x * y * z); }), scaled(1), MediumOptions{});
   const float d = 1 / std::sqrt(3.0f);
   EXPECT_NEAR(Media(std::move(cubic)).optical_depth({1, 1, 1}, {d, d, d}, 5 * std::sqrt(3.0)),
-              std::sqrt(3.0) * (1296 - 1) / 4, 0.01);   // rounding of places near voxels: 1e-6 of 560
+              std::sqrt(3.0) * (1296 - 1) / 4, 0.01);  // rounding of places near voxels: 1e-6 of 560
   EXPECT_NEAR(cube(2, 1, {.sigma_t = 2}).optical_depth({-5, 0.4f, 0.4f}, {1, 0, 0}, INFINITY), 2, 1e-6);
 }
 
 TEST(Majorants, NoPointExceedsThemAndPiecesJoin) {
   std::vector<Medium> media;
-  const auto rough = [](int x, int y, int z) { return float(mix64(std::uint64_t(x * 961 + y * 31 + z)) >> 40) * 1e-5f; };
+  const auto rough = [](int x, int y, int z) {
+    return float(mix64(std::uint64_t(x * 961 + y * 31 + z)) >> 40) * 1e-5f;
+  };
   Affine askew = scaled(0.1, {3, -2, 1});
   askew.row[0] = {0.08, 0.05, 0};
   askew.row[1] = {-0.05, 0.08, 0.02};
@@ -121,7 +124,8 @@ TEST(Majorants, NoPointExceedsThemAndPiecesJoin) {
   const Media all(std::move(media));
   const PathRandom random(1, 2);
   for (std::uint32_t i = 0; i < 300; ++i) {
-    const Vec3 from{random.get1(i, Purpose::test, 0) * 8, random.get1(i, Purpose::test, 1) * 8 - 4, random.get1(i, Purpose::test, 2) * 8 - 2};
+    const Vec3 from{random.get1(i, Purpose::test, 0) * 8, random.get1(i, Purpose::test, 1) * 8 - 4,
+                    random.get1(i, Purpose::test, 2) * 8 - 2};
     const Vec3 direction = sample_sphere(random.get2(i, Purpose::test, 3));
     MajorantWalk walk(all.majorants(), from, direction, 7);
     float last = -1;
@@ -140,10 +144,11 @@ TEST(Majorants, AxisParallelRaysAndRaysThatMiss) {
   float covered = 0;
   MajorantWalk along(media.majorants(), {0.3f, 0.3f, -4}, {0, -0.0f, 1}, INFINITY);
   for (MajorantWalk::Piece piece; along.next(piece);) covered += piece.end - piece.begin;
-  EXPECT_NEAR(covered, 1 + 1 / 16.0, 1e-5);   // 16 voxels and the ramps
+  EXPECT_NEAR(covered, 1 + 1 / 16.0, 1e-5);  // 16 voxels and the ramps
   // On a plane between cells, all but along it: 1 / 1e-40 is infinite.
   const auto pieces = [&](float aside) {
-    MajorantWalk walk(media.majorants(), {float(media.majorants().cell(1, 0, 0).lower.x), 0.3f, -4}, {aside, 0, 1}, INFINITY);
+    MajorantWalk walk(media.majorants(), {float(media.majorants().cell(1, 0, 0).lower.x), 0.3f, -4}, {aside, 0, 1},
+                      INFINITY);
     int n = 0;
     for (MajorantWalk::Piece piece; walk.next(piece);) ++n;
     return n;
@@ -182,7 +187,7 @@ TEST(Flight, PassesByBeerAndLambert) {
     const double exact = std::exp(-double(tau)), deviation = std::sqrt(exact * (1 - exact) / n);
     EXPECT_NEAR(passed / n, exact, 4 * deviation + 1e-12) << tau;
     const double mean = ratio / n, ratio_deviation = std::sqrt(std::max(0.0, ratio2 / n - mean * mean) / n);
-    EXPECT_NEAR(mean, exact, 4 * deviation + 1e-7) << tau;   // 1e-7: a step of float32 below 1
+    EXPECT_NEAR(mean, exact, 4 * deviation + 1e-7) << tau;  // 1e-7: a step of float32 below 1
     EXPECT_LE(ratio_deviation, deviation * 1.5 + 1e-7) << tau;
   }
 }
@@ -190,18 +195,18 @@ TEST(Flight, PassesByBeerAndLambert) {
 /// 1 - T of tau = 1e-6, which a random number of 24 bits would have 1.3 % too high.
 TEST(Flight, KeepsThinMediaExact) {
   double sum = 0;
-  const int steps = 1 << 14;   // all words that can collide, in strides
+  const int steps = 1 << 14;  // all words that can collide, in strides
   for (int i = 0; i < steps; ++i) {
-    const std::uint64_t high = std::uint64_t(i);   // u = i 2^-32
+    const std::uint64_t high = std::uint64_t(i);  // u = i 2^-32
     sum += FlightNumbers(high << 32).depth < 1e-6f;
   }
   EXPECT_NEAR(sum * 0x1p-32, -std::expm1(-1e-6), 0.0005e-6);
 }
 
-/// What a half-space of isotropic scattering reflects of light at normal incidence: 1 - sqrt(1 - w) H(1). Chandrasekhar 1950;
-/// values of docs/methods/formulas.md. Any profile of density along the normal reflects the same.
+/// What a half-space of isotropic scattering reflects of light at normal incidence: 1 - sqrt(1 - w) H(1). Chandrasekhar
+/// 1950; values of docs/methods/formulas.md. Any profile of density along the normal reflects the same.
 TEST(Flight, HalfSpaceReflectsByChandrasekhar) {
-  const Media media = cube(3, 24000, {});   // voxels of 1000 free ways
+  const Media media = cube(3, 24000, {});  // voxels of 1000 free ways
   struct Case {
     double albedo, reflected;
   };
@@ -256,7 +261,7 @@ TEST(Phase, HenyeyGreensteinHasItsMomentsAndPdf) {
       const double m = sample_hg_one_minus_cos(g, xi);
       double integral = 0;
       const int steps = 20000;
-      for (int i = 0; i < steps; ++i) {   // from straight on, in the square root: narrow lobes get their points
+      for (int i = 0; i < steps; ++i) {  // from straight on, in the square root: narrow lobes get their points
         const double s = std::sqrt(m) * (i + 0.5) / steps;
         integral += pdf_hg(g, float(s * s)) * 2 * kPi * 2 * s * (std::sqrt(m) / steps);
       }

@@ -15,22 +15,23 @@ struct Pinhole {
   double turn, yfov;
   int width, height;
 
-  double scale() const { return height / (2 * std::tan(yfov / 2)); }   // pixels per unit at distance 1
+  double scale() const { return height / (2 * std::tan(yfov / 2)); }  // pixels per unit at distance 1
   Vec3d ray(double x, double y) const {
     const double px = (x - width / 2.0) / scale(), py = (height / 2.0 - y) / scale();
     return {px * std::cos(turn) - std::sin(turn), py, -px * std::sin(turn) - std::cos(turn)};
   }
   RasterPoint project(Vec3d p) const {
     const Vec3d d = p - eye;
-    const double right = d.x * std::cos(turn) - d.z * std::sin(turn), ahead = -d.x * std::sin(turn) - d.z * std::cos(turn);
+    const double right = d.x * std::cos(turn) - d.z * std::sin(turn),
+                 ahead = -d.x * std::sin(turn) - d.z * std::cos(turn);
     return {width / 2.0 + scale() * right / ahead, height / 2.0 - scale() * d.y / ahead};
   }
 };
 
-constexpr double kBack = -1.4;   // z of the back wall, of objects 3 in the room
+constexpr double kBack = -1.4;  // z of the back wall, of objects 3 in the room
 
-/// A plane seen by two cameras is mapped by a homography: here by following each pixel's ray to the wall z = -1.4 and projecting
-/// the point. Flow starts from depth in float32, 6e-8 of 3 m, which moves a point by 1e-6 pixels at most.
+/// A plane seen by two cameras is mapped by a homography: here by following each pixel's ray to the wall z = -1.4 and
+/// projecting the point. Flow starts from depth in float32, 6e-8 of 3 m, which moves a point by 1e-6 pixels at most.
 TEST(FlowOfView, OfAPlaneIsItsHomography) {
   const Cornell room;
   const int width = 320, height = 240;
@@ -46,21 +47,24 @@ TEST(FlowOfView, OfAPlaneIsItsHomography) {
     const Vec3d ray = a.ray(x, y);
     const RasterPoint to = b.project(a.eye + ray * ((kBack - a.eye.z) / ray.z));
     EXPECT_EQ(flow.valid[p], 3u);
-    squares += std::pow(double(flow.forward[p].x) - (to.x - x), 2) + std::pow(double(flow.forward[p].y) - (y - to.y), 2);
+    squares +=
+        std::pow(double(flow.forward[p].x) - (to.x - x), 2) + std::pow(double(flow.forward[p].y) - (y - to.y), 2);
     ++count;
   }
   ASSERT_GT(count, 5000);
   EXPECT_LT(std::sqrt(squares / count), 1e-4);
 }
 
-/// Following a point to the next frame and its flow back again, bilinear there, leads to where it was: where the same whole surface is
-/// seen in both. Bilinear flow of a plane is off by its curvature, below .01 pixels here.
+/// Following a point to the next frame and its flow back again, bilinear there, leads to where it was: where the same
+/// whole surface is seen in both. Bilinear flow of a plane is off by its curvature, below .01 pixels here.
 TEST(FlowOfView, ForwardAndBackAgain) {
   const Cornell now(10), next(11);
   const int width = 320, height = 240;
-  const View here(now, camera_at({0, 1, 1.9}), width, height), there(next, camera_at({0.05, 1.02, 1.85}, 0.02), width, height);
+  const View here(now, camera_at({0, 1, 1.9}), width, height),
+      there(next, camera_at({0.05, 1.02, 1.85}, 0.02), width, height);
   const NeighbourView to_next{&next.frame, &there.seen.camera()}, to_here{&now.frame, &here.seen.camera()};
-  const PixelFlow out = flow_of_view(here.seen, to_next, to_next, 24), back = flow_of_view(there.seen, to_here, to_here, 24);
+  const PixelFlow out = flow_of_view(here.seen, to_next, to_next, 24),
+                  back = flow_of_view(there.seen, to_here, to_here, 24);
   const std::vector<std::uint8_t> whole = whole_pixels(there.seen.seen(), there.seen.camera());
   int count = 0, moving = 0;
   double worst = 0;
@@ -86,12 +90,12 @@ TEST(FlowOfView, ForwardAndBackAgain) {
       worst = std::max(worst, std::hypot(double(out.forward[p].x) + u, double(out.forward[p].y) + v));
     }
   EXPECT_GT(count, width * height / 2);
-  EXPECT_GT(moving, 300);          // the sliding, turning box is among them
+  EXPECT_GT(moving, 300);  // the sliding, turning box is among them
   EXPECT_LT(worst, 0.05);
 }
 
-/// A camera that turns by .01 radians a frame sees everything turn at .01 * 180/pi * 24 degrees a second about the same axis; at the
-/// middle line of the picture that is the speed itself.
+/// A camera that turns by .01 radians a frame sees everything turn at .01 * 180/pi * 24 degrees a second about the same
+/// axis; at the middle line of the picture that is the speed itself.
 TEST(FlowOfView, SpeedIsInDegreesPerSecond) {
   const Cornell room;
   const View here(room, camera_at({0, 1, 1.9}, 0.0), 96, 72), there(room, camera_at({0, 1, 1.9}, 0.01), 96, 72);
@@ -106,8 +110,8 @@ TEST(FlowOfView, SpeedIsInDegreesPerSecond) {
   EXPECT_NEAR(angular_speed({0, 0, 1}, {1e-9, 0, 1}, 24) / (1e-9 * 180 / std::numbers::pi * 24), 1, 1e-6);
 }
 
-/// Tables of docs/methods/formulas.md: where sensitivity falls to 1, and what is slow on displays of 30 and 60 pixels per
-/// degree.
+/// Tables of docs/methods/formulas.md: where sensitivity falls to 1, and what is slow on displays of 30 and 60 pixels
+/// per degree.
 TEST(SlowSpeed, AsInTheTable) {
   for (const auto& [speed, cutoff] : {std::pair{0.15, 26.3347}, {1.0, 16.0878}, {5.0, 5.4202}, {20.0, 1.5232}})
     EXPECT_NEAR(highest_visible_frequency(speed), cutoff, 1e-3);
@@ -120,9 +124,9 @@ TEST(CameraCut, AJumpIsOneAndAPanIsNot) {
   const View here(room, camera_at({0, 1, 1.9}, 0.0));
   const auto camera = [&](Vec3d eye, double turn) { return View(room, camera_at(eye, turn)).seen.camera(); };
   const std::vector<Vec3d> points = grid_of_points(here.seen.seen(), here.seen.camera());
-  EXPECT_FALSE(is_cut(points, here.seen.camera(), camera({0, 1, 1.9}, 0.1)));            // 140 degrees a second
+  EXPECT_FALSE(is_cut(points, here.seen.camera(), camera({0, 1, 1.9}, 0.1)));  // 140 degrees a second
   EXPECT_FALSE(is_cut(points, here.seen.camera(), camera({0.1, 1, 1.8}, 0)));
-  EXPECT_TRUE(is_cut(points, here.seen.camera(), camera({0, 1, 1.9}, 0.5)));             // teleported view
+  EXPECT_TRUE(is_cut(points, here.seen.camera(), camera({0, 1, 1.9}, 0.5)));  // teleported view
   EXPECT_TRUE(is_cut(points, here.seen.camera(), camera({0, 1, 1.9}, std::numbers::pi)));
 }
 

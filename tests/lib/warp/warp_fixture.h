@@ -46,8 +46,8 @@ inline Rgb smooth_paint(Vec3d p, std::uint32_t object) {
 inline Vec3d world_at(const View& view, std::size_t pixel) {
   const FrameCamera& camera = view.seen.camera();
   const auto width = std::size_t(camera.width());
-  return camera.world_from_camera().point(
-      camera.unproject({double(pixel % width) + 0.5, double(pixel / width) + 0.5}, double(view.seen.seen().depth[pixel])));
+  return camera.world_from_camera().point(camera.unproject({double(pixel % width) + 0.5, double(pixel / width) + 0.5},
+                                                           double(view.seen.seen().depth[pixel])));
 }
 
 /// The view as a frame: RGB painted, A 1 where something is seen, data channels.
@@ -87,7 +87,8 @@ struct Warped {
     for (Source& source : sources) {
       keys.push_back(std::make_unique<KeyFrame>(source.image, "key", source.view.seen.camera()));
       motions.push_back(std::make_unique<ObjectMotions>(target.room.frame, source.view.room.frame));
-      views.push_back(std::make_unique<KeyView>(*keys.back(), source.view.seen.camera(), target.seen.camera(), *motions.back()));
+      views.push_back(
+          std::make_unique<KeyView>(*keys.back(), source.view.seen.camera(), target.seen.camera(), *motions.back()));
       list.push_back({views.back().get(), source.frames_away, source.cut_off, source.light_may_differ});
     }
     WarpTarget wanted{&target.seen.camera(), &target.seen.seen(), {}, nullptr, std::move(see_gloss), {}};
@@ -95,9 +96,7 @@ struct Warped {
     frame = warp(wanted, list, options);
   }
   /// Of the composed picture; channels are A B G R.
-  Rgb colour(std::size_t p) const {
-    return {frame.colour[3][p], frame.colour[2][p], frame.colour[1][p]};
-  }
+  Rgb colour(std::size_t p) const { return {frame.colour[3][p], frame.colour[2][p], frame.colour[1][p]}; }
 };
 
 }  // namespace tempolux::test

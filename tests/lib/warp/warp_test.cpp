@@ -20,13 +20,15 @@ TEST(Warp, ToItsOwnFrameIsTheSameToTheBit) {
   const Image key = painted(view, speckled);
   const Warped warped(view, {{view, key, 0}});
   for (std::size_t p = 0; p < key.pixel_count(); ++p) {
-    ASSERT_EQ(warped.colour(p), (Rgb{key.find("R")->values[p], key.find("G")->values[p], key.find("B")->values[p]})) << p;
+    ASSERT_EQ(warped.colour(p), (Rgb{key.find("R")->values[p], key.find("G")->values[p], key.find("B")->values[p]}))
+        << p;
     ASSERT_EQ(warped.frame.why[p], 0u);
   }
 }
 
-/// Another program's key: it does not know the scene's objects, and filters its normals. Depth and normals say what is what, so it gives nearly all that
-/// the same key with objects gives, and no ghosts: blue is the object's number, and the room's objects have a depth or a normal of their own wherever they meet.
+/// Another program's key: it does not know the scene's objects, and filters its normals. Depth and normals say what is
+/// what, so it gives nearly all that the same key with objects gives, and no ghosts: blue is the object's number, and
+/// the room's objects have a depth or a normal of their own wherever they meet.
 TEST(Warp, KeysThatKnowNoObjectsAreOfUse) {
   const Cornell room;
   const View left(room, camera_at({-0.1, 1, 1.9})), right(room, camera_at({0.1, 1, 1.9}));
@@ -49,11 +51,13 @@ TEST(Warp, KeysThatKnowNoObjectsAreOfUse) {
   EXPECT_GE(given_without, given * 99 / 100);
 }
 
-/// Two equal keys, the camera standing: the weights of the blend leave their bits alone. Where the box moved the key is of no use.
+/// Two equal keys, the camera standing: the weights of the blend leave their bits alone. Where the box moved the key is
+/// of no use.
 TEST(Warp, NoiseOfWhatStandsIsNoDifferenceOfTheKeys) {
   const Cornell room;
   const View view(room, kMiddle);
-  const Image one = painted(view, [](Vec3d, std::uint32_t) { return Rgb(1.0f); }), other = painted(view, [](Vec3d, std::uint32_t) { return Rgb(1.5f); });
+  const Image one = painted(view, [](Vec3d, std::uint32_t) { return Rgb(1.0f); }),
+              other = painted(view, [](Vec3d, std::uint32_t) { return Rgb(1.5f); });
   const Warped warped(view, {{view, one}, {view, other}}, {.slow_deg_per_s = 0, .separate = true});
   for (std::size_t p = 0; p < one.pixel_count(); ++p) {
     ASSERT_EQ(warped.colour(p).r, 1.25f);
@@ -87,8 +91,9 @@ TEST(Warp, WhatStandsKeepsItsBitsBetweenTwoKeys) {
   EXPECT_GT(still, 5000);
 }
 
-/// The camera comes nearer by half: each pixel of the key stands for two on a side. Every pixel of the wall is given, and shows what the wall is
-/// painted with there. Beside edges the nearest of 16 pixels is taken, at most 2 away: 2 x .033 m of a paint that changes by .22 per m.
+/// The camera comes nearer by half: each pixel of the key stands for two on a side. Every pixel of the wall is given,
+/// and shows what the wall is painted with there. Beside edges the nearest of 16 pixels is taken, at most 2 away: 2 x
+/// .033 m of a paint that changes by .22 per m.
 TEST(Warp, NoCracksWhereAKeyIsMagnified) {
   const Cornell room;
   const View far(room, camera_at({0.2, 1.3, 1.9})), near(room, camera_at({0.2, 1.3, 0.4}));
@@ -98,9 +103,9 @@ TEST(Warp, NoCracksWhereAKeyIsMagnified) {
   int wall = 0, masked = 0;
   for (std::size_t p = 0; p < truth.pixel_count(); ++p) {
     const Vec3d at = world_at(near, p);
-    if (std::abs(at.z + 1.4) > 1e-4 || !whole[p] || at.x < 0.3) continue;   // to the right of what may hide it
+    if (std::abs(at.z + 1.4) > 1e-4 || !whole[p] || at.x < 0.3) continue;  // to the right of what may hide it
     ++wall;
-    if (warped.frame.why[p] == why_edge) {   // within a pixel of the key from an edge, all around
+    if (warped.frame.why[p] == why_edge) {  // within a pixel of the key from an edge, all around
       ++masked;
       continue;
     }
@@ -117,8 +122,8 @@ TEST(Warp, NoCracksWhereAKeyIsMagnified) {
     }
 }
 
-/// Seen from the side the tall box uncovers wall that the key does not show. What is not masked has the colour of its own object: blue
-/// is the object's number, and nothing of another one comes in, at edges neither.
+/// Seen from the side the tall box uncovers wall that the key does not show. What is not masked has the colour of its
+/// own object: blue is the object's number, and nothing of another one comes in, at edges neither.
 TEST(Warp, NoGhostsWhereDepthsDisagree) {
   const Cornell room;
   const View left(room, camera_at({-0.4, 1, 1.9})), right(room, camera_at({0.4, 1, 1.9}));
@@ -130,12 +135,12 @@ TEST(Warp, NoGhostsWhereDepthsDisagree) {
     occluded += (warped.frame.why[p] & why_occlusion) != 0;
     outside += (warped.frame.why[p] & why_border) != 0;
     if (warped.frame.why[p] != 0) continue;
-    EXPECT_TRUE(whole[p]) << p;   // one key alone is not believed at edges
+    EXPECT_TRUE(whole[p]) << p;  // one key alone is not believed at edges
     EXPECT_NEAR(warped.colour(p).b, truth.find("B")->values[p], 1e-5) << p;
     EXPECT_NEAR(warped.colour(p).r, truth.find("R")->values[p], 0.03) << p;
   }
   EXPECT_GT(occluded, 100);
-  EXPECT_GT(outside, 300);     // .8 m to the side, of 2.4 m that the wall shows
+  EXPECT_GT(outside, 300);  // .8 m to the side, of 2.4 m that the wall shows
   // A second key from the other side knows what the first one lacks.
   const View beyond(room, camera_at({0.6, 1, 1.9}));
   const Warped both(right, {{left, key}, {beyond, painted(beyond, smooth_paint)}});
@@ -144,8 +149,8 @@ TEST(Warp, NoGhostsWhereDepthsDisagree) {
   EXPECT_LT(left_over, (occluded + outside) / 10);
 }
 
-/// An edge pixel is composed of the shares of its surfaces: blue, the object's number, averaged over 64 x 64 positions in the pixel. Eight
-/// positions, each row and column once, miss a straight edge's share by 1/8 at most.
+/// An edge pixel is composed of the shares of its surfaces: blue, the object's number, averaged over 64 x 64 positions
+/// in the pixel. Eight positions, each row and column once, miss a straight edge's share by 1/8 at most.
 TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
   const Cornell room;
   const View key_view(room, camera_at({0.02, 1, 1.9})), view(room, kMiddle);
@@ -164,7 +169,8 @@ TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
     for (int i = 0; i < 64; ++i) {
       std::array<RasterPoint, 64> at;
       std::array<FacePoint, 64> points;
-      for (int j = 0; j < 64; ++j) at[std::size_t(j)] = {double(p % 96) + (i + 0.5) / 64, double(p / 96) + (j + 0.5) / 64};
+      for (int j = 0; j < 64; ++j)
+        at[std::size_t(j)] = {double(p % 96) + (i + 0.5) / 64, double(p / 96) + (j + 0.5) / 64};
       view.seen.look(at, points.data());
       for (const FacePoint& point : points) {
         mean += double(point.object) / 4096;
@@ -175,11 +181,11 @@ TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
     EXPECT_NEAR(warped.colour(p).b, mean, 0.126 * (high - low) + 1e-5) << p;
   }
   EXPECT_GT(edges, 300);
-  EXPECT_LT(masked, edges / 2);   // where a shadow, or here another paint, begins at the edge: they are traced
+  EXPECT_LT(masked, edges / 2);  // where a shadow, or here another paint, begins at the edge: they are traced
 }
 
-/// One object 30 times as bright as all others: its edges are known at more positions than eight, or masked. What is believed is to err by edge_share,
-/// .05, of its light; 4 sigma. (With eight positions 1/8 of 29 is missed beside it.)
+/// One object 30 times as bright as all others: its edges are known at more positions than eight, or masked. What is
+/// believed is to err by edge_share, .05, of its light; 4 sigma. (With eight positions 1/8 of 29 is missed beside it.)
 TEST(Warp, EdgesOfBrightThingsAreKnownFinely) {
   const Cornell room;
   const View key_view(room, camera_at({0.02, 1, 1.9})), view(room, kMiddle), other(room, camera_at({-0.02, 1, 1.9}));
@@ -196,7 +202,8 @@ TEST(Warp, EdgesOfBrightThingsAreKnownFinely) {
     for (int i = 0; i < 64; ++i) {
       std::array<RasterPoint, 64> at;
       std::array<FacePoint, 64> points;
-      for (int j = 0; j < 64; ++j) at[std::size_t(j)] = {double(p % 96) + (i + 0.5) / 64, double(p / 96) + (j + 0.5) / 64};
+      for (int j = 0; j < 64; ++j)
+        at[std::size_t(j)] = {double(p % 96) + (i + 0.5) / 64, double(p / 96) + (j + 0.5) / 64};
       view.seen.look(at, points.data());
       for (const FacePoint& point : points) {
         mean += (point.object == 8 ? 30.0 : 1.0) / 4096;
@@ -230,7 +237,8 @@ TEST(Warp, AMovingObjectIsFollowed) {
     // Beside an edge the nearest of 16 pixels is taken: at most two pixels away along the face, in either view.
     const Vec3d to_eye = normalize(Vec3d{0, 1, 1.9} - world_at(view, p));
     const double facing = std::abs(dot(to_eye, Vec3d(view.seen.seen().normal[p])));
-    const double near = 3 * view.seen.camera().pixel_width() * double(view.seen.seen().depth[p]) / std::max(facing, 0.05);
+    const double near =
+        3 * view.seen.camera().pixel_width() * double(view.seen.seen().depth[p]) / std::max(facing, 0.05);
     EXPECT_NEAR(c.r, truth.find("R")->values[p], near) << p;
     EXPECT_NEAR(c.g, truth.find("G")->values[p], near) << p;
     EXPECT_NEAR(c.b, truth.find("B")->values[p], near) << p;
@@ -238,27 +246,29 @@ TEST(Warp, AMovingObjectIsFollowed) {
   EXPECT_GT(box, 100);
 }
 
-/// Light that differs between the keys by a fifth, under noise of a tenth per pixel, is noticed over 25 pixels: 7 standard errors of
-/// .1 sqrt(2)/5. Equal light under the same noise is not, but for the 3 in 1000 pixels
-/// beyond 3 standard errors; beside them those that one key alone shows, at the left and the right border, 2 of 96 columns.
+/// Light that differs between the keys by a fifth, under noise of a tenth per pixel, is noticed over 25 pixels: 7
+/// standard errors of .1 sqrt(2)/5. Equal light under the same noise is not, but for the 3 in 1000 pixels beyond 3
+/// standard errors; beside them those that one key alone shows, at the left and the right border, 2 of 96 columns.
 TEST(Warp, ChangedLightIsTold) {
   const Cornell room;
   const View view(room, kMiddle), a(room, camera_at({0.02, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
   const auto lit = [](double light, int seed) {
     return Paint([light, seed, n = 0](Vec3d, std::uint32_t) mutable {
-      const double noise = 0.2 * std::sqrt(3.0) * (PathRandom(std::uint64_t(seed), 1).get1(std::uint32_t(n++), Purpose::test) - 0.5);
+      const double noise =
+          0.2 * std::sqrt(3.0) * (PathRandom(std::uint64_t(seed), 1).get1(std::uint32_t(n++), Purpose::test) - 0.5);
       return Rgb(float(light + noise));
     });
   };
   const auto share = [&](double light_of_b, bool may_differ) {
-    const Warped warped(view, {{a, painted(a, lit(1, 1)), 1, false, may_differ}, {b, painted(b, lit(light_of_b, 2)), 1, false, may_differ}});
+    const Warped warped(view, {{a, painted(a, lit(1, 1)), 1, false, may_differ},
+                               {b, painted(b, lit(light_of_b, 2)), 1, false, may_differ}});
     int changed = 0;
     for (const std::uint32_t why : warped.frame.why) changed += (why & why_changed_light) != 0;
     return double(changed) / double(warped.frame.why.size());
   };
   EXPECT_GT(share(1.2, true), 0.8);
   EXPECT_LT(share(1.0, true), 0.05);
-  EXPECT_EQ(share(1.2, false), 0);   // the plan says that no light changes
+  EXPECT_EQ(share(1.2, false), 0);  // the plan says that no light changes
 }
 
 TEST(Warp, SpecularLightThatMattersIsMasked) {
@@ -309,14 +319,12 @@ TEST(Warp, LayersStillAddUp) {
     return image;
   };
   const Warped warped(view, {{a, layered(a)}, {b, layered(b)}});
-  ASSERT_EQ(warped.frame.names, (std::vector<std::string>{"A", "B", "G", "R", "direct.B", "direct.G", "direct.R", "indirect.B",
-                                                          "indirect.G", "indirect.R"}));
+  ASSERT_EQ(warped.frame.names, (std::vector<std::string>{"A", "B", "G", "R", "direct.B", "direct.G", "direct.R",
+                                                          "indirect.B", "indirect.G", "indirect.R"}));
   for (std::size_t p = 0; p < warped.frame.why.size(); ++p) {
     const std::vector<std::vector<float>>& c = warped.frame.colour;
     for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(c[1 + i][p], c[4 + i][p] + c[7 + i][p]);
-    if (warped.frame.why[p] == 0) {
-      ASSERT_EQ(c[0][p], 1.0f);
-    }
+    if (warped.frame.why[p] == 0) { ASSERT_EQ(c[0][p], 1.0f); }
   }
 }
 
@@ -327,9 +335,7 @@ TEST(Warp, NothingCrossesACut) {
   const auto grey = [](Vec3d, std::uint32_t) { return Rgb(0.5f); };
   const Warped one(view, {{a, painted(a, white)}, {view, painted(view, grey), 1, true}});
   for (std::size_t p = 0; p < one.frame.why.size(); ++p)
-    if (one.frame.why[p] == 0) {
-      ASSERT_EQ(one.colour(p), Rgb(1.0f));
-    }
+    if (one.frame.why[p] == 0) { ASSERT_EQ(one.colour(p), Rgb(1.0f)); }
   const Warped none(view, {{view, painted(view, grey), 1, true}});
   for (std::size_t p = 0; p < none.frame.why.size(); ++p) ASSERT_EQ(none.frame.why[p], why_border);
 }
