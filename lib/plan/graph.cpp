@@ -89,10 +89,19 @@ class Builder {
   Graph build() {
     for (const int frame : plan_.frames) graph_.pictures[frame] = picture(plan_.shows.at(frame));
     for (const int frame : wish_.report) add_report(frame);
+    remove_when_read();
     return std::move(graph_);
   }
 
  private:
+  /// A raw picture is large: the command that reads it removes it. One that two commands read stays, as either may be the first.
+  void remove_when_read() {
+    std::map<std::string, int> readers;
+    for (const GraphFile& file : graph_.files)
+      for (const std::string& input : file.inputs) ++readers[input];
+    for (GraphFile& file : graph_.files) file.passing = wish_.filter == 1 && file.stage == stage::raw.name && readers[file.name] == 1;
+  }
+
   const PlannedSegment& segment(int frame) const { return plan_.segment_of(frame); }
   const Decisions& decided(int frame) const { return segment(frame).decisions; }
   const PlannedFrame& state(int frame) const { return segment(frame).at(frame); }
@@ -457,7 +466,6 @@ class Builder {
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
-    if (wish_.filter == 1) graph_.files[graph_.by_name.at(c.inputs.front())].passing = true;
     c.option("--position " + std::to_string(position) + " --channels " + channels);
     return add(stage::filtered, frame, c);
   }
