@@ -39,9 +39,12 @@ WHOLE = "whole"
 # ---- programs without an idea
 
 def changed(text, old, new, where):
-    if text.count(old) != 1:
-        raise SystemExit(f"ablation_ideas.py: {where}: the code has changed: found {text.count(old)} times, not once:\n{old}")
-    return text.replace(old, new)
+    """The text with one passage replaced; blanks and line breaks, which a formatter moves, are not compared."""
+    tokens = re.findall(r"\w+|[^\w\s]", old)
+    found = list(re.finditer(r"\s*".join(map(re.escape, tokens)), text))
+    if len(found) != 1:
+        raise SystemExit(f"ablation_ideas.py: {where}: the code has changed: found {len(found)} times, not once:\n{old}")
+    return text[:found[0].start()] + new + text[found[0].end():]
 
 
 def check(project):
