@@ -24,6 +24,8 @@ tsan: deps ; $(in_top) cmake --preset tsan && cmake --build --preset tsan --targ
 fuzz: PACKAGES += clang libclang-rt-dev
 fuzz: deps ; $(in_top) sh tests/fuzz/run.sh # hostile input for every reader, each for FUZZ_SECONDS=60
 install: configured ; $(in_top) cmake --build --preset release --target tools manual && cmake --install build/release --prefix '$(PREFIX)'
+deb: PACKAGES += dpkg-dev
+deb: configured ; $(in_top) cmake --build --preset release --target tools manual && cpack --config build/release/CPackConfig.cmake -B build/release/deb # a Debian package
 help:
 	@sed -n '/^names :=/q; s/^# //p; /^[A-Z_]* *=/p' "$$TOP/Makefile.example"
 clean: # what was built here and what was made in OUT, and nothing else
