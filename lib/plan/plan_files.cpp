@@ -77,38 +77,32 @@ std::string words_of(const std::vector<std::string>& names) {
 
 std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
 
-/// Rules for a file with a plain name. `marker` in shown/ says what it shows now; if the marker is missing the file is
-/// made anew, if the file is missing it comes back. `recipe`: a variable of stages.mk.
-std::string shown_rule(const std::string& name, const std::string& marker, const std::string& inputs,
-                       const std::string& recipe) {
-  const std::string call = "$(" + recipe + ",shown/" + marker + ")";
-  return "shown/" + marker + ": | " + inputs + "; $(quiet)" + call + "\n" + name + ": | shown/" + marker + " " +
-         inputs + "; $(quiet)test -f $@ || { " + call + "; }\n";
+/// What a file with a plain name waits for. `marker` in shown/ says what it shows now: if the marker is missing the
+/// file is made anew, if the file is missing it comes back (stages.mk has both rules).
+std::string shown_lines(const std::string& name, const std::string& marker, const std::string& inputs) {
+  return "shown/" + marker + ": | " + inputs + "\n" + name + ": | shown/" + marker + " " + inputs + "\n";
 }
 
 /// Frames, their previews, the sheet, the log of a walkthrough.
 std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
   const std::string exposure = "shown/exposure-" + key_of_text(first + viewer);
-  std::string text = exposure + ": | " + first + "\n", frames, previews, markers, all = exposure + viewer;
+  std::string text = exposure + ": | " + first + "\n", frames, previews, all = exposure + viewer;
   for (const int frame : plan.frames) {
-    const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame);
-    frames += " frames/" + digits + ".exr";
-    previews += " frames/" + digits + ".png";
+    const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame), name = "frames/" + digits;
+    frames += " " + name + ".exr";
+    previews += " " + name + ".png";
     all += picture;
-    markers += " shown/" + digits + "-" + key_of_text(picture);
+    text += shown_lines(name + ".exr", digits + "-" + key_of_text(picture), picture);
     text +=
-        shown_rule("frames/" + digits + ".exr", digits + "-" + key_of_text(picture), picture, "call show," + digits);
-    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of_text(picture + exposure) + ".png",
-                       picture + " " + exposure, "call preview," + digits);
+        shown_lines(name + ".png", digits + "-" + key_of_text(picture + exposure) + ".png", picture + " " + exposure);
   }
   if (!graph.intervals.empty()) {
-    text += "log := walk.log\nintervals :=" + words_of(graph.intervals) + "\n";
-    text += shown_rule("walk.log", "walk-" + key_of_text(words_of(graph.intervals)), words_of(graph.intervals),
-                       "call walk_log");
+    const std::string intervals = words_of(graph.intervals);
+    text += "log := walk.log\n" + shown_lines("walk.log", "walk-" + key_of_text(intervals), intervals);
   }
   return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
-         shown_rule("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)" + markers, "call sheet");
+         shown_lines("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)");
 }
 
 std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
@@ -121,8 +115,7 @@ std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
     errors += " " + error;
   }
   return "report_runs :=" + runs + "\n" +
-         shown_rule("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors,
-                    "call write_report");
+         shown_lines("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors);
 }
 
 template <class Enum, std::size_t n>
