@@ -56,6 +56,7 @@ windows/%.meshirrad:
 lights/%.lightgrid:
 	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json
 
+.INTERMEDIATE: $(passing)# removed when read, not made again where what is made from it is there
 # Pixels. raw: samples in halves, for the filter, removed when a frame that is filtered alone has been; keys: for warping; smoky: with smoke put in.
 pictures/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats pictures/$*.json

@@ -118,13 +118,6 @@ std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
          shown_lines("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors);
 }
 
-template <class Enum, std::size_t n>
-Enum named(const char* const (&names)[n], const std::string& name) {
-  for (std::size_t i = 0; i < n; ++i)
-    if (name == names[i]) return Enum(i);
-  throw InputError("decisions: '" + name + "' is none that is known");
-}
-
 }  // namespace
 
 std::string decisions_text(const Decisions& decisions) { return decisions_json(decisions).dump(1) + "\n"; }
@@ -134,14 +127,14 @@ Decisions read_decisions(const std::string& text) {
     const Json json = Json::parse(text);
     Decisions d;
     d.kinds = json.at("photon_kinds").get<std::string>();
-    d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
+    d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect")).value();
     d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
     d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
-    d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));
+    d.moving = named<MovingMethod>(kMovingMethods, json.at("moving")).value();
     d.new_share = json.at("new_share");
     d.together = json.at("pictures_together");
     d.walk = json.at("walkthrough");
@@ -149,7 +142,7 @@ Decisions read_decisions(const std::string& text) {
     d.looked = json.at("looked_at").get<std::vector<int>>();
     for (const auto& [stage, because] : json.at("because").items()) d.reasons.push_back({stage, because});
     return d;
-  } catch (const nlohmann::json::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
+  } catch (const std::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
 }
 
 std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history) {
@@ -180,8 +173,6 @@ std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& 
     if (file.stage == stage::kept.name) kept += " " + beside(file.name, ".json");
     const std::string made = file.name + words_of(file.beside);
     if (file.passing) passing += " " + file.name;
-    if (file.passing)
-      text += ".INTERMEDIATE: " + file.name + "\n";  // not made again where what is made from it is there
     text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
   }
   if (!passing.empty()) text += "passing :=" + passing + "\n";
