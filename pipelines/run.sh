@@ -59,8 +59,9 @@ if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
 else
   # shellcheck disable=SC2086
   ending $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
-  plan=$aside/now.mk
-  cp "$OUT/plan.mk" "$plan" || exit   # a second make in OUT writes a plan of its own, while a walkthrough reads its plan again and again
+  plan=state/.plan.mk.tmp.$(uname -n).$$   # a walkthrough reads its plan again and again; a second make in OUT writes another one meanwhile
+  trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
+  cp "$OUT/plan.mk" "$OUT/$plan" || exit
 fi
 [ "$goal" = plan ] && exit
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
@@ -78,4 +79,4 @@ if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each st
 fi
 ending makes "$goal" -C "$folder" || exit
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
-[ -z "$film" ] || { cd "$OUT" && sh "$PIPELINES/film.sh"; }
+[ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }
