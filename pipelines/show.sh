@@ -17,33 +17,43 @@ trap 'rm -f "$part"' EXIT
 info() { ending $RUN "$BIN/tempolux-info" "$@"; }
 part_of() { part=${1%/*}/.${1##*/}.tmp.$(uname -n).$$; }   # a name that make tidy knows
 
-# The part becomes a file of frames/. Two makes that show other pictures of a frame go one after the other: the marker is that of what lies there.
-publish() {   # publish FILE OLD_MARKER...
-  exec 9> shown/.lock
-  ! command -v flock > /dev/null || flock 9
-  file=$1; shift
-  rm -f "$@"
-  mv -f "$part" "$file" && touch "$marker"
-}
+# What a file shows, as its marker holds it: digests of frames, and whatever else $1 says. A command may have made the same picture again.
+shows() { said=$1; shift; now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $("$BIN/tempolux-info" --digest "$@" | cut -d' ' -f1 | cksum)"; }
+is_shown() { [ -f "$file" ] && [ "$now" = "$(cat "$@" 2> /dev/null)" ]; }   # is_shown OLD_MARKER...
 
+# Two makes that show other pictures of a frame go one after the other: the marker is that of what lies there.
+lock() { exec 9> shown/.lock; ! command -v flock > /dev/null || flock 9; }
+publish() { rm -f "$@"; [ ! -f "$part" ] || mv -f "$part" "$file"; echo "$now" > "$marker"; }   # publish OLD_MARKER...
+
+now=
 case $marker in
   shown/exposure-*)
     part_of "$marker"
     info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" && mv -f "$part" "$marker";;
   shown/sheet-*)
-    frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
+    file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
     ! grep -q '^log :=' "$PLAN" || marks=$(sh "$PIPELINES/walkthrough.sh" marks)
-    info --sheet sheet.png --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames && info --account $frames || exit
-    rm -f shown/sheet-*
-    touch "$marker";;
+    shows "$(cat "$1") $marks $frames" $frames
+    is_shown shown/sheet-* || { info --sheet $file --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames && info --account $frames; } || exit
+    publish shown/sheet-*;;
   shown/walk-*)
     sh "$PIPELINES/walkthrough.sh" log "$@" > walk.log || exit
-    rm -f shown/walk-*
-    touch "$marker";;
+    publish shown/walk-*;;
   *.png)
-    part_of "frames/$what.png"
-    info --png "$part" --exposure "$(cat "$2")" "$1" && publish "frames/$what.png" "shown/$what"-*.png;;
+    file=frames/$what.png
+    shows "$(cat "$2")" "$1"
+    lock
+    if ! is_shown "shown/$what"-*.png; then
+      exec 9>&-
+      part_of "$file"
+      info --png "$part" --exposure "$(cat "$2")" "$1" || exit
+      lock
+    fi
+    publish "shown/$what"-*.png;;
   *)
-    part_of "frames/$what.exr"
-    cp --reflink=auto "$1" "$part" && publish "frames/$what.exr" "shown/$what"-??????????;;
+    file=frames/$what.exr
+    part_of "$file"
+    cp --reflink=auto "$1" "$part" || exit
+    lock
+    publish "shown/$what"-??????????;;
 esac

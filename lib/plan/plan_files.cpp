@@ -101,8 +101,8 @@ std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& to
     const std::string intervals = words_of(graph.intervals);
     text += "log := walk.log\n" + shown_lines("walk.log", "walk-" + key_of_text(intervals), intervals);
   }
-  return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
-         shown_lines("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)");
+  return "frames :=" + frames + "\npreviews :=" + previews + "\nviewer := tempolux-info-" + key_of_text(viewer) + "\n" +
+         text + shown_lines("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)");
 }
 
 std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
