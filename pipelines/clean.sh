@@ -11,7 +11,7 @@ for folder in state shown stands photons moved refined stands_points points spli
   [ -d "$folder" ] || continue
   find "$folder" -maxdepth 1 -type f -regextype egrep \
     -regex '[a-z_]+/([0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|warnings|files[.0-9]*|.*[.](csv|md|html|svg|png|gp))' -delete
-  rm -f "$folder/.lock"
+  rm -f "$folder/.lock" "$folder"/.*.tmp.*
   rmdir "$folder" 2> /dev/null
 done
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null

@@ -1,6 +1,7 @@
 #!/bin/sh
 # film.sh -- OUT/film.mp4 from the previews of the frames, all at one exposure. Run inside OUT by run.sh, after the frames.
 command -v ffmpeg > /dev/null || { echo 'make film: there is no ffmpeg; install it (Debian: apt-get install ffmpeg), then type this again' >&2; exit 2; }
+. "${0%/*}/ending.sh"
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 n=0
@@ -10,5 +11,5 @@ for name in $(sed -n 's/^previews := //p' plan.mk); do   # in the order asked fo
 done
 fps=$(sed -n 's/^ *"fps": *\([0-9.e+]*\),*$/\1/p' plan.json)
 # H.264 wants even sides; a row or column of black makes up for an odd one.
-ffmpeg -nostdin -v error -y -framerate "${fps:-24}" -i "$work/%06d.png" -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p "$work/film.mp4" || exit 3
+ending ffmpeg -nostdin -v error -y -framerate "${fps:-24}" -i "$work/%06d.png" -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p "$work/film.mp4" || exit 3
 cp "$work/film.mp4" film.mp4.$$ && mv -f film.mp4.$$ film.mp4 && echo "$OUT/film.mp4: $n frames, $fps a second"

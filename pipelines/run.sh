@@ -35,41 +35,39 @@ for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ER
 done
 case $SURFACES in gather) ;; textures) set -- "$@" --textures ;; *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;; esac
 # shellcheck disable=SC2086
-set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh"
+set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh" \
+  --recipes "$TOP/pipelines/show.sh"
 
 export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
+. "${0%/*}/ending.sh"
 plan=plan.mk folder=$OUT
-aside() {   # a folder that is removed at the end, by a signal too
-  aside=$(mktemp -d) || exit 3
-  trap 'rm -rf "$aside"' EXIT
-  trap 'exit 130' INT TERM
-}
-makes() { goal=$1; shift; ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"; }
+aside=$(mktemp -d) || exit 3
+trap 'rm -rf "$aside"' EXIT
+makes() { goal=$1; shift; exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"; }   # in a process of its own
 estimate() {   # options of scene-plan: the first picture, small, at two sizes
-  aside
-  $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
-  for plan in small.mk large.mk; do PROGRESS='' makes demo -s -C "$aside" > /dev/null || exit; done
+  ending $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
+  for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside"
 }
 if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
 if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
   [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
-  aside
   echo "$RUN $BIN/scene-plan $* -o $OUT"
   "$BIN/scene-plan" "$@" -o "$aside" -q || exit
   plan=$aside/plan.mk
   [ -d "$OUT" ] || folder=$aside
 else
   # shellcheck disable=SC2086
-  $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+  ending $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+  plan=state/.plan.mk.tmp.$(uname -n).$$   # a walkthrough reads its plan again and again; a second make in OUT writes another one meanwhile
+  trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
+  cp "$OUT/plan.mk" "$OUT/$plan" || exit
 fi
 [ "$goal" = plan ] && exit
-if [ -n "$dry" ]; then makes "$goal" -C "$folder"; exit; fi
+if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 
 # Which commands will run: those that make -n shows. progress.sh counts them.
-PROGRESS=$(mktemp) BEGAN=$(date +%s)
-trap 'rm -f "$PROGRESS"' EXIT
-trap 'exit 130' INT TERM
+PROGRESS=$aside/progress BEGAN=$(date +%s)
 MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"
@@ -79,6 +77,6 @@ if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each st
   (estimate "$@")
   df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
 fi
-makes "$goal" -C "$folder" || exit
+ending makes "$goal" -C "$folder" || exit
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
-[ -z "$film" ] || { cd "$OUT" && sh "$PIPELINES/film.sh"; }
+[ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }

@@ -14,7 +14,7 @@ shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-co
 scene  = "$$SCENE" $(words) $(shared)
 seen   = $(scene) --camera "$$CAMERA"
 quiet  = $(if $V,,@)
-run    = $(quiet)$(say)$(RUN) "$$BIN"
+run    = $(quiet)$(say)exec $(RUN) "$$BIN"# exec: what stops make stops the command
 say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
 .SUFFIXES:
 .PHONY: demo report
@@ -56,13 +56,14 @@ windows/%.meshirrad:
 lights/%.lightgrid:
 	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json
 
+.INTERMEDIATE: $(passing)# removed when read, not made again where what is made from it is there
 # Pixels. raw: samples in halves, for the filter, removed when a frame that is filtered alone has been; keys: for warping; smoky: with smoke put in.
 pictures/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats pictures/$*.json
 raw/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats raw/$*.json
 filtered/%.exr:
-	$(quiet)test -f $@ || { $(say)$(RUN) "$$BIN"/st-filter $(words) -o $@ --stats filtered/$*.json; } || test -f $@
+	$(quiet)test -f $@ || { $(say). "$$PIPELINES/ending.sh" && ending $(RUN) "$$BIN"/st-filter $(words) -o $@ --stats filtered/$*.json; } || test -f $@
 	$(quiet)rm -f $(filter $(passing),$|)
 smoky/%.exr:
 	$(run)/volume-compose $(seen) -o $@ --stats smoky/$*.json
@@ -72,33 +73,29 @@ keys/%.exr:
 walk/%.done:
 	$(walk_rule)
 walked/%.exr:
-	$(quiet)$(say)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+	$(quiet)$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
 # make runs a line that names $(MAKE) even for -n: here it stands in a variable.
-walk_rule = $(if $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS)))),,+)$(quiet)$(say)MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' \
+walk_rule = $(if $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS)))),,+)$(quiet)$(say)exec env MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' \
   SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
-# A frame shows a picture; shown/FRAME-KEY says which. Frames that show the same are copies of one.
-picture = $(filter-out shown/%,$|)
-show = cp --reflink=auto $(picture) frames/.$1.$$$$ && $(publish) 'rm -f shown/$1-??????????; mv -f frames/.'$1.$$$$' frames/$1.exr && touch $2'
-# Two makes that publish other pictures of a frame: one after the other, so that the key is that of what lies there.
-publish = $(if $(shell command -v flock),flock shown/.lock) sh -c
-# To look at, at one exposure for the whole sequence: the one that suits the first frame.
-shown/exposure-%:
-	$(quiet)$(RUN) "$$BIN"/tempolux-info $| --json | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$$/\1/p' | grep . > $@.$$$$ && mv -f $@.$$$$ $@
-exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
-preview = $(RUN) "$$BIN"/tempolux-info --png frames/.$1.$$$$.png $(exposure) $(picture) && \
-  $(publish) 'rm -f shown/$1-*.png; mv -f frames/.'$1.$$$$'.png frames/$1.png && touch $2'
-sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && $(RUN) "$$BIN"/tempolux-info --account $(frames) && touch $1
-# A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
-marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
-walk_log = rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch $1
+# What a user looks at: frames, previews, the sheet, a walkthrough's log (show.sh). shown/WHAT-KEY says what a file shows now: a marker that is missing
+# makes its file anew, and a file that was removed comes back.
+show = exec env PLAN="$(PLAN)" sh "$$PIPELINES/show.sh" $(firstword $(filter shown/%,$@ $|)) $(filter-out $(frames) $(firstword $(filter shown/%,$@ $|)),$|)
+shown/%:
+	$(quiet)$(show)
+$(frames) $(previews) sheet.png walk.log:
+	$(quiet)test -f $@ || $(show)
 
 # How wrong is a frame, against path tracing in two halves whose noise is known? And what did it cost, all stages counted?
 path/%.exr path/%_a.exr path/%_b.exr:
 	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
-write_report = $(RUN) "$$BIN"/error-report -o report $(report_runs) && rm -f shown/report-* && touch $1
+write_report = $(RUN) "$$BIN"/error-report -o report $(report_runs) && rm -f shown/report-* && touch $(filter shown/%,$@ $|)
+shown/report-%:
+	$(quiet)$(write_report)
+report/index.html:
+	$(quiet)test -f $@ || { $(write_report); }
 report: report/index.html
 	@cat report/report.md
 	$(if $(kept),@awk -f "$$PIPELINES/temporal_report.awk" $(kept))

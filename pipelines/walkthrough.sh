@@ -11,13 +11,14 @@
 # filter writes; "-": it is not filtered.
 # The environment has BIN, RUN, SHARED, CAMERA and MAKE_FILES, the command that makes files of the plan.
 set -e
+. "${0%/*}/ending.sh"
 command=$1; shift
 
 frame_of() { name=${1##*/}; echo "${name%%-*}"; }       # keys/0012-3fa94c21d0.exr -> 0012
 number() { n=${1#"${1%%[!0]*}"}; echo "${n:-0}"; }      # 0012 -> 12
 count_of() { sed -n "s/^ *\"$1\": *\([0-9.e+-]*\),*\$/\1/p" "$2" | head -n 1; }
 percent() { awk "BEGIN { printf \"%.1f%%\", 100 * $1 / $2 }"; }
-tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; $RUN "$BIN/$name" "$@"; }   # SHARED: options in quotes, names in variables
+tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; ending $RUN "$BIN/$name" "$@"; }   # SHARED: options in quotes, names in variables
 warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
@@ -28,7 +29,7 @@ differ() {
   warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
   code=0
-  $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" --fail-by aqm --fail-above "$threshold" \
+  ending $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" --fail-by aqm --fail-above "$threshold" \
     --quiet --json "$2/compare.json" || code=$?
   [ $code -le 1 ] || exit $code
   seen="$seen $(count_of percent "$2/compare.json")"
@@ -63,12 +64,13 @@ interval() {
   try=$target.try.$$
   mkdir -p "$try"
   trap 'rm -rf "$try"' EXIT
-  line=$(decide "$a" "$b" "$middle" "$threshold" "$try")
+  decide "$a" "$b" "$middle" "$threshold" "$try" > "$try/line"
+  line=$(cat "$try/line")
   echo "$line" >&2
   case $line in
     *split) halves=
             for half in "$left" "$right"; do [ "$half" = - ] || halves="$halves $half"; done
-            eval "$MAKE_FILES $middle_key $halves"
+            eval "ending $MAKE_FILES $middle_key $halves"
             echo "split $middle $middle_key $left $right" > "$try/done" ;;
     *)      echo "warp $a $b" > "$try/done" ;;
   esac
@@ -82,13 +84,13 @@ frame() {
     if [ "$frame" = "$x" ]; then cp "$y" "$target.part.$$" && mv "$target.part.$$" "$target"; return; fi
     if [ "$(number "$frame")" -lt "$(number "$x")" ]; then interval=$left; else interval=$right; fi
   done
-  part=${target%.exr}.part
+  part=${target%.exr}.part.$$
   trap 'rm -f "$part".*' EXIT
   n=$(number "$frame")
   warp "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" --compression none --stats "${target%.exr}.warp.json"
   if [ "$channels" = - ]; then completed=$target; else completed=$part.raw.exr; set -- "$@" --compression none; fi
   tool frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" --mask "$part.mask.exr" -o "$completed" --stats "${target%.exr}.json"
-  [ "$channels" = - ] || $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
+  [ "$channels" = - ] || ending $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
 }
 
 # What was decided, halves after the whole.

@@ -43,16 +43,11 @@ void remove_left_overs(tools::Tool& tool, const Options& options) {
   tool.stats().count("removed", double(tidied.removed));
 }
 
-template <std::size_t n>
-std::size_t index_of(const char* const (&names)[n], const std::string& name) {
-  return std::size_t(std::ranges::find(names, name) - std::begin(names));
-}
-
 /// The wish in full, its words checked.
 Wish wish_of(tools::Tool& tool, const Options& options) {
   Wish wish = options.wish;
-  wish.quality = Quality(index_of(kQualities, options.quality));
-  wish.method = FrameMethod(index_of(kFrameMethods, options.method));
+  wish.quality = *named<Quality>(kQualities, options.quality);
+  wish.method = *named<FrameMethod>(kFrameMethods, options.method);
   wish.filter = options.filter == "auto" ? Wish::kAutoFilter : options.filter == "none" ? 0 : std::stoi(options.filter);
   wish.camera = tool.common().camera;
   // Of the options that all stages share those that states of the scene do not hold.

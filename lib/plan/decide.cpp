@@ -122,10 +122,6 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
   return kinds;
 }
 
-IndirectMethod method_named(const std::string& name) {
-  return IndirectMethod(std::ranges::find(kIndirectMethods, name) - std::begin(kIndirectMethods));
-}
-
 /// Joins what the looked frames ask for; media are lit by photons, which points read, too.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
   std::vector<std::vector<Way>> of_frames;
@@ -142,9 +138,10 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
   });
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
   // Where no surface with a Lambert lobe is seen paths are the one way there is.
-  const Way way = !ways.empty() ? ways.front()
-                                : Way{wish.indirect != "auto" ? method_named(wish.indirect) : IndirectMethod::gather,
-                                      false, wish.rays, 0, 0};
+  const Way way = !ways.empty()
+                      ? ways.front()
+                      : Way{named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather),
+                            false, wish.rays, 0, 0};
   d.indirect = way.method;
   d.caustic_map = way.map;
   d.record_rays = way.rays;
@@ -163,10 +160,6 @@ void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
   d.split = choice.split && d.moving != MovingMethod::records;
   d.reasons.push_back(
       {"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
-}
-
-MovingMethod moving_named(const std::string& name) {
-  return MovingMethod(std::ranges::find(kMovingMethods, name) - std::begin(kMovingMethods));
 }
 
 /// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are
@@ -193,10 +186,11 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
   if (wish.moving == "anew") return anew("--moving anew");
   const double together = std::min(double(d.together), double(segment.pictures().size())),
                standing = d.records_of(together) / together;
-  const MovingChoice choice = wish.moving == "auto"
-                                  ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(),
-                                                  states.size(), standing)
-                                  : MovingChoice{moving_named(wish.moving), "--moving " + wish.moving};
+  const MovingChoice choice =
+      wish.moving == "auto"
+          ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(),
+                          standing)
+          : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
   d.reasons.push_back({name, choice.because});

@@ -1,7 +1,10 @@
 // lib/plan/decisions.h -- what is decided for a segment, and what the user has wished.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,13 @@ inline constexpr const char* kQualities[] = {"draft", "final"};
 
 enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview };
 inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview"};
+
+/// The value that has this name in a list of names by value; none: it is none of them.
+template <class Enum, std::size_t n>
+std::optional<Enum> named(const char* const (&names)[n], const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  return found == std::end(names) ? std::nullopt : std::optional(Enum(found - std::begin(names)));
+}
 
 /// A preview's elements collect photons over this many frames at most, those before, at and after a frame.
 inline constexpr int kPreviewWindow = 33;

@@ -94,12 +94,14 @@ class Builder {
   }
 
  private:
-  /// A raw picture is large: the command that reads it removes it. One that two commands read stays, as either may be the first.
+  /// A raw picture is large: the command that reads it removes it. One that two commands read stays, as either may be
+  /// the first.
   void remove_when_read() {
     std::map<std::string, int> readers;
     for (const GraphFile& file : graph_.files)
       for (const std::string& input : file.inputs) ++readers[input];
-    for (GraphFile& file : graph_.files) file.passing = wish_.filter == 1 && file.stage == stage::raw.name && readers[file.name] == 1;
+    for (GraphFile& file : graph_.files)
+      file.passing = wish_.filter == 1 && file.stage == stage::raw.name && readers[file.name] == 1;
   }
 
   const PlannedSegment& segment(int frame) const { return plan_.segment_of(frame); }

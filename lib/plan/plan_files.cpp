@@ -77,38 +77,32 @@ std::string words_of(const std::vector<std::string>& names) {
 
 std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
 
-/// Rules for a file with a plain name. `marker` in shown/ says what it shows now; if the marker is missing the file is
-/// made anew, if the file is missing it comes back. `recipe`: a variable of stages.mk.
-std::string shown_rule(const std::string& name, const std::string& marker, const std::string& inputs,
-                       const std::string& recipe) {
-  const std::string call = "$(" + recipe + ",shown/" + marker + ")";
-  return "shown/" + marker + ": | " + inputs + "; $(quiet)" + call + "\n" + name + ": | shown/" + marker + " " +
-         inputs + "; $(quiet)test -f $@ || { " + call + "; }\n";
+/// What a file with a plain name waits for. `marker` in shown/ says what it shows now: if the marker is missing the
+/// file is made anew, if the file is missing it comes back (stages.mk has both rules).
+std::string shown_lines(const std::string& name, const std::string& marker, const std::string& inputs) {
+  return "shown/" + marker + ": | " + inputs + "\n" + name + ": | shown/" + marker + " " + inputs + "\n";
 }
 
 /// Frames, their previews, the sheet, the log of a walkthrough.
 std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
   const std::string exposure = "shown/exposure-" + key_of_text(first + viewer);
-  std::string text = exposure + ": | " + first + "\n", frames, previews, markers, all = exposure + viewer;
+  std::string text = exposure + ": | " + first + "\n", frames, previews, all = exposure + viewer;
   for (const int frame : plan.frames) {
-    const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame);
-    frames += " frames/" + digits + ".exr";
-    previews += " frames/" + digits + ".png";
+    const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame), name = "frames/" + digits;
+    frames += " " + name + ".exr";
+    previews += " " + name + ".png";
     all += picture;
-    markers += " shown/" + digits + "-" + key_of_text(picture);
+    text += shown_lines(name + ".exr", digits + "-" + key_of_text(picture), picture);
     text +=
-        shown_rule("frames/" + digits + ".exr", digits + "-" + key_of_text(picture), picture, "call show," + digits);
-    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of_text(picture + exposure) + ".png",
-                       picture + " " + exposure, "call preview," + digits);
+        shown_lines(name + ".png", digits + "-" + key_of_text(picture + exposure) + ".png", picture + " " + exposure);
   }
   if (!graph.intervals.empty()) {
-    text += "log := walk.log\nintervals :=" + words_of(graph.intervals) + "\n";
-    text += shown_rule("walk.log", "walk-" + key_of_text(words_of(graph.intervals)), words_of(graph.intervals),
-                       "call walk_log");
+    const std::string intervals = words_of(graph.intervals);
+    text += "log := walk.log\n" + shown_lines("walk.log", "walk-" + key_of_text(intervals), intervals);
   }
-  return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
-         shown_rule("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)" + markers, "call sheet");
+  return "frames :=" + frames + "\npreviews :=" + previews + "\nviewer := tempolux-info-" + key_of_text(viewer) + "\n" +
+         text + shown_lines("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)");
 }
 
 std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
@@ -121,15 +115,7 @@ std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
     errors += " " + error;
   }
   return "report_runs :=" + runs + "\n" +
-         shown_rule("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors,
-                    "call write_report");
-}
-
-template <class Enum, std::size_t n>
-Enum named(const char* const (&names)[n], const std::string& name) {
-  for (std::size_t i = 0; i < n; ++i)
-    if (name == names[i]) return Enum(i);
-  throw InputError("decisions: '" + name + "' is none that is known");
+         shown_lines("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors);
 }
 
 }  // namespace
@@ -141,14 +127,14 @@ Decisions read_decisions(const std::string& text) {
     const Json json = Json::parse(text);
     Decisions d;
     d.kinds = json.at("photon_kinds").get<std::string>();
-    d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
+    d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect")).value();
     d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
     d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
-    d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));
+    d.moving = named<MovingMethod>(kMovingMethods, json.at("moving")).value();
     d.new_share = json.at("new_share");
     d.together = json.at("pictures_together");
     d.walk = json.at("walkthrough");
@@ -156,7 +142,7 @@ Decisions read_decisions(const std::string& text) {
     d.looked = json.at("looked_at").get<std::vector<int>>();
     for (const auto& [stage, because] : json.at("because").items()) d.reasons.push_back({stage, because});
     return d;
-  } catch (const nlohmann::json::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
+  } catch (const std::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
 }
 
 std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history) {
@@ -187,8 +173,6 @@ std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& 
     if (file.stage == stage::kept.name) kept += " " + beside(file.name, ".json");
     const std::string made = file.name + words_of(file.beside);
     if (file.passing) passing += " " + file.name;
-    if (file.passing)
-      text += ".INTERMEDIATE: " + file.name + "\n";  // not made again where what is made from it is there
     text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
   }
   if (!passing.empty()) text += "passing :=" + passing + "\n";

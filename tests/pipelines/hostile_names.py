@@ -61,6 +61,10 @@ def file_name(name, role):
     return os.fsdecode(b"n" * (255 - len(end)) + end if stem == b"long" else stem + end)
 
 
+def out_folder(names):
+    return names["OUT"].lstrip(" ")                                                  # make leaves out blanks between = and a value
+
+
 class Trial:
     def __init__(self, folder, tools, makefile):
         self.folder, self.tools, self.makefile = folder, tools, makefile
@@ -114,8 +118,8 @@ class Trial:
             code, said = done.returncode, done.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired:
             return None, "no end after 30 s", None
-        frame = work / names["OUT"] / "frames" / "0000.exr"
-        digest = subprocess.run([self.tools / "tempolux-info", "--digest", frame], capture_output=True, text=True).stdout.split()
+        frame = work / out_folder(names) / "frames" / "0000.exr"
+        digest = subprocess.run([self.tools / "tempolux-info", "--digest", frame], capture_output=True, text=True, errors="replace").stdout.split()
         return code, said, digest[0] if digest else None
 
     def run(self, role, name, expected):
@@ -134,7 +138,7 @@ class Trial:
             code, said, digest = self.make(work, role, name)
             if self.sentinel.exists():
                 return "A COMMAND RAN", said
-            new = {os.fsencode(p) for p in os.listdir(work)} - before - {os.fsencode((PLAIN | {role: name})["OUT"])}
+            new = {os.fsencode(p) for p in os.listdir(work)} - before - {os.fsencode(out_folder(PLAIN | {role: name}))}
             if new:
                 return f"other files were made: {sorted(new)}", said
             if code == 2:

@@ -6,7 +6,8 @@ SIZE, CAMERA, POINTS, the length of a segment, or edits the scene, a texture, th
 state, or loses files of OUT. Then make runs in the one OUT. Every wanted file (frames/F.exr and .png, sheet.png) must be what a new OUT gets for that state; a state
 is made anew once. A frame must not depend on the other frames that are asked for.
 
-What ran is compared, too. A command is too much if all it wrote was there with the same digest for that frame, or if a new OUT has none of it.
+What ran is compared, too. A command is too much if a new OUT has nothing of what it wrote, or if all of it was there with the same digest for that
+frame, made by the same program with the same options from the same content. How often all of it was there, whatever made it, is printed beside.
 A second make at once must run nothing but scene-plan. In walks of 100 steps and more at most 5 % of the commands may be too much; they are listed.
 
 A failure prints the shortest list of states that shows it; --replay FILE walks such a list again. --known walks the lists that went wrong once.
@@ -49,7 +50,7 @@ VALUES = {
     "POINTS": ["--point-count 500 --light-samples 1", "--point-count 400 --light-samples 1"],
     "TIME": ["--segment 4", "--segment 8"],
 }
-OF_SMOKE = {"UPDATE": ["", "20%"], "SURFACES": ["", "textures"]}
+OF_SMOKE = {"MOVING": ["", "", "anew", "auto", "light"], "UPDATE": ["", "20%"], "SURFACES": ["", "textures"]}
 SEEDED = ["photon-trace", "irradcache-build", "frame-render"]        # replaced by one that takes another seed
 # How a file that an edit changes is put in place.
 WAYS = ["renamed", "in place", "older", "kept"]
@@ -207,7 +208,7 @@ class Workplace:
         if self.scene == "open":
             values["ENVIRONMENT"] = str(self.files / "sky.hdr")
         if self.scene == "smoke":
-            values |= {"VOLUME": str(self.files / "smoke_####.vdb"), "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8"}
+            values |= {"VOLUME": str(self.files / "smoke_####.vdb"), "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-7"}
         values |= {"SCENE": str(self.files / walk_scenes.scene_file(self.scene)), "OUT": str(out), "BIN": str(self.bin),
                    "RUN": f"sh {self.record} {self.log}"}
         return ["make", "-f", self.makefile, "--no-print-directory", "demo", *(f"{name}={value}" for name, value in values.items())]
@@ -257,7 +258,13 @@ def written(command, out):
     if command[0] == "cp":
         names.append(command[-1])
     full = [re.sub("####", f"{f:04d}", name) for name in names for f in (frames if "####" in name else [0])]
-    return [os.path.relpath(out / name, out) for name in full if not name.endswith(".json")]
+    return [final(os.path.relpath(out / name, out)) for name in full if not name.endswith(".json")]
+
+
+def final(name):
+    """What a file becomes that a rule writes beside it first: frames/.0012.png.tmp.HOST.31, walk/K.done.try.31/w.exr, walked/K.part.31.warp.exr."""
+    name = re.sub(r"[.]done[.]try[.].*", ".done", re.sub(r"[.]part[.].*", ".exr", name))
+    return re.sub(r"^frames/[.](.*)[.]tmp[.].*", r"frames/\1", name)
 
 
 def reads(command, option):
@@ -277,12 +284,13 @@ class Walker:
         self.place = Workplace(folder / scene, tools, makefile, scene)
         self.out, self.fresh = self.place.folder / "out", fresh
         self.known, self.ranges, self.refused = {}, [], 0                            # of OUT: {path: (what stat says, digest)}
-        self.ran = self.too_much = 0
-        self.named = collections.Counter()
+        self.ran = self.too_much = self.same = 0
+        self.requests = set()                                                        # all that ran in OUT: program, options, content of inputs
+        self.named, self.changes = collections.Counter(), collections.Counter()
 
     def restart(self):
         shutil.rmtree(self.out, ignore_errors=True)
-        self.known = {}
+        self.known, self.requests = {}, set()
 
     def lose(self, share):
         """Deletes some of the files, the same ones for the same names. What a file lacks is made again."""
@@ -328,8 +336,8 @@ class Walker:
                 if first[0] != digest:
                     self.ranges.append(f"{name}: FRAMES={frames} and FRAMES={first[1]}, each in a new OUT, differ")
 
-    def step(self, state, again=False):
-        """Makes a state. Returns what is wrong, as lines."""
+    def step(self, state, again=False, why=""):
+        """Makes a state. Returns what is wrong, as lines. `why`: what has changed."""
         self.place.edit(state)
         self.lose(state.get("lose", 0))
         before = {os.path.relpath(p, self.out): d for p, (_, d) in self.known.items() if p.exists()}
@@ -345,7 +353,7 @@ class Walker:
             return ranges + [f"make failed with {code}, a new OUT is made:", *("  " + line for line in text.splitlines()[-6:])]
         now = self.look()
         wrong = ranges + [f"{name}: {'missing' if name not in now else 'other than in a new OUT'}" for name, digest in sorted(expected.items()) if now.get(name) != digest]
-        self.count(commands, before, now, rest)
+        self.count(commands, before, now, rest, why)
         if again and not wrong:
             _, _, second = self.place.make(state, self.out)
             extra = [" ".join(os.path.relpath(w, self.out) if w.startswith(str(self.out)) else w for w in c[:1] + written(c, self.out))
@@ -353,19 +361,24 @@ class Walker:
             wrong += [f"made again at once, it runs {x}" for x in extra[:3]]
         return wrong
 
-    def count(self, commands, before, now, needed):
-        there = {(place(name), digest) for name, digest in before.items()}
+    def count(self, commands, before, now, needed, changes):
+        there, requests = {(place(name), digest) for name, digest in before.items()}, set()
         for command in commands:
             tool, names = os.path.basename(command[0]), [n for n in written(command, self.out) if not n.startswith("plan")]
             if tool == "scene-plan" or not names:
                 continue
             self.ran += 1
             useless = [n for n in names if n in now and (place(n), now[n]) in there]
-            unneeded = [n for n in names if n not in needed]
-            if len(useless) == len([n for n in names if n in now]) > 0 or len(unneeded) == len(names):
+            unneeded = len([n for n in names if n not in needed]) == len(names)
+            same = len(useless) == len([n for n in names if n in now]) > 0
+            request = (self.place.tools_now.get(tool, 0), *(now.get(word) or re.sub("-[0-9a-f]{10}", "", final(word)) for word in command))
+            self.same += same
+            if unneeded or (same and request in self.requests):
                 self.too_much += 1
-                why = "same result" if len(unneeded) < len(names) else "not needed"
-                self.named[f"{tool} {names[0].split('/')[0]}: {why}"] += 1
+                self.named[f"{tool} {names[0].split('/')[0]}: {'not needed' if unneeded else 'same result'}"] += 1
+                self.changes[changes] += 1
+            requests.add(request)
+        self.requests |= requests
 
 
 # ---- walks -------------------------------------------------------------------------------------------
@@ -402,7 +415,7 @@ def follow(walker, title, states, shorten):
     walker.restart()
     for number, state in enumerate(states):
         since.append(state)
-        wrong = walker.step(state, again=number % 5 == 4)
+        wrong = walker.step(state, number % 5 == 4, words(since[-2] if len(since) > 1 else state, state))
         if wrong:
             failures += 1
             print(f"FAILED: {title}, step {number} ({words(since[-2] if len(since) > 1 else state, state)})")
@@ -439,20 +452,21 @@ def main():
     else:
         lists = {scene: walk(scene, arguments.steps // len(scenes), arguments.seed) for scene in scenes}
     failures, started = 0, time.monotonic()
-    ran = too_much = 0
-    named, fresh = collections.Counter(), {}
+    ran = too_much = same = 0
+    named, changes, fresh = collections.Counter(), collections.Counter(), {}
     with tempfile.TemporaryDirectory(prefix="walk") as folder:
         for number, (title, states) in enumerate(lists.items()):
             walker = Walker(Path(folder) / str(number), tools, arguments.makefile, states[0]["scene"], fresh)
             wrong = follow(walker, title, states, not arguments.whole)
             print(f"{'FAILED' if wrong else 'ok'}: {title}: {len(states)} states, {wrong} wrong, {walker.refused} refused; {walker.ran} commands, {walker.too_much} too much", flush=True)
-            failures, ran, too_much, named = failures + wrong, ran + walker.ran, too_much + walker.too_much, named + walker.named
+            failures, ran, too_much, same = failures + wrong, ran + walker.ran, too_much + walker.too_much, same + walker.same
+            named, changes = named + walker.named, changes + walker.changes
     share = 100 * too_much / max(ran, 1)
     # One change of the segments' length remakes 27 commands, 5 % of those of 40 steps: the share is that of a long walk.
     judged = sum(len(states) for states in lists.values()) >= 100
     print(f"{'not judged, too short' if not judged else 'ok' if share <= 5 else 'FAILED'}: {too_much} of {ran} commands ({share:.1f} %) were too much; "
-          "5 % are allowed")
-    for name, count in named.most_common(12):
+          f"5 % are allowed. All that they wrote was there: {same} commands")
+    for name, count in named.most_common(12) + changes.most_common(12):
         print(f"  {count:4d}  {name}")
     spent = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"{spent.ru_utime + spent.ru_stime:.0f} CPU seconds, {time.monotonic() - started:.0f} s")

@@ -9,7 +9,7 @@ for word; do
 done
 [ $tool = scene-plan ] && exec "$@"   # looks at every run
 output=$(echo "$output" | sed 's/-[0-9a-f]\{10\}//')   # without its key
-output=$(echo "$output" | sed 's|^[.]\([0-9]*\)[.][0-9]*[.]png|\1.png|')
+output=$(echo "$output" | sed 's|^[.]\(.*\)[.]tmp[.].*|\1|')
 case $output in report | stdout | sheet.png) ;; *) output=$folder/$output ;; esac
 echo "$tool $output" >> "$log"
 exec "$@"

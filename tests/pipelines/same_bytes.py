@@ -69,9 +69,11 @@ def same_bytes(tools, folder, size):
     return failed
 
 
-def same_means(tools, folder, size, frames_of, small):
+def same_means(tools, folder, size, frames_of, small, only):
     failed = 0
     for name, looked in frames_of.items():
+        if only not in name:
+            continue
         scene = CASES / f"{name}.glb"
         if not scene.exists():
             print(f"left out: {scene} is not there")
@@ -101,16 +103,17 @@ def main():
     parser.add_argument("bin", type=Path)
     parser.add_argument("--size", default="48x27")
     parser.add_argument("--long", action="store_true")
+    parser.add_argument("--only", default="", help="bytes, late, blink or passer")
     arguments = parser.parse_args()
     tools = arguments.bin.resolve()
     with tempfile.TemporaryDirectory(prefix="bytes") as folder:
         folder = Path(folder)
-        failed = same_bytes(tools, folder, arguments.size)
+        failed = same_bytes(tools, folder, arguments.size) if arguments.only in "bytes" else 0
         if arguments.long:
             looked = {"late": range(24, 48), "blink": range(0, 17), "passer": range(0, 24)}
-            failed += same_means(tools, folder, "160x90", {name: list(frames) for name, frames in looked.items()}, {"QUALITY": "draft"})
+            failed += same_means(tools, folder, "160x90", {name: list(frames) for name, frames in looked.items()}, {"QUALITY": "draft"}, arguments.only)
         else:
-            failed += same_means(tools, folder, "64x36", LOOKED, SMALL)
+            failed += same_means(tools, folder, "64x36", LOOKED, SMALL, arguments.only)
     return 1 if failed else 0
 
 

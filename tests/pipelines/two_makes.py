@@ -5,7 +5,8 @@ Run at the top of the tree; BIN is the folder with the tools. All of it in small
 make ran once and alone:
 
   together   two makes in one OUT at once, with the same wishes and with different ones
-  killed     make and all it started are killed at a random moment, by SIGKILL, SIGTERM or SIGINT; then make runs to its end
+  killed     make and all it started are killed at a random moment, by SIGKILL, SIGTERM or SIGINT, or make alone gets SIGTERM: then all that it
+             started has ended before it, and has left no temporary file; then make runs to its end
   replaced   inputs are replaced by others with an older time, as cp -p does
   clocks     files of OUT, or the inputs, are two hours ahead or behind, as by a file server or a second machine: nothing is made again that
              was right, and an edit is noticed
@@ -13,6 +14,7 @@ make ran once and alone:
 import argparse
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -97,16 +99,43 @@ def together(trial):
         trial.finish(f"{what}, then the other", second)
 
 
+def processes_of(group):
+    """Names of the processes in a group that have not ended."""
+    names = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            name, state, _, its_group = re.match(r"\d+ \((.*)\) (\S) (\d+) (\d+)", stat.read_text()).groups()
+        except (OSError, AttributeError):
+            continue
+        names += [name] if int(its_group) == group and state != "Z" else []
+    return names
+
+
+def stopped(trial, make, what):
+    """make alone gets SIGTERM. What it started ends first."""
+    make.terminate()
+    make.wait(timeout=60)
+    if left := processes_of(make.pid):
+        trial.wrong(f"{what}: {left} go on")
+        os.killpg(make.pid, signal.SIGKILL)
+    make.communicate(timeout=60)
+    if left := [str(p.relative_to(trial.out)) for p in trial.out.rglob("*") if re.search(r"^[.].*[.]tmp[.]|[.]part[.]|[.]try[.]", p.name)]:
+        trial.wrong(f"{what}: left are {left[:3]}")
+
+
 def killed(trial, count, rng):
     for number in range(count):
         trial.empty()
-        moment, name = rng.uniform(0, 1.2 * trial.seconds), rng.choice(["SIGKILL", "SIGKILL", "SIGTERM", "SIGINT"])
+        moment, name = rng.uniform(0, 1.2 * trial.seconds), rng.choice(["SIGKILL", "SIGTERM", "SIGINT", "make alone", "make alone"])
         make = trial.start(trial.state)
         try:
             make.communicate(timeout=moment)
         except subprocess.TimeoutExpired:
-            os.killpg(make.pid, getattr(signal, name))
-            make.communicate(timeout=60)
+            if name == "make alone":
+                stopped(trial, make, f"{name} after {moment:.2f} s")
+            else:
+                os.killpg(make.pid, getattr(signal, name))
+                make.communicate(timeout=60)
         trial.finish(f"{name} after {moment:.2f} s")
     ran = trial.finish("finished, then again")
     if ran:

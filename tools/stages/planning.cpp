@@ -70,7 +70,7 @@ void remove_expired(const std::string& folder, const std::set<std::string>& name
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder + "/" + sub, error)) {
       const std::string name = entry.path().filename().string(), stem = name.substr(0, name.find_first_of("._"));
-      if (has_key(stem) && !named.contains(sub + "/" + stem)) fs::remove(entry.path(), error);
+      if (has_key(stem) && !named.contains(sub + "/" + stem)) fs::remove_all(entry.path(), error);
     }
   }
 }

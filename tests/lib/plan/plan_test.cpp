@@ -301,6 +301,32 @@ TEST(Graph, NothingIsWarpedIntoAFrameOfOtherLight) {
   for (const int key : {0, 2, 3, 4, 8}) EXPECT_TRUE(graph.pictures.at(key).starts_with("keys/")) << key;
 }
 
+/// The camera walks through two segments of four frames; warping pays in the first alone. Frame 4 is a key of 0 to 4
+/// with the channels of keys, and is shown with those of the wish: two filters read its raw picture, and either may
+/// come first.
+TEST(Graph, ARawPictureThatTwoCommandsReadIsRemovedByNeither) {
+  Scene scene = still_room();
+  slide(scene, kCamera, {0, 1, 2, 3, 4, 5, 6, 7});
+  Wish wish;
+  wish.method = FrameMethod::automatic;
+  wish.filter = 1;
+  wish.key_distance = 4;
+  Plan plan = plan_of(scene, {2, 4, 5}, 4, helper_frames({2, 4, 5}, wish));
+  plan.segments.at(0).decisions.walk = true;
+  const Graph graph = make_graph(plan, with_preset(wish), [](const std::string& tool) { return tool; }, {});
+  std::map<std::string, int> readers;
+  for (const GraphFile& file : graph.files)
+    for (const std::string& input : file.inputs) ++readers[input];
+  EXPECT_EQ(readers.at(file_of(graph, "raw/0004").name), 2);
+  EXPECT_FALSE(file_of(graph, "raw/0004").passing);
+  EXPECT_EQ(readers.at(file_of(graph, "raw/0005").name), 1);
+  EXPECT_TRUE(file_of(graph, "raw/0005").passing);
+  const std::string text = plan_makefile(plan, graph, [](const std::string& tool) { return tool; });
+  const std::size_t list = text.find("passing :=");
+  ASSERT_NE(list, std::string::npos);
+  EXPECT_EQ(text.substr(list, text.find('\n', list) - list).find("raw/0004"), std::string::npos);
+}
+
 TEST(PlanFiles, NoWordOfTheSceneReachesMake) {
   Scene scene = still_room();
   scene.path = "$(shell touch X).glb";

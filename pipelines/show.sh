@@ -1,0 +1,59 @@
+#!/bin/sh
+# show.sh MARKER INPUT... -- makes what a user looks at. MARKER is a file shown/WHAT-KEY, which says what is shown now. Run inside OUT by stages.mk.
+#
+#     shown/0012-KEY PICTURE                frames/0012.exr, a copy
+#     shown/0012-KEY.png PICTURE EXPOSURE   frames/0012.png
+#     shown/exposure-KEY PICTURE            the marker holds the exposure that suits the picture. One for all frames: brightness does not jump
+#     shown/sheet-KEY EXPOSURE              sheet.png, all frames of plan.mk; a walkthrough's keys have a border. Prints the account of the frames
+#     shown/walk-KEY INTERVAL...            walk.log, where keys were placed and why
+#
+# The environment has BIN, RUN, PIPELINES and PLAN.
+. "${0%/*}/ending.sh"
+marker=$1; shift
+what=${marker#shown/}
+what=${what%-*}
+part=
+trap 'rm -f "$part"' EXIT
+info() { ending $RUN "$BIN/tempolux-info" "$@"; }
+part_of() { part=${1%/*}/.${1##*/}.tmp.$(uname -n).$$; }   # a name that make tidy knows
+
+# What a file shows, as its marker holds it: digests of frames, and whatever else $1 says. A command may have made the same picture again.
+shows() { said=$1; shift; now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $("$BIN/tempolux-info" --digest "$@" | cut -d' ' -f1 | cksum)"; }
+is_shown() { [ -f "$file" ] && [ "$now" = "$(cat "$@" 2> /dev/null)" ]; }   # is_shown OLD_MARKER...
+
+# Two makes that show other pictures of a frame go one after the other: the marker is that of what lies there.
+lock() { exec 9> shown/.lock; ! command -v flock > /dev/null || flock 9; }
+publish() { rm -f "$@"; [ ! -f "$part" ] || mv -f "$part" "$file"; echo "$now" > "$marker"; }   # publish OLD_MARKER...
+
+now=
+case $marker in
+  shown/exposure-*)
+    part_of "$marker"
+    info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" && mv -f "$part" "$marker";;
+  shown/sheet-*)
+    file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
+    ! grep -q '^log :=' "$PLAN" || marks=$(sh "$PIPELINES/walkthrough.sh" marks)
+    shows "$(cat "$1") $marks $frames" $frames
+    is_shown shown/sheet-* || { info --sheet $file --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames && info --account $frames; } || exit
+    publish shown/sheet-*;;
+  shown/walk-*)
+    sh "$PIPELINES/walkthrough.sh" log "$@" > walk.log || exit
+    publish shown/walk-*;;
+  *.png)
+    file=frames/$what.png
+    shows "$(cat "$2")" "$1"
+    lock
+    if ! is_shown "shown/$what"-*.png; then
+      exec 9>&-
+      part_of "$file"
+      info --png "$part" --exposure "$(cat "$2")" "$1" || exit
+      lock
+    fi
+    publish "shown/$what"-*.png;;
+  *)
+    file=frames/$what.exr
+    part_of "$file"
+    cp --reflink=auto "$1" "$part" || exit
+    lock
+    publish "shown/$what"-??????????;;
+esac
