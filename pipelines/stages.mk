@@ -12,7 +12,9 @@ include $(PLAN)
 shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} $${VOLUME:+--volume "$$VOLUME"} \
   $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME --said state/warnings
 scene  = "$$SCENE" $(words) $(shared)
-seen   = $(scene) --camera "$$CAMERA"
+drawn  = $(scene) $(seed)
+seen   = $(drawn) --camera "$$CAMERA"
+seed   = $${SEED:+--seed "$$SEED"}# another set of random numbers, of `make measure` alone: in a folder of its own, as no key knows it
 quiet  = $(if $V,,@)
 run    = $(quiet)$(say)$(RUN) "$$BIN"
 say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
@@ -22,19 +24,19 @@ demo: $(frames) $(previews) sheet.png $(log)
 
 # Light: photons of a state of light. Where things move, first those of what stands, then what movers change of them.
 photons/%.photons:
-	$(run)/photon-trace $(scene) -o $@ --stats photons/$*.json
+	$(run)/photon-trace $(drawn) -o $@ --stats photons/$*.json
 stands/%.photons stands/%.paths:
-	$(run)/photon-trace $(scene) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
+	$(run)/photon-trace $(drawn) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
 moved/%.photons:
-	$(run)/photon-trace $(scene) -o $@ --stats moved/$*.json
+	$(run)/photon-trace $(drawn) -o $@ --stats moved/$*.json
 refined/%.photons:
-	$(run)/photon-trace $(scene) -o $@ --stats refined/$*.json
+	$(run)/photon-trace $(drawn) -o $@ --stats refined/$*.json
 
 # What photons say of the light on all surfaces: irradiance points, which gather rays read. Bright ones apart, where that pays.
 points/%.irradpoints:
-	$(run)/irradcache-build points $(scene) -o $@ --stats points/$*.json
+	$(run)/irradcache-build points $(drawn) -o $@ --stats points/$*.json
 stands_points/%.irradpoints:
-	$(run)/irradcache-build points $(scene) -o $@ --stats stands_points/$*.json
+	$(run)/irradcache-build points $(drawn) -o $@ --stats stands_points/$*.json
 split/%.low.irradpoints split/%.high.irradpoints:
 	$(run)/photonmap-split $(words) --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
 
@@ -88,7 +90,7 @@ shown/exposure-%:
 exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
 preview = $(RUN) "$$BIN"/tempolux-info --png frames/.$1.$$$$.png $(exposure) $(picture) && \
   $(publish) 'rm -f shown/$1-*.png; mv -f frames/.'$1.$$$$'.png frames/$1.png && touch $2'
-sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && $(RUN) "$$BIN"/tempolux-info --account $(frames) && touch $1
+sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch $1
 # A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
 marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
 walk_log = rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch $1

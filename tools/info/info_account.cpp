@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lib/image/exr_io.h"
+#include "lib/image/object_names.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
@@ -53,7 +54,7 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
   if (!worst || !worst_error || !id || std::abs(*worst) <= std::abs(sum.worst)) return;
   sum.worst = *worst;
   sum.worst_error = *worst_error;
-  sum.worst_name = "object " + std::to_string(std::uint32_t(*id)) + " of " + frame;
+  sum.worst_name = object_in_words(std::uint32_t(*id), object_names_in(image)) + " of " + frame;
 }
 
 }  // namespace
@@ -71,11 +72,10 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     const Sum& sum = sums[l];
     if (sum.frames == 0) continue;
     std::string text = std::string(kLayers[l]) + " light " +
-                       percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames) + " (" +
-                       percent(sum.mean(), sum.error()) + " of the picture)";
-    if (!sum.worst_name.empty())
+                       percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames);
+    if (sum.biased() && !sum.worst_name.empty())
       text += ", most by " + sum.worst_name + " (" + percent(sum.worst, sum.worst_error) + " of the picture)";
-    account.line += (account.line.empty() ? "audit of " + std::to_string(sum.frames) + " frames: " : "; ") + text;
+    account.line += (account.line.empty() ? "audit: " : ", ") + text;
     if (sum.biased() && l > 0)
       account.warnings.push_back(std::string(kLayers[l]) + " light is off by " + percent(sum.mean(), sum.error()) +
                                  " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
