@@ -27,11 +27,12 @@ Table runs_table(const ReportInput& input, const std::string& scene) {
                "flicker"},
               {},
               ""};
-  bool noisy = false;
+  bool noisy = false, unresolved = false;
   for (const MeasuredRun& run : input.runs) {
     if (run.scene != scene) continue;
     const ErrorRecord none, &error = run.error ? *run.error : none;
     noisy = noisy || (run.error && !error.halves);
+    unresolved = unresolved || (run.error && !error.usable());
     const std::string rmse = !run.error ? "" : error.usable() ? number_text(error.rmse()) : "not resolved";
     const std::string worst = error.worst_object ? worst_text(*error.worst_object) : "";
     table.rows.push_back({run.curve, run.label, number_text(run.x, "%g"), number_text(run.cpu_s(), "%.3g"),
@@ -40,6 +41,11 @@ Table runs_table(const ReportInput& input, const std::string& scene) {
                           number_text(percent(error.bias_standard_error), "%.3f"), worst, number_text(error.flicker)});
   }
   if (noisy) table.note = "Some runs were compared with one reference: its noise is part of their RMSE.";
+  if (unresolved)
+    table.note +=
+        std::string(table.note.empty() ? "" : " ") +
+        "Not resolved: the error is below the reference's noise; more samples of the reference show it (make: "
+        "REFERENCE_SAMPLES=256).";
   return table;
 }
 

@@ -27,9 +27,12 @@ struct Sum {
   bool biased() const { return std::abs(mean()) > kLimit && std::abs(mean()) > kErrors * error(); }
 };
 
+/// With the decimals that the error's first digit has.
 std::string percent(double value, double error) {
+  const double digit = error > 0 ? std::floor(std::log10(100 * error)) : 0;
+  const int decimals = int(std::clamp(-digit, 0.0, 6.0));
   char text[64];
-  std::snprintf(text, sizeof text, "%+.2g +- %.1g %%", 100 * value, 100 * error);
+  std::snprintf(text, sizeof text, "%+.*f +- %.*f %%", decimals, 100 * value, decimals, 100 * error);
   return text;
 }
 
