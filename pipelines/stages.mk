@@ -100,7 +100,7 @@ path/%.exr path/%_a.exr path/%_b.exr:
 	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
-write_report = $(RUN) "$$BIN"/error-report -o report --title "$${SCENE##*/}: error against time" $(report_runs) && rm -f shown/report-* && touch $1
+write_report = $(RUN) "$$BIN"/error-report -o report --title "$$(basename -- "$$SCENE"): error against time" $(report_runs) && rm -f shown/report-* && touch $1
 report: report/index.html
 	@cat report/report.md
 	$(if $(kept),@awk -f "$$PIPELINES/temporal_report.awk" $(kept))
