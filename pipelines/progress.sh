@@ -49,8 +49,9 @@ in_words() {   # a file inside OUT, by the frame that was asked for
   esac
   if ! grep -q "^frames/${frame}[.]exr:" plan.mk; then   # a frame that looks the same was asked for, or frames that share its light
     alike=$(sed -n "s|^frames/\([0-9]*\)[.]exr: .*[a-z]/$frame-.*|\1|p" plan.mk | head -1)
-    case $folder in
-      pictures | raw | filtered | smoky | keys | walked | path | error) frame=${alike:-$frame};;
+    case $alike,$folder in
+      ?*,*) frame=$alike;;
+      ,pictures | ,raw | ,filtered | ,smoky | ,keys | ,walked | ,path | ,error) ;;   # a neighbour, a key
       *) stage "$folder"; return;;
     esac
   fi
