@@ -1,10 +1,13 @@
 #!/bin/sh
-# measure.sh -- how much of the noise a viewer sees, before a long run: `make measure`. Run by run.sh after scene-plan; it has make's variables.
+# measure.sh -- how much of the noise a viewer sees, before a long run: `make measure`. Run by run.sh after
+# scene-plan; it has make's variables.
 #
-# Of each segment the frame in the middle is rendered twice, each time with random numbers of its own. Of equal renderings AQM says in which
-# share of the pixels a viewer sees the noise of one (aqm-compare --either). METHOD=preview chooses its photons so: a frame of n photons is
-# compared with one of 2 n, so that the blur that more photons take away is seen as well as noise; n starts at 3125 and is doubled until the
-# share is at most AQM, or has not become smaller twice (a filter that always takes equally many photons shows finer noise then). OUT/measured.json has all that was tried; scene-plan --measured chooses by it.
+# Of each segment the frame in the middle is rendered twice, each time with random numbers of its own. Of equal
+# renderings AQM says in which share of the pixels a viewer sees the noise of one (aqm-compare --either).
+# METHOD=preview chooses its photons so: a frame of n photons is compared with one of 2 n, so that the blur that more
+# photons take away is seen as well as noise; n starts at 3125 and is doubled until the share is at most AQM, or has
+# not become smaller twice (a filter that always takes equally many photons shows finer noise then). OUT/measured.json
+# has all that was tried; scene-plan --measured chooses by it.
 least=3125 most=1000000
 runs=$OUT/measure
 table=$OUT/measured.json
@@ -13,8 +16,8 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
 
 render() {   # render SEED FRAME PHOTONS
-  FRAMES=$2 PHOTONS=$3 SEED=$1 OUT=$runs/$1 MEASURED='' sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 ||
-    { tail -3 "$work/log" >&2; exit 3; }
+  FRAMES=$2 PHOTONS=$3 SEED=$1 OUT=$runs/$1 MEASURED='' \
+    sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 || { tail -3 "$work/log" >&2; exit 3; }
 }
 
 compare() {   # compare FRAME [--either]: percent of the pixels in which a viewer sees that the two renderings differ
@@ -66,5 +69,6 @@ while read -r first last; do
   list="$list${list:+,
 }$line"
 done < "$work/segments"
-printf '{"format": "tempolux measured", "version": "1.0", "segments": [\n%s\n]}\n' "$list" > "$table.$$" && mv -f "$table.$$" "$table" && rm -rf "$runs"
+printf '{"format": "tempolux measured", "version": "1.0", "segments": [\n%s\n]}\n' "$list" > "$table.$$" &&
+  mv -f "$table.$$" "$table" && rm -rf "$runs"
 echo "$table: what was measured$([ "$METHOD" != preview ] || echo "; MEASURED=$table lets make take the photons that it asks for")"
