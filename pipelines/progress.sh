@@ -14,7 +14,7 @@ stage() {   # a file inside OUT in words
     photons) echo photons;; stands) echo 'photons of what stands still';; moved) echo 'photons that movers change';;
     refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';; stands_points) echo 'light on what stands still';;
     split) echo 'bright points apart';; cache) echo 'indirect light';; stands_cache) echo 'indirect light on what stands still';;
-    kept) echo 'indirect light, kept over time';; textures) echo 'light textures';; counts) echo 'photons counted';; lights) echo 'which way sky and sun come in';;
+    kept) echo 'indirect light, kept over time';; textures) echo 'light textures';; counts) echo 'photons counted';; windows) echo 'light from photons of many frames';; lights) echo 'which way sky and sun come in';;
     pictures | raw) echo pixels;; filtered) echo 'noise filter';; smoky) echo smoke;; keys) echo 'pixels of a key frame';;
     walk) echo 'distance of keys';; walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
   esac
@@ -37,26 +37,43 @@ say() {
   [ "$passed" -lt 10 ] || left=$(sed '$d' "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
     '$1 > .02 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
   [ -z "$left" ] || left=", about $(clock "$left") left"
+  echo "[$((n))/$TOTAL] $(clock "$passed")$left: $(in_words "$1")"
+}
+
+in_words() {   # a file inside OUT, by the frame that was asked for
   name=${1##*/} folder=${1%/*}
   frame=${name%%[-.]*}
   case $frame in
-    *[!0-9+]*) what=$folder;;
-    *+*) what="frames $(number "${frame%+*}") to $(number "${frame#*+}"), $(stage "$folder")";;
-    *) what="frame $(number "$frame"), $(stage "$folder")";;
+    *[!0-9+]*) echo "$folder"; return;;
+    *+*) echo "frames $(number "${frame%+*}") to $(number "${frame#*+}"), $(stage "$folder")"; return;;
   esac
-  echo "[$((n))/$TOTAL] $(clock "$passed")$left: $what"
+  if ! grep -q "^frames/${frame}[.]exr:" plan.mk; then   # a frame that looks the same was asked for, or frames that share its light
+    alike=$(sed -n "s|^frames/\([0-9]*\)[.]exr: .*[a-z]/$frame-.*|\1|p" plan.mk | head -1)
+    case $alike,$folder in
+      ?*,*) frame=$alike;;
+      ,pictures | ,raw | ,filtered | ,smoky | ,keys | ,walked | ,path | ,error) ;;   # a neighbour, a key
+      *) stage "$folder"; return;;
+    esac
+  fi
+  echo "frame $(number "$frame"), $(stage "$folder")"
 }
 
 number() { n_=${1#"${1%%[!0]*}"}; echo "${n_:-0}"; }   # 0012 -> 12
 
 count() { sed -n "s/^$1 := //p" plan.mk | wc -w; }
 
-begin() { echo "$(count frames) frames of $SIZE, $QUALITY: $TOTAL commands to run (V=1 shows them)"; }
+frames_of() { [ "$1" = 1 ] && echo "1 frame of $SIZE" || echo "$1 frames of $SIZE"; }
+
+begin() { echo "$(frames_of "$(count frames)"), $QUALITY: $TOTAL commands to run (V=1 shows them)"; }
 
 # Statistics of all commands that led to the frames, those of earlier makes too; what compares them with path tracing is not among them.
+# Noise is told in brightness steps of a screen, of which white has 255. The audit is what frames say of their own light.
 end() {
+  frames=$(sed -n 's/^frames := //p' plan.mk)
+  # shellcheck disable=SC2086
+  audit=$("$BIN/tempolux-info" --account $frames)
   sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
-    awk -v frames="$(count frames)" -v size="$SIZE" -v out="$OUT" '
+    awk -v frames="$(count frames)" -v shown="$(frames_of "$(count frames)")" -v audit="$audit" -v out="$OUT" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }
       {
         folder = $0; sub("/.*", "", folder); whole = 1
@@ -67,10 +84,10 @@ end() {
         close($0)
       }
       END {
-        printf "%d frames of %s: %.*f CPU s in all, %.1f a frame", frames, size, cpu < 10, cpu, cpu / frames
+        printf "%s: %.*f CPU s in all, %.1f a frame", shown, cpu < 10, cpu, cpu / frames
         last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
-        if (counted[last]) printf "; noise %.1f codes%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
-        printf "; %s/sheet.png\n", out
+        if (counted[last]) printf "; noise %.1f of 255 brightness steps%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
+        printf "%s; look at %s/sheet.png\n", audit == "" ? "" : "; " audit, out
       }'
 }
 

@@ -12,7 +12,7 @@ absolute() {   # absolute NAME: the variable, if it names a file, by its whole p
 if [ -z "$BIN" ]; then
   if [ -f "$TOP/CMakeLists.txt" ]; then BIN=$TOP/build/release/bin; else BIN=$(command -v scene-plan); BIN=${BIN%/*}; fi
 fi
-for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME; do absolute $name; done
+for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME MEASURED; do absolute $name; done
 goal=$1 film=
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
@@ -28,7 +28,7 @@ set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channel
   --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" --strategy "$STRATEGY" \
   --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" --reference-samples "$REFERENCE_SAMPLES"
 for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD light-units:LIGHT_UNITS \
-  environment-color:SKY environment:ENVIRONMENT volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS \
+  environment-color:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS \
   smoke-words:SMOKE texture-words:TEXTURES; do
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
@@ -64,6 +64,7 @@ else
   cp "$OUT/plan.mk" "$OUT/$plan" || exit
 fi
 [ "$goal" = plan ] && exit
+if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 
 # Which commands will run: those that make -n shows. progress.sh counts them.

@@ -4,7 +4,7 @@
 #     shown/0012-KEY PICTURE                frames/0012.exr, a copy
 #     shown/0012-KEY.png PICTURE EXPOSURE   frames/0012.png
 #     shown/exposure-KEY PICTURE            the marker holds the exposure that suits the picture. One for all frames: brightness does not jump
-#     shown/sheet-KEY EXPOSURE              sheet.png, all frames of plan.mk; a walkthrough's keys have a border. Prints the account of the frames
+#     shown/sheet-KEY EXPOSURE              sheet.png, all frames of plan.mk; a walkthrough's keys have a border
 #     shown/walk-KEY INTERVAL...            walk.log, where keys were placed and why
 #
 # The environment has BIN, RUN, PIPELINES and PLAN.
@@ -34,7 +34,7 @@ case $marker in
     file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
     ! grep -q '^log :=' "$PLAN" || marks=$(sh "$PIPELINES/walkthrough.sh" marks)
     shows "$(cat "$1") $marks $frames" $frames
-    is_shown shown/sheet-* || { info --sheet $file --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames && info --account $frames; } || exit
+    is_shown shown/sheet-* || info --sheet $file --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames || exit
     publish shown/sheet-*;;
   shown/walk-*)
     sh "$PIPELINES/walkthrough.sh" log "$@" > walk.log || exit

@@ -12,7 +12,9 @@ include $(PLAN)
 shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} $${VOLUME:+--volume "$$VOLUME"} \
   $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME --said state/warnings
 scene  = "$$SCENE" $(words) $(shared)
-seen   = $(scene) --camera "$$CAMERA"
+drawn  = $(scene) $(seed)
+seen   = $(drawn) --camera "$$CAMERA"
+seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}# another set of random numbers, of `make measure` alone: in a folder of its own, as no key knows it
 quiet  = $(if $V,,@)
 run    = $(quiet)$(say)exec $(RUN) "$$BIN"# exec: what stops make stops the command
 say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
@@ -22,19 +24,19 @@ demo: $(frames) $(previews) sheet.png $(log)
 
 # Light: photons of a state of light. Where things move, first those of what stands, then what movers change of them.
 photons/%.photons:
-	$(run)/photon-trace $(scene) -o $@ --stats photons/$*.json
+	$(run)/photon-trace $(drawn) -o $@ --stats photons/$*.json
 stands/%.photons stands/%.paths:
-	$(run)/photon-trace $(scene) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
+	$(run)/photon-trace $(drawn) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
 moved/%.photons:
-	$(run)/photon-trace $(scene) -o $@ --stats moved/$*.json
+	$(run)/photon-trace $(drawn) -o $@ --stats moved/$*.json
 refined/%.photons:
-	$(run)/photon-trace $(scene) -o $@ --stats refined/$*.json
+	$(run)/photon-trace $(drawn) -o $@ --stats refined/$*.json
 
 # What photons say of the light on all surfaces: irradiance points, which gather rays read. Bright ones apart, where that pays.
 points/%.irradpoints:
-	$(run)/irradcache-build points $(scene) -o $@ --stats points/$*.json
+	$(run)/irradcache-build points $(drawn) -o $@ --stats points/$*.json
 stands_points/%.irradpoints:
-	$(run)/irradcache-build points $(scene) -o $@ --stats stands_points/$*.json
+	$(run)/irradcache-build points $(drawn) -o $@ --stats stands_points/$*.json
 split/%.low.irradpoints split/%.high.irradpoints:
 	$(run)/photonmap-split $(words) --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
 
@@ -91,7 +93,7 @@ path/%.exr path/%_a.exr path/%_b.exr:
 	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
-write_report = $(RUN) "$$BIN"/error-report -o report $(report_runs) && rm -f shown/report-* && touch $(filter shown/%,$@ $|)
+write_report = $(RUN) "$$BIN"/error-report -o report --title "$$(basename -- "$$SCENE"): error against time" $(report_runs) && rm -f shown/report-* && touch $(filter shown/%,$@ $|)
 shown/report-%:
 	$(quiet)$(write_report)
 report/index.html:

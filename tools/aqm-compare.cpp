@@ -186,6 +186,7 @@ Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector
     tool.stats().phase("compare");
     const Compared pair = compare_layers(loaded.inputs());
     builder.add(pair, frames[i].value_or(loaded.frame_number()), loaded.inputs().test.name);
+    builder.add(object_names_in(*loaded.inputs().test.image));
     if (o.needs_vision()) {
       tool.stats().phase("vision");
       if (!viewing) viewing = tools::vision_options(o.vision, loaded), viewing->of_either = o.either;

@@ -178,7 +178,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                                             input.time().fps,
                                             view.world_to_camera(),
                                             view.world_to_ndc(),
-                                            tools::account_of(rendered, audited)};
+                                            tools::account_of(rendered, audited),
+                                            input.scene().object_names};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);

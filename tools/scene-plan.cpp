@@ -20,6 +20,7 @@
 #include "lib/plan/estimate.h"
 #include "tools/common/option_words.h"
 #include "tools/common/percent_option.h"
+#include "tools/stages/measured.h"
 #include "tools/stages/samples.h"
 #include "tools/stages/planning.h"
 #include "tools/stages/tidy.h"
@@ -30,8 +31,9 @@ namespace {
 
 struct Options {
   std::string scene, folder = "out", tidy_folder, samples, estimate, quality = "final", method = "frames",
-                     filter = "auto", report;
+                     filter = "auto", report, measured;
   std::vector<std::string> recipes;
+  double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
   double tidy_hours = 24;
   Wish wish;
 };
@@ -70,6 +72,12 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
   for (const int frame : wish.report)
     if (std::ranges::find(frames, frame) == frames.end())
       throw InputError("--report " + options.report + ": frame " + std::to_string(frame) + " is none of --frames");
+  if (!options.measured.empty()) {
+    if (wish.method != FrameMethod::preview || wish.photons > 0)
+      throw InputError("--measured: photons of --method preview; leave it out with another method or with --photons");
+    const double preset = wish.quality == Quality::draft ? 0.2 : 0.05;
+    wish.measured = tools::measured_photons(options.measured, options.share < 0 ? preset : options.share);
+  }
   return with_preset(wish);
 }
 
@@ -82,6 +90,7 @@ void plan_range(tools::Tool& tool, const Options& options, const std::string& ar
   tools::Planner planner(tool, options.scene, wish, options.recipes, folder ? &*folder : nullptr);
   tool.stats().phase("write");
   if (!folder) return tools::write_samples(options.samples, planner, wish);
+  if (!options.measured.empty()) folder->inputs().hash_of(options.measured);
   folder->write(planner.planned(), planner.tool_hash(), arguments, tool.history_line());
   for (const PlannedSegment& segment : planner.planned().plan.segments)
     for (const Reason& reason : segment.decisions.reasons)
@@ -127,6 +136,13 @@ void add_wishes(tools::Tool& tool, Options& options) {
   tool.count_option("--photons", wish.photons,
                     "paths of light of a photon map (preview: of a frame), up to 16 times as many where few of them "
                     "arrive; 0: the preset's");
+  app.add_option("--measured", options.measured,
+                 "preview: photons of each segment by what `make measure` has written into this file")
+      ->type_name("FILE");
+  app.add_option("--aqm", options.share,
+                 "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
+      ->check(tools::number_between(0, 1))
+      ->transform(tools::percent([] {}));
   app.add_option("--rays", wish.rays, "gather rays of a record at most; 0: the preset's")
       ->capture_default_str()
       ->check(tools::number_between(0, 1 << 20));

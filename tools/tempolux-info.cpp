@@ -140,9 +140,13 @@ int main(int argc, char** argv) {
   CLI::Option* groups = tool.output_option(
       request.groups, "of .photons: a line of CSV for each group: frame, paths, photons; - is standard output",
       "--groups");
-  CLI::Option* png = tool.output_option(request.png, "the image as a picture", "--png");
+  CLI::Option* png = tool.output_option(
+      request.png, "the image as a picture; of .meshirrad its elements, seen from a corner above", "--png");
   CLI::Option* sheet = tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
-  app.add_option("--layer", request.picture.layer, "layer or channel to show, such as indirect, Z, N; none: R, G, B")
+  app.add_option("--layer", request.picture.layer,
+                 "layer or channel to show, such as indirect, Z, N; none: R, G, B; of .meshirrad window (33 frames: "
+                 "white) or age "
+                 "(red: later frames, blue: earlier ones)")
       ->type_name("NAME");
   app.add_option("--exposure", request.exposure, "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
       ->type_name("STOPS")

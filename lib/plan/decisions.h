@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,12 @@ std::optional<Enum> named(const char* const (&names)[n], const std::string& name
 /// A preview's elements collect photons over this many frames at most, those before, at and after a frame.
 inline constexpr int kPreviewWindow = 33;
 
+/// Photons of a preview, chosen by what a viewer sees (make measure).
+struct Measured {
+  std::uint64_t photons = 0;  ///< of a frame
+  std::string because;        ///< what was measured, in words
+};
+
 /// What the user asks for. Words are options as on a command line, separated by blanks.
 struct Wish {
   static constexpr int kAutoFilter = -1;  ///< as the preset has it
@@ -49,8 +56,9 @@ struct Wish {
   std::string texture_words, smoke_words;
   std::string update;  ///< share of the photon groups that is traced anew in smoke, "10%"; "": all
   std::string refine;  ///< further paths for what smoke shows of a map, as a share of its paths, "5%"; "": none
-  std::string strategy = "census";  ///< which groups, as photon-trace --strategy
-  int key_distance = 16;            ///< frames between the first keys of a walkthrough
+  std::string strategy = "census";   ///< which groups, as photon-trace --strategy
+  int key_distance = 16;             ///< frames between the first keys of a walkthrough
+  std::map<int, Measured> measured;  ///< of segments, by their first frame
   double threshold = 0.05;  ///< an interval of a walkthrough is halved if a viewer sees in a larger share of its pixels
                             ///< that they are wrong (AQM)
   int reference_samples = 64;  ///< of a pixel of the reference that a report compares with

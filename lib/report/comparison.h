@@ -8,6 +8,7 @@
 
 #include "lib/aqm/animation_quality.h"
 #include "lib/aqm/frame_error.h"
+#include "lib/image/object_names.h"
 
 namespace tempolux {
 
@@ -39,6 +40,7 @@ struct Comparison {
   std::optional<AnimationQuality> quality;  ///< AQM over all frames
   std::optional<VisionOptions> viewing;     ///< who looked, where there is AQM
   std::string flow;                         ///< file or pattern; "": everything stood still
+  ObjectNames object_names;                 ///< as the frames that were judged have them
 };
 
 /// Collects the frames of a comparison, one in memory at a time.
@@ -49,6 +51,8 @@ class ComparisonBuilder {
   ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels);
   /// Adds a frame. Throws InputError if its size or channels differ from those of the frames before.
   void add(const Compared& pair, int frame, const std::string& name);
+  /// What objects of a frame are called.
+  void add(const ObjectNames& names) { comparison_.object_names.insert(names.begin(), names.end()); }
   /// AQM of the frame added last, and under which options, the same for all frames.
   void add(const AnimationQuality& quality, const VisionOptions& options);
   /// Totals over the frames added, of which there must be one.

@@ -28,15 +28,24 @@ void put_squared(Json& to, const std::string& root, const std::string& squared, 
   to[root + "_resolved"] = figure.resolved();
 }
 
-Json object_json(const ObjectError& object) {
-  Json json = {{"id", object.id}, {"pixels", object.pixels}};
+/// id, and name where it is known.
+Json id_json(std::uint32_t id, const ObjectNames& names) {
+  Json json = {{"id", id}};
+  if (const auto name = names.find(id); name != names.end()) json["name"] = name->second;
+  return json;
+}
+
+Json object_json(const ObjectError& object, const ObjectNames& names) {
+  Json json = id_json(object.id, names);
+  json["pixels"] = object.pixels;
   put_estimate(json, "bias", object.bias);
   json["share_of_squared_error"] = number(object.share_of_squared_error);
   json["few_pixels"] = object.few_pixels;
   return json;
 }
 
-Json error_json(const FrameError& error, ComparisonMode mode) {
+Json error_json(const FrameError& error, const Comparison& comparison) {
+  const ComparisonMode mode = comparison.mode;
   Json json = {{"pixels", error.pixels}};
   put_squared(json, "rmse", "mse", error.squared_error);
   if (mode == ComparisonMode::own_halves)
@@ -54,7 +63,8 @@ Json error_json(const FrameError& error, ComparisonMode mode) {
                                 {"y", error.largest.y},
                                 {"channel", error.largest.channel}};
   json["objects"] = Json::array();
-  for (const ObjectError& object : error.objects) json["objects"].push_back(object_json(object));
+  for (const ObjectError& object : error.objects)
+    json["objects"].push_back(object_json(object, comparison.object_names));
   return json;
 }
 
@@ -63,12 +73,12 @@ Json share_json(const SeenShare& share) {
   return {{"percent", 100 * share.share()}, {"seen", share.seen}, {"pixels", share.pixels}};
 }
 
-Json quality_json(const AnimationQuality& quality) {
+Json quality_json(const AnimationQuality& quality, const ObjectNames& names) {
   Json json = share_json(quality.all);
   if (quality.adaptation_luminance > 0) json["adaptation_luminance"] = quality.adaptation_luminance;
   json["objects"] = Json::array();
   for (const auto& [id, share] : quality.objects) {
-    Json object = {{"id", id}};
+    Json object = id_json(id, names);
     object.update(share_json(share));
     json["objects"].push_back(std::move(object));
   }
@@ -112,14 +122,14 @@ std::string comparison_json(const Comparison& comparison) {
                {"height", comparison.height}};
   if (!comparison.relative_to.empty()) json["relative_to"] = comparison.relative_to;
   if (comparison.viewing) json["viewing"] = viewing_json(*comparison.viewing, comparison.flow);
-  json["total"] = error_json(comparison.total, comparison.mode);
+  json["total"] = error_json(comparison.total, comparison);
   if (comparison.flicker) put_squared(json["total"], "flicker", "flicker_squared", *comparison.flicker);
-  if (comparison.quality) json["total"]["aqm"] = quality_json(*comparison.quality);
+  if (comparison.quality) json["total"]["aqm"] = quality_json(*comparison.quality, comparison.object_names);
   json["frames"] = Json::array();
   for (const Comparison::Frame& frame : comparison.frames) {
     Json entry = {{"frame", frame.frame}};
-    entry.update(error_json(frame.error, comparison.mode));
-    if (frame.quality) entry["aqm"] = quality_json(*frame.quality);
+    entry.update(error_json(frame.error, comparison));
+    if (frame.quality) entry["aqm"] = quality_json(*frame.quality, comparison.object_names);
     json["frames"].push_back(std::move(entry));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -46,7 +46,7 @@ std::string caveat(const std::string& name, const SquaredFigure& figure) {
   return square + standard_error + ": not below a third of it, the figure is not settled\n";
 }
 
-std::string worst_objects(const std::vector<ObjectError>& objects) {
+std::string worst_objects(const std::vector<ObjectError>& objects, const ObjectNames& names) {
   constexpr std::size_t kShown = 6;
   std::vector<ObjectError> judged;
   for (const ObjectError& object : objects)
@@ -59,7 +59,8 @@ std::string worst_objects(const std::vector<ObjectError>& objects) {
     const ObjectError& object = judged[i];
     text += format("%-8u%10llu", object.id, static_cast<unsigned long long>(object.pixels)) +
             cell(value_of(object.bias, 100), "%10.3f") + cell(standard_error_of(object.bias, 100), "%10.3f") +
-            cell(100 * object.share_of_squared_error, "%10.1f") + "\n";
+            cell(100 * object.share_of_squared_error, "%10.1f") +
+            (names.contains(object.id) ? "  " + names.at(object.id) : "") + "\n";
   }
   if (judged.size() > kShown) text += format("and %zu objects with less bias\n", judged.size() - kShown);
   if (judged.size() < objects.size())
@@ -81,8 +82,9 @@ std::string quality_text(const Comparison& comparison) {
   std::vector<std::pair<std::uint32_t, SeenShare>> objects(total.objects.begin(), total.objects.end());
   std::ranges::stable_sort(objects, std::ranges::greater{}, [](const auto& object) { return object.second.seen; });
   for (std::size_t i = 0; i < std::min<std::size_t>(objects.size(), 3) && objects[i].second.seen; ++i)
-    text += format("  object %u: %.2f %% of its pixels, %.1f %% of those seen\n", objects[i].first,
-                   100 * objects[i].second.share(), 100 * double(objects[i].second.seen) / double(total.all.seen));
+    text += "  " + object_in_words(objects[i].first, comparison.object_names) +
+            format(": %.2f %% of its pixels, %.1f %% of those seen\n", 100 * objects[i].second.share(),
+                   100 * double(objects[i].second.seen) / double(total.all.seen));
   return text +
          format("display %s, %g cd/m2, %.1f pixels/degree, exposure %+.2f stops, eyes %s at %g frames/s; ",
                 viewing.display.name.c_str(), viewing.display.peak, viewing.display.pixels_per_degree,
@@ -114,7 +116,7 @@ std::string comparison_text(const Comparison& comparison) {
     text += format("largest difference %.4g in channel %s at column %d, row %d of frame %d; mean difference %.4g\n",
                    total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
                    total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
-  text += worst_objects(total.objects);
+  text += worst_objects(total.objects, comparison.object_names);
   if (comparison.quality) text += quality_text(comparison);
   if (comparison.mode == ComparisonMode::own_halves)
     return text + format("noise of the mean of the two halves: RMS %.4g\n", noise_of_mean(total).root());

@@ -68,7 +68,7 @@ std::vector<std::string> error_cells(const std::optional<ErrorRecord>& error) {
           number_text(error->relmse, kExact),
           number_text(error->bias, kExact),
           number_text(error->bias_standard_error, kExact),
-          worst ? number_text(worst->second, kExact) : "",
+          worst ? number_text(worst->bias, kExact) : "",
           number_text(error->psnr_db, kExact),
           number_text(error->flicker, kExact)};
 }

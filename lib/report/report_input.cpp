@@ -95,8 +95,8 @@ Place open_document(const std::string& path, const std::string& schema, Json& ke
   return top;
 }
 
-std::optional<std::pair<std::uint32_t, double>> worst_object(const Place& total) {
-  std::optional<std::pair<std::uint32_t, double>> worst;
+std::optional<WorstObject> worst_object(const Place& total) {
+  std::optional<WorstObject> worst;
   const auto objects = total.find("objects");
   if (!objects) return worst;
   for (const Place& object : objects->items()) {
@@ -105,7 +105,9 @@ std::optional<std::pair<std::uint32_t, double>> worst_object(const Place& total)
     if (!bias || (few && few->json == true)) continue;
     const double id = object.at("id").number_from_0();
     if (id > UINT32_MAX) object.refuse("id is above 2^32 - 1");
-    if (!worst || std::abs(*bias) > std::abs(worst->second)) worst = {std::uint32_t(id), *bias};
+    if (worst && std::abs(*bias) <= std::abs(worst->bias)) continue;
+    const auto name = object.find("name");
+    worst = {std::uint32_t(id), name ? name->string() : "", *bias};
   }
   return worst;
 }

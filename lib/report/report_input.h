@@ -23,6 +23,13 @@ struct StatsRecord {
   std::map<std::string, double> counts;
 };
 
+/// The object whose light is farthest off.
+struct WorstObject {
+  std::uint32_t id = 0;
+  std::string name;  ///< "": not known
+  double bias = 0;   ///< relative
+};
+
 /// The totals of a comparison file (formats/comparison/comparison.md): how wrong the outcome was.
 struct ErrorRecord {
   std::string layer;
@@ -31,8 +38,8 @@ struct ErrorRecord {
   double mse = 0;  ///< may be negative
   std::optional<double> mse_standard_error;
   std::optional<double> relmse, bias, bias_standard_error, psnr_db, flicker;
-  bool halves = false;                                           ///< the reference's noise is not in mse
-  std::optional<std::pair<std::uint32_t, double>> worst_object;  ///< id and bias, objects of few pixels apart
+  bool halves = false;                      ///< the reference's noise is not in mse
+  std::optional<WorstObject> worst_object;  ///< objects of few pixels apart
 
   /// Root of mse, 0 where that is not positive.
   double rmse() const;

@@ -16,27 +16,36 @@ std::optional<double> percent(std::optional<double> value) {
   return value ? std::optional(100 * *value) : std::nullopt;
 }
 
+std::string worst_text(const WorstObject& worst) {
+  return number_text(100 * worst.bias, "%.2f") + " (" +
+         (worst.name.empty() ? "id " + std::to_string(worst.id) : worst.name) + ")";
+}
+
 Table runs_table(const ReportInput& input, const std::string& scene) {
   Table table{"Runs",
               {"curve", "run", "x", "CPU s", "wall s", "peak MB", "RMSE", "relMSE", "bias %", "+-", "worst object %",
                "flicker"},
               {},
               ""};
-  bool noisy = false;
+  bool noisy = false, unresolved = false;
   for (const MeasuredRun& run : input.runs) {
     if (run.scene != scene) continue;
     const ErrorRecord none, &error = run.error ? *run.error : none;
     noisy = noisy || (run.error && !error.halves);
+    unresolved = unresolved || (run.error && !error.usable());
     const std::string rmse = !run.error ? "" : error.usable() ? number_text(error.rmse()) : "not resolved";
-    const std::string worst = error.worst_object ? number_text(100 * error.worst_object->second, "%.2f") + " (id " +
-                                                       std::to_string(error.worst_object->first) + ")"
-                                                 : "";
+    const std::string worst = error.worst_object ? worst_text(*error.worst_object) : "";
     table.rows.push_back({run.curve, run.label, number_text(run.x, "%g"), number_text(run.cpu_s(), "%.3g"),
                           number_text(run.wall_s(), "%.3g"), number_text(run.peak_memory_bytes() / 1e6, "%.0f"), rmse,
                           number_text(error.relmse), number_text(percent(error.bias), "%.3f"),
                           number_text(percent(error.bias_standard_error), "%.3f"), worst, number_text(error.flicker)});
   }
   if (noisy) table.note = "Some runs were compared with one reference: its noise is part of their RMSE.";
+  if (unresolved)
+    table.note +=
+        std::string(table.note.empty() ? "" : " ") +
+        "Not resolved: the error is below the reference's noise; more samples of the reference show it (make: "
+        "REFERENCE_SAMPLES=256).";
   return table;
 }
 

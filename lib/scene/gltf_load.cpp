@@ -95,8 +95,10 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   import_meshes(import);
   import_deformation(import);
   import_animations(import, options.animation);
-  for (const auto& [what, count] : import.ignored)
-    scene.warnings.push_back(path + ": ignored: " + what + (count > 1 ? ", " + std::to_string(count) + " times" : ""));
+  for (const auto& [what, ignored] : import.ignored)
+    scene.warnings.push_back(path + ": ignored: " + what +
+                             (ignored.count > 1 ? ", " + std::to_string(ignored.count) + " times" : "") +
+                             (ignored.first_place.empty() ? "" : ", first in " + ignored.first_place));
   for (const auto& [what, mended] : import.mended)
     scene.warnings.push_back(path + ": " + mended.first_place +
                              (mended.places > 1 ? " and " + std::to_string(mended.places - 1) + " more" : "") + ": " +

@@ -64,7 +64,9 @@ struct ExtensionReader {
     return values;
   }
   void ignore_texture(const char* key) const {
-    if (object.Has(key)) import.ignore(std::string(key) + " (the material keeps its factor)");
+    if (object.Has(key))
+      import.ignore(std::string(key) + " (the material keeps its factor)", 1,
+                    place.substr(0, place.find(".extensions")));
   }
   Texture texture(const char* key) const {
     return object.Has(key) ? read_texture(import, object.Get(key), place + "." + key) : Texture{};

@@ -36,12 +36,12 @@ struct Import {
   std::vector<int> mesh_from_source{};             ///< the same for meshes; -1: not used or without triangles
   std::vector<EncodedImage> images{};              ///< of the scene, as they are met
   std::vector<std::uint32_t> image_from_source{};  ///< image of the file -> of the scene, kNone: not read
-  std::map<std::string, std::size_t> ignored{};    ///< what was ignored -> how often; warnings at the end
   struct Mended {
     std::string first_place;
     std::size_t count = 0, places = 0;
   };
-  std::map<std::string, Mended> mended{};  ///< what was wrong and what became of it; warnings at the end
+  std::map<std::string, Mended> mended{};   ///< what was wrong and what became of it; warnings at the end
+  std::map<std::string, Mended> ignored{};  ///< what was ignored, and where first if that helps; warnings at the end
 
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     gltf::fail(scene.path, place, what);
@@ -49,7 +49,12 @@ struct Import {
   /// Takes `bytes` from the budget before they are allocated; fails when a file asks for far more memory
   /// than its own size can mean.
   void take_memory(std::uint64_t bytes, const std::string& place);
-  void ignore(const std::string& what, std::size_t count = 1) { ignored[what] += count; }
+  /// `place`: where the user finds it, as 'materials[3] "Oak"'; "": that would not help.
+  void ignore(const std::string& what, std::size_t count = 1, const std::string& place = "") {
+    Mended& of = ignored[what];
+    if (of.count == 0) of.first_place = place;
+    of.count += count;
+  }
   /// `what`: things in the plural and what was done, as "weights below 0 are left out"; `count` of them at `place`.
   void mend(const std::string& place, const std::string& what, std::size_t count);
 };

@@ -29,6 +29,11 @@ for threads in 1 2 7; do
   cmp t.meshirrad r.0004.meshirrad || bad "alone with $threads threads: other bytes than as one of a range"
 done
 tempolux-info --diff d.0004.meshirrad r.0004.meshirrad > /dev/null || bad 'photons and their counts give other light'
+# As a picture: frame 4 of 0 to 8 has windows of 9 frames, 9/33 of white, within half a code of 8 bits there; its light is another picture.
+tempolux-info --png w.png --layer window d.0004.meshirrad && tempolux-info --json w.png > info.json || bad 'no picture of windows'
+"$python" -c 'import json; c = json.load(open("info.json"))["channels"][0]; assert abs(c["max"] - 9 / 33) < 0.003, c' || bad 'windows in the picture'
+tempolux-info --png l.png d.0004.meshirrad && ! cmp -s w.png l.png || bad 'no picture of light'
+expect 2 'holds light of one frame' tempolux-info --png made.png --layer age c.0004.meshirrad
 expect 2 'holds counts, not light' frame-render "$furnace" --frame 4 --meshirrad c.0004.meshirrad -o made.exr
 expect 2 'holds no counts' gather-temporal density "$furnace" --frame 4 --counts d.0004.meshirrad -o made.meshirrad
 expect 2 'has no counts' gather-temporal density "$furnace" --frame 4 --counts c.0005.meshirrad -o made.meshirrad

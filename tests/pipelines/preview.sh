@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
 edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
 make_it() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-5 TIME='--segment 6' SIZE=48x27 PIXELS='--spp 2 --pixel-error 0' \
+  make V=1 -f Makefile.example --no-print-directory "${goal:-demo}" BIN="$bin" FRAMES=0-5 TIME='--segment 6' SIZE=48x27 PIXELS='--spp 2 --pixel-error 0' \
     CHANNELS=RGBA,layers "$@"
 }
 run() { make_it "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }
@@ -39,4 +39,24 @@ run SCENE="$work/walk.glb" METHOD=preview PHOTONS=1k OUT="$work/walk"
 [ "$(files "$work/walk" photons photons) $(files "$work/walk" textures meshirrad) $(files "$work/walk" windows meshirrad)" = '1 1 0' ] || bad 'a walk: not one map and one texture'
 paths=$(sed -n 's/.*--photons \([0-9]*\) .*/\1/p' "$work/walk/plan.mk")
 [ "$((paths % 33))" = 0 ] && [ "$paths" -ge 33000 ] || bad "a walk: not 33 times as many paths, $paths"
+
+# Photons by what a viewer sees: what was tried is written, chosen from, and said in the plan. Two sets of random numbers differ, or nothing would be seen.
+goal=measure
+run SCENE=$scene METHOD=preview OUT="$work/measured" AQM=0%
+python3 - "$work/measured/measured.json" << 'END' || bad "measured.json: $(cat "$work/measured/measured.json")"
+import json, sys
+(segment,) = json.load(open(sys.argv[1]))["segments"]
+tried = segment["tried"]
+assert segment["first"] == 0 and len(tried) >= 1 and tried[0]["photons"] == 3125, segment
+assert all(b["photons"] == 2 * a["photons"] for a, b in zip(tried, tried[1:])) and all(0 <= t["aqm"] <= 1 for t in tried), tried
+assert tried[0]["aqm"] > 0, tried
+END
+goal=plan
+echo '{"format": "tempolux measured", "version": "1.0", "segments": [{"first": 0, "frame": 2, "tried": [{"photons": 1000, "aqm": 0.3}, {"photons": 2000, "aqm": 0.1}, {"photons": 4000, "aqm": 0.05}]}]}' > "$work/measured.json"
+for case in '20% 2000 10' '1% 4000 5'; do
+  set -- $case
+  run SCENE=$scene METHOD=preview OUT="$work/measured" AQM="$1" MEASURED="$work/measured.json"
+  grep -q "measured: AQM $3 % with $2 photons a frame" "$work/measured/plan.json" || bad "AQM=$1 does not choose $2 photons: $(grep measured: "$work/measured/plan.json")"
+done
+make_it SCENE=$scene METHOD=frames OUT="$work/measured" MEASURED="$work/measured.json" > "$work/log" 2>&1 && bad 'MEASURED without METHOD=preview is taken'
 exit $failed

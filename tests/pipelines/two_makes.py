@@ -31,7 +31,7 @@ for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
 
 CASES = {"frames": ("box", {"QUALITY": "final", "MOVING": "light"}), "time": ("box", {"QUALITY": "final", "MOVING": "time"}),
-         "filter": ("box", {"FILTER": "3"}), "walkthrough": ("lamp", {"METHOD": "walkthrough"})}
+         "filter": ("box", {"FILTER": "3"}), "walkthrough": ("lamp", {"METHOD": "walkthrough"}), "preview": ("box", {"METHOD": "preview"})}
 
 
 class Trial:
@@ -84,7 +84,7 @@ class Trial:
 
 
 def together(trial):
-    other = {"frames": "light", "time": "light", "filter": "anew", "walkthrough": "anew"}[trial.title]
+    other = {"frames": "light", "time": "light", "filter": "anew", "walkthrough": "anew", "preview": "anew"}[trial.title]
     different = trial.state | {"variables": trial.state["variables"] | {"MOVING": other, "FILTER": "", "METHOD": "", "SIZE": "32x18"}}
     for what, second in (("two makes at once", trial.state), ("two makes with different wishes at once", different)):
         trial.empty()

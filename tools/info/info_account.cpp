@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lib/image/exr_io.h"
+#include "lib/image/object_names.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
@@ -26,9 +27,12 @@ struct Sum {
   bool biased() const { return std::abs(mean()) > kLimit && std::abs(mean()) > kErrors * error(); }
 };
 
+/// With the decimals that the error's first digit has.
 std::string percent(double value, double error) {
+  const double digit = error > 0 ? std::floor(std::log10(100 * error)) : 0;
+  const int decimals = int(std::clamp(-digit, 0.0, 6.0));
   char text[64];
-  std::snprintf(text, sizeof text, "%+.2g +- %.1g %%", 100 * value, 100 * error);
+  std::snprintf(text, sizeof text, "%+.*f +- %.*f %%", decimals, 100 * value, decimals, 100 * error);
   return text;
 }
 
@@ -53,7 +57,7 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
   if (!worst || !worst_error || !id || std::abs(*worst) <= std::abs(sum.worst)) return;
   sum.worst = *worst;
   sum.worst_error = *worst_error;
-  sum.worst_name = "object " + std::to_string(std::uint32_t(*id)) + " of " + frame;
+  sum.worst_name = object_in_words(std::uint32_t(*id), object_names_in(image)) + " of " + frame;
 }
 
 }  // namespace
@@ -71,11 +75,10 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     const Sum& sum = sums[l];
     if (sum.frames == 0) continue;
     std::string text = std::string(kLayers[l]) + " light " +
-                       percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames) + " (" +
-                       percent(sum.mean(), sum.error()) + " of the picture)";
-    if (!sum.worst_name.empty())
+                       percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames);
+    if (sum.biased() && !sum.worst_name.empty())
       text += ", most by " + sum.worst_name + " (" + percent(sum.worst, sum.worst_error) + " of the picture)";
-    account.line += (account.line.empty() ? "audit of " + std::to_string(sum.frames) + " frames: " : "; ") + text;
+    account.line += (account.line.empty() ? "audit: " : ", ") + text;
     if (sum.biased() && l > 0)
       account.warnings.push_back(std::string(kLayers[l]) + " light is off by " + percent(sum.mean(), sum.error()) +
                                  " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "

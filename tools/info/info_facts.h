@@ -11,6 +11,10 @@
 #include "formats/identity.h"
 #include "tools/common/output.h"
 
+namespace tempolux {
+struct Image;
+}
+
 namespace tempolux::tools {
 
 using Facts = nlohmann::ordered_json;
@@ -82,7 +86,12 @@ struct PictureOptions {
   std::vector<std::string> marked;       ///< of a sheet: files whose pictures get a border
   std::function<void(double)> progress;  ///< of a sheet, [0, 1]; may be empty
 };
-/// An image as PNG.
+/// Elements of a .meshirrad file as an image, orthographic along -(1, 1, 1), 640 pixels on its longer side: those that
+/// photons arrived at and whose side faces the eye, as discs; nearer ones hide others, black elsewhere. layer "":
+/// irradiance, W/m^2; "window": frames of the element's window as a share of 33; "age": frames that the middle of the
+/// window lies after its own frame, / 16. Throws InputError.
+Image mesh_picture(const std::string& path, const std::string& layer);
+/// An image, or a .meshirrad file by mesh_picture(), as PNG.
 void write_picture(const std::string& path, const PictureOptions& options, Output& output);
 /// Images in a grid, all with one exposure.
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output);

@@ -1,6 +1,7 @@
 #include "tools/stages/frame_output.h"
 
 #include "lib/image/frame_identity.h"
+#include "lib/image/object_names.h"
 
 namespace tempolux::tools {
 namespace {
@@ -10,6 +11,15 @@ std::string half_name(const std::string& path, char letter) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t end = dot == std::string::npos || (slash != std::string::npos && dot < slash) ? path.size() : dot;
   return path.substr(0, end) + '_' + letter + path.substr(end);
+}
+
+/// Objects that the frame speaks of: in id.object, and as those whose light is farthest off.
+std::set<std::uint32_t> objects_of(const Image& data, const FrameDescription& description) {
+  std::set<std::uint32_t> objects;
+  if (const Channel* ids = data.find("id.object")) objects.insert(ids->ids.begin(), ids->ids.end());
+  for (const auto& [name, value] : description.account)
+    if (name.ends_with("worst_object_id")) objects.insert(std::uint32_t(value));
+  return objects;
 }
 
 void describe(const FrameDescription& description, int samples, Image& image) {
@@ -33,12 +43,14 @@ FrameOutputs::FrameOutputs(const std::string& path, bool halves, bool no_clobber
 void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
                          const FrameDescription& description, const ExrWriteOptions& options,
                          const std::vector<std::uint8_t>& mask, const Image& base) {
+  const std::set<std::uint32_t> objects = objects_of(data, description);
   const LayerImage* parts[3] = {&rendered.mean, &rendered.half[0], &rendered.half[1]};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     Image image = data;
     add_colour_channels(*parts[i], channels, image);
     if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
     describe(description, parts[i]->samples, image);
+    set_object_names(image, objects, description.object_names);
     if (i == 0)  // of the mean of all samples
       for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;
     save_exr(outputs_[i].temporary_path(), image, options);

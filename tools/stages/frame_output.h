@@ -21,6 +21,7 @@ struct FrameDescription {
   double fps = 24;
   std::array<double, 16> world_to_camera{}, world_to_ndc{};
   std::map<std::string, double> account;  ///< account_of()
+  std::vector<std::string> object_names;  ///< by id.object
 };
 
 class FrameOutputs {

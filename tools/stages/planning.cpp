@@ -160,11 +160,16 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   tool.stats().phase("pilots", true);
   for (PlannedSegment& segment : plan.segments) {
     tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
-    const auto make = [&] { return decide(segment, wish, plan.media, source); };
+    Wish own = wish;
+    const auto measured = wish.measured.find(segment.first);
+    if (measured != wish.measured.end()) own.photons = measured->second.photons;
+    const auto make = [&] { return decide(segment, own, plan.media, source); };
     segment.decisions =
-        folder ? folder->decisions(segment,
-                                   hash_hex(decision_key(segment, wish, plan.media) + tool_hash_("scene-plan")), make)
+        folder ? folder->decisions(segment, hash_hex(decision_key(segment, own, plan.media) + tool_hash_("scene-plan")),
+                                   make)
                : make();
+    if (measured != wish.measured.end())
+      segment.decisions.reasons.push_back({"photon-trace", measured->second.because});
   }
   tool.stats().phase("graph");
   planned_.graph = graph(plan, wish);

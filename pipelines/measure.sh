@@ -1,0 +1,74 @@
+#!/bin/sh
+# measure.sh -- how much of the noise a viewer sees, before a long run: `make measure`. Run by run.sh after
+# scene-plan; it has make's variables.
+#
+# Of each segment the frame in the middle is rendered twice, each time with random numbers of its own. Of equal
+# renderings AQM says in which share of the pixels a viewer sees the noise of one (aqm-compare --either).
+# METHOD=preview chooses its photons so: a frame of n photons is compared with one of 2 n, so that the blur that more
+# photons take away is seen as well as noise; n starts at 3125 and is doubled until the share is at most AQM, or has
+# not become smaller twice (a filter that always takes equally many photons shows finer noise then). OUT/measured.json
+# has all that was tried; scene-plan --measured chooses by it.
+least=3125 most=1000000
+runs=$OUT/measure
+table=$OUT/measured.json
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM
+
+render() {   # render SEED FRAME PHOTONS
+  FRAMES=$2 PHOTONS=$3 MEASURE_SEED=$1 OUT=$runs/$1 MEASURED='' \
+    sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 || { tail -3 "$work/log" >&2; exit 3; }
+}
+
+compare() {   # compare FRAME [--either]: percent of the pixels in which a viewer sees that the two renderings differ
+  name=$(printf %04d "$1").exr
+  shift
+  "$BIN/aqm-compare" "$runs/1/frames/$name" "$runs/2/frames/$name" "$@" --metric aqm --json "$work/c.json" -q || exit 3
+  sed -n 's/^ *"percent": *\([0-9.e+-]*\),*$/\1/p' "$work/c.json" | head -1   # of the whole picture
+}
+
+tell() {   # tell FRAME PHOTONS PERCENT: at the screen, and one more that was tried
+  if [ -n "$2" ]; then what=errors; else what=noise; fi
+  echo "frame $1${2:+, $2 photons a frame}: a viewer sees $what in $(printf %.1f "$3") % of the pixels" >&2
+  tried="$tried${tried:+, }{\"photons\": ${2:-0}, \"aqm\": $(awk "BEGIN { print $3 / 100 }")}"
+}
+
+goes_on() {   # goes_on PERCENT: is it above AQM, and have more photons helped within the last two doublings?
+  if awk "BEGIN { exit !($1 < $best) }"; then best=$1 worse=0; else worse=$((worse + 1)); fi
+  [ $worse -lt 2 ] && [ "$n" -le $most ] && awk "BEGIN { exit !($1 > ${AQM%\%}) }"
+}
+
+segment() {   # segment FIRST LAST: its line of the table
+  frame=$((($1 + $2) / 2)) tried=
+  if [ "$METHOD" = preview ] && [ -z "$PHOTONS" ]; then
+    n=$least one=1 two=2 best=101 worse=0
+    render $one "$frame" "$n"
+    while :; do
+      render $two "$frame" $((2 * n))
+      percent=$(compare "$frame") || exit 3
+      tell "$frame" "$n" "$percent"
+      n=$((2 * n)) one=$two two=$((3 - two))
+      goes_on "$percent" || break
+    done
+  else
+    render 1 "$frame" "$PHOTONS" && render 2 "$frame" "$PHOTONS"
+    percent=$(compare "$frame" --either) || exit 3
+    tell "$frame" '' "$percent"
+  fi
+  echo "  {\"first\": $1, \"frame\": $frame, \"tried\": [$tried]}"
+}
+
+case $AQM in
+  '') case $QUALITY in draft) AQM=20;; *) AQM=5;; esac;;
+  *[!0-9.%]*) echo "AQM=$AQM: a share of the pixels, such as 5%" >&2; exit 2;;
+esac
+list=
+sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "$OUT/plan.json" | paste -d ' ' - - > "$work/segments"
+while read -r first last; do
+  line=$(segment "$first" "$last" < /dev/null) || exit 3
+  list="$list${list:+,
+}$line"
+done < "$work/segments"
+printf '{"format": "tempolux measured", "version": "1.0", "segments": [\n%s\n]}\n' "$list" > "$table.$$" &&
+  mv -f "$table.$$" "$table" && rm -rf "$runs"
+echo "$table: what was measured$([ "$METHOD" != preview ] || echo "; MEASURED=$table lets make take the photons that it asks for")"

@@ -1,0 +1,16 @@
+// tools/stages/measured.h -- photons of a preview by what `make measure` has measured (formats/plan/plan.md 6).
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "lib/plan/decisions.h"
+
+namespace tempolux::tools {
+
+/// For each segment of the table, by its first frame, the fewest photons with which a viewer sees errors in at most
+/// `share` of the pixels; where none of those tried reach that, those with the least. Throws InputError naming the
+/// place.
+std::map<int, Measured> measured_photons(const std::string& path, double share);
+
+}  // namespace tempolux::tools
