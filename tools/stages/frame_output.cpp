@@ -5,7 +5,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// "f.0012.exr" -> "f.0012_a.exr"
+/// "f.0012.exr" becomes "f.0012_a.exr".
 std::string half_name(const std::string& path, char letter) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t end = dot == std::string::npos || (slash != std::string::npos && dot < slash) ? path.size() : dot;
@@ -39,7 +39,7 @@ void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const
     add_colour_channels(*parts[i], channels, image);
     if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
     describe(description, parts[i]->samples, image);
-    if (i == 0)  // of the mean of all samples
+    if (i == 0)  // only the mean of all samples has these
       for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;
     save_exr(outputs_[i].temporary_path(), image, options);
   }
