@@ -22,17 +22,13 @@ if(TEMPOLUX_FUZZ)
 endif()
 set(CMAKE_EXE_LINKER_FLAGS "${CMAKE_EXE_LINKER_FLAGS} -Wl,--as-needed")
 
-# tempolux_library(NAME [APART] DEPENDS lib...): all .cpp of this folder's NAME/ as library tempolux_NAME. APART: never compiled together
-# (TEMPOLUX_UNITY), as names of its anonymous namespaces clash.
+# tempolux_library(NAME DEPENDS lib... PRIVATE lib...): all .cpp of this folder's NAME/ as library tempolux_NAME.
 function(tempolux_library name)
-  cmake_parse_arguments(ARG "APART" "" "DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(sources)
     add_library(tempolux_${name} STATIC ${sources})
     set_target_properties(tempolux_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    if(TEMPOLUX_UNITY AND NOT ARG_APART)
-      set_target_properties(tempolux_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    endif()
     target_link_libraries(tempolux_${name} PUBLIC tempolux_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE})
   else()
     add_library(tempolux_${name} INTERFACE)

@@ -54,7 +54,7 @@ void declare(tools::Tool& tool, Options& o) {
                  "EXR; pixels where one of its channels is not 0 do not count: a mask of ibr-warp")
       ->type_name("FILE");
   app.add_option("--relative-to", o.smooth,
-                 "EXR; stands for the reference in relMSE's denominator, where the reference's noise would count")
+                 "EXR; replaces the reference in relMSE's denominator, where the reference's noise would matter")
       ->type_name("FILE");
   app.add_option("--metric", o.metric,
                  "error: RMSE, relMSE, bias, PSNR, flicker; aqm: the share of pixels seen to differ, too")
@@ -62,8 +62,8 @@ void declare(tools::Tool& tool, Options& o) {
       ->capture_default_str();
   tools::declare_vision(tool, o.vision);
   app.add_flag("--either", o.either,
-               "the two frames err alike, such as one frame warped from two keys: AQM of what either errs by, their "
-               "difference / sqrt 2");
+               "the two frames have equal, independent errors, as one frame warped from two keys: AQM of the error of "
+               "either, their difference / sqrt 2");
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
@@ -72,11 +72,11 @@ void declare(tools::Tool& tool, Options& o) {
       ->capture_default_str()
       ->check(tools::number_between(0));
   app.add_option("--fail-above", o.fail_above,
-                 "exit 1 if the RMSE is above this, or what --fail-by names; 5%: if AQM is")
+                 "exit 1 if the RMSE, or the figure that --fail-by names, is above this; 5%: if AQM is")
       ->type_name("VALUE")
       ->check(tools::number_between(0))
       ->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
-  app.add_option("--fail-by", o.fail_by, "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")
+  app.add_option("--fail-by", o.fail_by, "figure of --fail-above: rmse, relmse or aqm (a share, .05 for 5 %)")
       ->capture_default_str()
       ->check(CLI::IsMember({"rmse", "relmse", "aqm"}));
   tool.leave_out_of_history(app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
@@ -103,7 +103,7 @@ void check(const tools::Tool& tool, const Options& o, bool frames_given) {
     throw InputError("--difference " + o.difference + ": the name must end in .exr or .png");
 }
 
-/// Writes the difference as EXR or PNG; `scale` 0 is chosen by the first frame and kept.
+/// Writes the difference as EXR or PNG. If `scale` is 0 the first frame sets it for all frames.
 void write_difference(tools::Tool& tool, const Compared& pair, std::optional<int> frame, double& scale,
                       tools::Output output) {
   if (output.path().ends_with(".exr")) {
@@ -132,22 +132,22 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   return comparison;
 }
 
-/// relMSE as something to judge by: where it does not exist, as the reference is black, 0 of equal frames and infinity
-/// of others.
+/// relMSE for --fail-above: if it does not exist, since the reference is black, 0 for equal frames and infinity for
+/// others.
 double relative_error(const Comparison& result) {
   if (const auto& relative = result.total.relative_squared_error) return relative->value;
   return result.total.squared_error.root() > 0 ? INFINITY : 0;
 }
 
-/// What is written for each frame.
+/// The output files of each frame.
 class FrameOutputs {
  public:
-  /// Creates the outputs of the first frame, so that an unwritable place is noticed before the work.
+  /// Creates the outputs of the first frame, so that an unwritable place is reported before the work.
   FrameOutputs(tools::Tool& tool, const Options& o, std::optional<int> first)
       : scale(o.difference_scale), tool_(tool), o_(o) {
     open(first);
   }
-  /// Creates those of a later frame.
+  /// Creates the outputs of a later frame.
   void open(std::optional<int> frame) {
     difference_ = output(o_.difference, frame);
     map_ = output(o_.vision.map, frame);
@@ -159,7 +159,7 @@ class FrameOutputs {
              std::optional<int> frame) {
     if (map_) tools::write_map(tool_, judged, loaded, viewing, frame, std::move(*map_));
   }
-  double scale;  ///< of the PNG of differences, chosen by the first frame
+  double scale;  ///< of the PNG of differences, set by the first frame
 
  private:
   std::optional<tools::Output> output(const std::string& name, std::optional<int> frame) {
@@ -201,7 +201,7 @@ Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector
   return builder.finish();
 }
 
-/// The figure that --fail-above judges.
+/// The figure that --fail-above compares with its limit.
 double judged_figure(const Options& o, const Comparison& result) {
   if (o.fail_by == "aqm") return result.quality->all.share();
   return o.fail_by == "rmse" ? result.total.squared_error.root() : relative_error(result);

@@ -46,7 +46,7 @@ struct Options {
   double pixel_error = -1;
   bool half_float = false, learn_lights = false, keep_outliers = false;
   int width = 640, height = 360;
-  double audit = 0;  ///< share of the frame's rays
+  double audit = 0;  ///< share of the frame's camera rays
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const {
@@ -54,7 +54,7 @@ struct Options {
   }
 };
 
-/// The neighbours in time that motion needs; empty unless it is asked for.
+/// The neighbouring frames that motion needs; empty if it is not requested.
 struct MotionFrame {
   std::optional<SceneFrame> frame;
   std::optional<CameraView> view;
@@ -83,8 +83,8 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
-/// A reference that cannot hold some light is no measure of frames that do. No path meets a lamp without extent where a
-/// mirror sends it.
+/// Warns if path tracing cannot find some light of the scene: no path hits a light without extent after a mirror, so
+/// the reference would lack the light.
 void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
   const std::uint32_t smooth = frame.lights.empty() ? kNone : first_smooth_material(frame);
   if (smooth == kNone) return;
@@ -94,7 +94,7 @@ void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
             "photons do (--photons)");
 }
 
-/// Bias of the frame's layers. Half of the effort is photons, the other half paths from the eye, but where paths lack
+/// Measures the bias of the frame's layers. Half of the effort is photons and half is camera paths, unless paths lack
 /// light that the frame has.
 std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene,
                               const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
@@ -112,14 +112,14 @@ std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const R
   return audit.entries();
 }
 
-void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
+void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing) {
   tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves,
                               tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   if (options.integrator == "path" && number == tool.common().frames.front()) {
     warn_of_missing_light(tool, frame);
-    // Other ways need photons or a cache, whose tools have said so.
+    // With photons or a cache, the tools that made them have given this warning.
     if (const std::string doubt = doubt_of_light_units(input.scene());
         tool.common().light_units == "raw" && !doubt.empty())
       tool.warn(doubt);
@@ -154,7 +154,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   lights.use(grid.get());
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
-  // A reference that has its frame's random numbers errs as the frame does, and would call it better than it is.
+  // With the frame's own random numbers a reference would have the frame's noise, and the frame's error would seem too
+  // small.
   if (options.integrator == "path") frame_options.seed = mix64(frame_options.seed ^ 0x7265666572656e63ull);
   if (options.integrator != "path") frame_options.known = &light.get();
   frame_options.spread_outliers = !options.keep_outliers && options.integrator != "path";
@@ -183,15 +184,16 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
-  tools::say_account(tool, rendered, audited, frame_options, input.scene().object_names);
+  tools::report_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
 
 constexpr std::size_t kMostViews = 8;
-/// One code of a pixel at the median, .18: its share of the pixel's radiance. The slope of the sRGB curve there is 255
-/// x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
+/// Relative error of a pixel of linear value .18 that changes its 8-bit code by one. The slope of the sRGB curve there
+/// is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
 constexpr double kPixelErrorOfCode = 1 / (305 * 0.18);
 
-/// Of all frames named the cameras, kMostViews of them at most, and of the one in the middle the scene.
+/// Learns the visibility of distant lights, for the cameras of the named frames (at most kMostViews), in the scene of
+/// the middle frame.
 void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, const std::vector<int>& frames) {
   tools::Output output(options.output, tool.common().no_clobber);
   tool.stats().phase("evaluate");
@@ -214,7 +216,7 @@ void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, 
   tool.stats().end_phase();
 }
 
-/// A scene without light may be meant (unlit materials, depth alone), but a black frame is explained.
+/// A scene without light may be intended (unlit materials, depth only), but a black frame needs an explanation.
 void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
   if (std::ranges::any_of(scene.materials, &Material::unlit)) return;
   try {
@@ -372,12 +374,11 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(0.0, 100.0));
   app.add_flag("--learn-lights", options.learn_lights,
-               "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by "
-               "that; with -o FILE.lightgrid "
-               "learn for the cameras of all frames named, write that and no frame");
+               "first trace rays to learn from where sky, suns and lamps reach the visible places, and aim light "
+               "samples accordingly; with -o FILE.lightgrid learn for the cameras of all named frames and write a file "
+               "instead of a frame");
   app.add_option("--lights", options.lights,
-                 ".lightgrid file, or a pattern: what --learn-lights has learned before, in place of learning it for "
-                 "each frame")
+                 ".lightgrid file from --learn-lights, or a pattern: read it instead of learning for each frame")
       ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr: halves of spp/2 samples each, independent of each other and of "
@@ -429,7 +430,7 @@ int main(int argc, char** argv) {
       learn(tool, input, options, frames);
       return tools::exit_ok;
     }
-    StandingTree standing;
+    StaticTree standing;
     for (int frame : frames) render(tool, input, options, frame, standing);
     return tools::exit_ok;
   });

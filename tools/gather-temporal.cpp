@@ -29,7 +29,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;  // final SCENE
-  std::string points, high, previous, output, cache, dynamic, age_weight = "2", refresh_rule = "adaptive";
+  std::string points, high, previous, output, cache, age_weight = "2", refresh_rule = "adaptive";
   int width = 640, height = 360;
   bool resume = false;
   GatherOptions gather;
@@ -39,11 +39,11 @@ struct Options {
   const std::string& scene() const { return inputs.back(); }
 };
 
-/// The frame before, in memory: what was kept, and the scene it was kept of.
+/// The previous frame, kept in memory: its records, and its scene.
 struct Chain {
   KeptHemispheres kept;
-  std::optional<SceneFrame> before;  ///< none: nothing is kept
-  std::string places_hash;           ///< of the points that its anchors name
+  std::optional<SceneFrame> before;  ///< empty: nothing is kept
+  std::string places_hash;           ///< of the points that anchors name
   tools::KeptFiles files;
 
   void follow(SceneFrame frame, const tools::FramePoints& points) {
@@ -52,7 +52,7 @@ struct Chain {
   }
 };
 
-/// Anchors are numbers of points: these must lie where those of the frame before lay.
+/// Anchors are numbers of points, so each point must lie where the previous frame's point of that number lay.
 void check_points(const Chain& chain, const std::string& file, const tools::FramePoints& points) {
   if (!chain.before || chain.places_hash.empty() || chain.places_hash == points.places_hash) return;
   throw InputError(file + ": its " + std::to_string(points.anchored) +
@@ -115,9 +115,9 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
         double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
 }
 
-/// One frame, after that in `chain`, which receives it.
-void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number,
-                  StandingTree& standing, Chain& chain, bool resume) {
+/// Gathers one frame from the previous one in `chain`, and stores it there.
+void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing,
+                  Chain& chain, bool resume) {
   const bool single = !options.previous.empty();
   const std::string samples = tools::frame_name(options.output, number),
                     cache = tools::frame_name(options.cache, number);
@@ -191,11 +191,6 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
 void check(const CLI::App& app, const Options& options, const std::vector<int>& frames) {
   if (options.inputs.size() != 2 || options.inputs[0] != "final")
     throw InputError("'" + options.inputs[0] + "' is not a way to gather over time: final, then the scene");
-  if (!options.dynamic.empty())
-    throw InputError(
-        "--dynamic: what movers change of the light is in the frame's points; make them with irradcache-build points "
-        "--update .. --dynamic " +
-        options.dynamic);
   if (app.get_option("--high-samples")->count() > 0 && options.high.empty())
     throw InputError("--high-samples: a run without --high does not read it; leave it out");
   if (frames.size() > 1) {
@@ -228,7 +223,6 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
-  app.add_option("--dynamic", options.dynamic)->group("");  // not in the help: refused with the reason
   tool.leave_out_of_history(
       app.add_option("--previous", options.previous,
                      ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
@@ -289,7 +283,7 @@ int main(int argc, char** argv) {
                                                               : AgeWeight::oldest;
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | tools::SceneInput::a_camera);
-    StandingTree standing;
+    StaticTree standing;
     Chain chain;
     bool resume = options.resume;
     for (const int frame : frames) { gather_frame(tool, input, options, frame, standing, chain, resume); }

@@ -43,14 +43,14 @@ struct Options {
   }
 };
 
-/// "f.0012.exr" -> "f.0012_1.exr"
+/// "f.0012.exr" becomes "f.0012_1.exr".
 std::string candidate_name(const std::string& path, std::size_t key) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t end = dot == std::string::npos || (slash != std::string::npos && dot < slash) ? path.size() : dot;
   return path.substr(0, end) + '_' + std::to_string(key + 1) + path.substr(end);
 }
 
-/// The files of one frame, created before the work and all there or none.
+/// The output files of one frame: created before the work, committed together.
 struct Outputs {
   tools::Output frame;
   std::optional<tools::Output> flow, mask;
@@ -83,7 +83,7 @@ void count_work(tools::Tool& tool, const WarpedFrame& warped) {
   stats.count("traced", double(traced));
 }
 
-/// Writes what was made, whose colours it takes; `bare` has the size and the attributes.
+/// Writes a warped frame and takes its colours; `bare` has the size and the attributes.
 void write(tools::Tool& tool, const Options& options, Outputs& outputs, WarpedFrame&& warped, const PixelFlow* flow,
            Image image, const Image& bare) {
   tool.stats().phase("write");
@@ -109,7 +109,7 @@ void write(tools::Tool& tool, const Options& options, Outputs& outputs, WarpedFr
   count_work(tool, warped);
 }
 
-/// The channels that were asked for beside colour.
+/// Adds the requested channels besides colour.
 void add_data(const Options& options, tools::SceneInput& input, tools::FramesOfScene& frames, const Tracer& tracer,
               const SceneView& seen, int number, Image& image) {
   const auto plain = [](const std::string& c) { return c == "Z" || c == "N" || c == "id"; };
@@ -124,7 +124,7 @@ void add_data(const Options& options, tools::SceneInput& input, tools::FramesOfS
 }
 
 void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& input,
-                const std::vector<tools::LoadedKey>& keys, tools::FramesOfScene& frames, StandingTree& standing,
+                const std::vector<tools::LoadedKey>& keys, tools::FramesOfScene& frames, StaticTree& standing,
                 int number) {
   Outputs outputs(options, number, tool.common().no_clobber);
   tool.stats().phase("evaluate");
@@ -168,7 +168,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
   write(tool, options, outputs, std::move(warped), &flow, std::move(image), bare);
 }
 
-/// Without a scene: what the target shows is read from its file.
+/// Warps to a view that is read from a file, without a scene.
 void warp_view(tools::Tool& tool, const Options& options, const std::vector<tools::LoadedKey>& keys) {
   Outputs outputs(options, 0, tool.common().no_clobber);
   const Image other = load_exr(options.view, {.our_names = true});
@@ -218,10 +218,11 @@ void add_options(tools::Tool& tool, Options& options) {
       ->required();
   app.add_option("--scene", options.scene, "glTF 2.0 scene of the keys: the frame to make is --frame of it")
       ->type_name("FILE");
-  app.add_option("--view", options.view, "EXR file that shows what to make: its camera and Z count")->type_name("FILE");
+  app.add_option("--view", options.view, "EXR file whose camera and Z define the picture to make")->type_name("FILE");
   tool.output_option(options.flow, "pixel flow, EXR, or a pattern", "--flow");
   tool.output_option(options.mask, "which pixels must be traced and why, EXR, or a pattern", "--mask");
-  app.add_flag("--separate", options.warp.separate, "also write NAME_1.exr and NAME_2.exr: what each key alone gives");
+  app.add_flag("--separate", options.warp.separate,
+               "also write NAME_1.exr and NAME_2.exr: the frame from each key alone");
   app.add_option("--channels", options.channels, "data beside the keys' colour: Z, N, P, id, albedo, motion")
       ->delimiter(',')
       ->type_name("NAMES")
@@ -276,7 +277,7 @@ int main(int argc, char** argv) {
     }
     tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
     tools::FramesOfScene frames(tool, input, keys[0].key->camera().width(), keys[0].key->camera().height());
-    StandingTree standing;
+    StaticTree standing;
     for (const int number : tool.common().frames) {
       std::vector<int> kept{number};
       for (const tools::LoadedKey& key : keys) kept.push_back(key.frame.value_or(number));

@@ -30,7 +30,7 @@ constexpr std::uint64_t kMaxPoints = 1 << 28;  ///< per side of all surfaces
 
 using Options = tools::CacheOptions;
 
-/// Options that a step does not read, given all the same, would do nothing without a word.
+/// Refuses options that the step does not read; they would have no effect, silently.
 void refuse_unread(const CLI::App& app, const std::string& step, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (app.get_option(name)->count() > 0) throw InputError(name + ": " + step + " does not read it; leave it out");
@@ -93,7 +93,7 @@ void add_options(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count,
-                    "irradiance points per side of all surfaces that stand; what moves gets as many per area");
+                    "irradiance points per side of all static surfaces; movers get as many per area");
   app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("--map", options.map,
                  "global, or static: points and records of the scene without what moves in the frame's segment, from "
@@ -158,7 +158,8 @@ int main(int argc, char** argv) {
     options.point.count = std::uint32_t(options.point_count);
     const bool makes_points = options.mode() == "points" || !options.photons.empty();
     std::optional<tools::Importance> importance;
-    const auto seeded = [&](int frame) -> const Options& {  // for a file of this frame, alone or of a range
+    // Options with the frame's seed, the same for a single frame and for a range.
+    const auto seeded = [&](int frame) -> const Options& {
       options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
       if (makes_points) options.view = importance->at(frame);
       return options;
@@ -168,10 +169,10 @@ int main(int argc, char** argv) {
                                                                                       : tools::SceneInput::a_camera;
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
     importance.emplace(tool, input, options.importance);
-    StandingTree standing;
+    StaticTree standing;
     if (options.mode() == "points")
       for (int frame : frames)
-        if (options.map == "static") tools::build_standing_points(tool, input, seeded(frame), frame);
+        if (options.map == "static") tools::build_static_points(tool, input, seeded(frame), frame);
         else if (!options.update.empty()) tools::build_updated_points(tool, input, seeded(frame), frame, standing);
         else tools::build_points(tool, input, seeded(frame), frame, standing);
     else if (!options.update.empty() && !tools::has_frame_pattern(options.output))

@@ -23,7 +23,7 @@
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
 #include "lib/render/seen_spheres.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
@@ -41,7 +41,7 @@ struct Options {
   tools::UpdateArguments updating;
 };
 
-/// 0 stands for automatic.
+/// The number of groups; 0: automatic.
 std::uint32_t group_count(const std::string& text) {
   if (text == "auto") return 0;
   const std::uint64_t count = tools::parse_count(text);
@@ -50,8 +50,8 @@ std::uint32_t group_count(const std::string& text) {
   return std::uint32_t(count);
 }
 
-/// An estimate of density by so many photons has a standard error of 14 %; fewer in each sphere and it reads light from
-/// other spheres too.
+/// A density estimate from this many photons has a standard error of 14 %. With fewer photons in each sphere, estimates
+/// also take light from outside the sphere.
 constexpr std::uint64_t kNeededPerSphere = 50;
 
 void warn_of_few(tools::Tool& tool, const Lights& lights, const PhotonMapResult& result, int frame_number) {
@@ -98,7 +98,7 @@ PhotonOptions photon_options_of(const tools::Tool& tool, const Options& options,
   return photon_options;
 }
 
-/// A frame with what traces photons through it.
+/// A frame and the tracer of its photons.
 struct TracedFrame {
   SceneFrame frame;
   Tracer tracer;
@@ -118,7 +118,7 @@ std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const st
 }
 
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
-                 const std::vector<formats::ViewSphere>& view, int frame_number, StandingTree& standing,
+                 const std::vector<formats::ViewSphere>& view, int frame_number, StaticTree& standing,
                  tools::KeptMap& kept) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
@@ -151,13 +151,13 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   count(tool, result, output, tracer.refused_ray_count());
 }
 
-/// What moves in one interval of a segment: where it is, and a hash of its states.
+/// What moves in one interval of a segment: its boxes, and a hash of its states.
 struct Movers {
   MovingBoxes boxes;
   std::string hash;
 };
 
-/// Of interval i of `intervals`: all frames f of the segment with interval_of(f) == i.
+/// Interval i of `intervals`: all frames f of the segment with interval_of(f) == i.
 Movers movers_in(tools::SceneInput& input, const Segment& segment, std::size_t i, std::size_t intervals) {
   Movers movers;
   Hasher hasher;
@@ -172,15 +172,15 @@ Movers movers_in(tools::SceneInput& input, const Segment& segment, std::size_t i
   return movers;
 }
 
-/// The map of what stands, once for a segment, and which of its paths movers can touch.
-void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& options,
-                    const std::vector<formats::ViewSphere>& view, int frame_number) {
+/// Traces the static map of a segment and finds its touched paths.
+void trace_static(tools::Tool& tool, tools::SceneInput& input, const Options& options,
+                  const std::vector<formats::ViewSphere>& view, int frame_number) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   std::optional<tools::Output> paths_output;
   if (!options.paths.empty())
     paths_output.emplace(tools::frame_name(options.paths, frame_number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
-  const SceneFrame frame = standing_scene(input.at(frame_number));
+  const SceneFrame frame = static_scene_of(input.at(frame_number));
   const Segment& segment = frame.segment;
   const std::size_t intervals =
       std::min<std::size_t>(formats::kMostIntervals, std::size_t(segment.last - segment.first + 1));
@@ -232,7 +232,7 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
   count(tool, result, output, tracer.refused_ray_count());
 }
 
-/// Refuses paths that were found for another segment, other things that stand or other movers.
+/// Refuses touched paths of another segment, another static scene or other movers.
 void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string& file,
                  const formats::PathsHeader& paths, const SceneFrame& standing, const std::string& emission,
                  int frame) {
@@ -254,9 +254,9 @@ void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string&
                      std::to_string(frame) + "; trace the static map again");
 }
 
-/// What movers change at a frame: the paths that they touch, with and without them.
+/// Traces the dynamic map of a frame: the touched paths with and without the movers.
 void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options& options,
-                      const std::vector<formats::ViewSphere>& view, int frame_number, StandingTree& tree) {
+                      const std::vector<formats::ViewSphere>& view, int frame_number, StaticTree& tree) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   const std::string file = tools::frame_name(options.static_paths, frame_number);
   tool.stats().phase("read paths");
@@ -264,7 +264,7 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   const formats::PathsFile paths = formats::load_paths(file);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
-  const SceneFrame standing = standing_scene(frame);
+  const SceneFrame standing = static_scene_of(frame);
   EmissionTable emission = input.emission(frame.frame);
   emission.aim = spheres_in_scene(view, frame.origin);
   check_paths(tool, input, file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
@@ -278,8 +278,8 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   for (const formats::TouchedPath& path : paths.paths)
     if (path.intervals & bit) touched.push_back(path.path);
   tool.stats().phase("build");
-  const Tracer tracer(frame, tree), standing_tracer(standing, tree);
-  const Lights lights(frame, emission), standing_lights(standing, emission);
+  const Tracer tracer(frame, tree), static_tracer(standing, tree);
+  const Lights lights(frame, emission), static_lights(standing, emission);
 
   PhotonOptions photon_options;
   photon_options.seed = paths.header.seed;
@@ -290,13 +290,13 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   header.map = "dynamic";
 
   tool.stats().phase("trace", true);
-  const PhotonTracer whole(tracer, lights, photon_options), without(standing_tracer, standing_lights, photon_options);
+  const PhotonTracer whole(tracer, lights, photon_options), without(static_tracer, static_lights, photon_options);
   const PhotonMapResult result = write_dynamic_map(without, whole, touched, photon_options, header, sink_of(output),
                                                    [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
-  count(tool, result, output, tracer.refused_ray_count() + standing_tracer.refused_ray_count());
+  count(tool, result, output, tracer.refused_ray_count() + static_tracer.refused_ray_count());
   tool.stats().count("touched_paths", double(touched.size()));
 }
 
@@ -331,10 +331,9 @@ int main(int argc, char** argv) {
   app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
-  app.add_option(
-         "--map", options.map,
-         "global: the scene at the frame; static: without what moves in the frame's segment; dynamic: the difference, "
-         "of paths that movers touch")
+  app.add_option("--map", options.map,
+                 "global: the scene at the frame; static: without movers of the frame's segment; dynamic: the "
+                 "difference, for touched paths")
       ->capture_default_str()
       ->check(CLI::IsMember({"global", "static", "dynamic"}));
   tool.output_option(options.paths, "of --map static: also write which paths movers can touch, .paths", "--paths");
@@ -358,13 +357,13 @@ int main(int argc, char** argv) {
     if (options.map != "global" && input.has_media())
       throw InputError(options.scene + ": has media, which all light meets: --map " + options.map +
                        " cannot be told from the rest; trace the global map");
-    StandingTree standing;
+    StaticTree standing;
     tools::Importance importance(tool, input, options.importance);
     tools::KeptMap kept;
     for (int frame : frames) {
       kept.wanted = frame != frames.back();
       const std::vector<formats::ViewSphere>& view = importance.at(frame);
-      if (options.map == "static") trace_standing(tool, input, options, view, frame);
+      if (options.map == "static") trace_static(tool, input, options, view, frame);
       else if (options.map == "dynamic") trace_difference(tool, input, options, view, frame, standing);
       else trace_frame(tool, input, options, view, frame, standing, kept);
     }

@@ -27,12 +27,12 @@ namespace {
 
 struct Options {
   std::string input, low, high, kinds, output, rest, cell = "auto", limit;
-  double energy = EnergyLimit{}.times_mean;
+  double energy = BrightLimit{}.times_mean;
 
-  EnergyLimit energy_limit() const {
+  BrightLimit bright_limit() const {
     return {energy, limit.empty() ? std::nullopt : std::optional(double(tools::parse_count(limit)))};
   }
-  /// m; nothing: automatic.
+  /// m; empty: automatic.
   std::optional<double> cell_edge() const {
     if (cell == "auto") return std::nullopt;
     double edge = 0;
@@ -42,7 +42,7 @@ struct Options {
   }
 };
 
-/// The two outputs, made before the work. `first` holds low or the chosen kinds.
+/// The two outputs, created before the work. `first` gets the low part or the chosen kinds.
 struct Outputs {
   tools::Output first;
   std::optional<tools::Output> second;
@@ -52,7 +52,7 @@ auto sink_of(tools::Output& output) {
   return [&output](const void* data, std::size_t size) { output.write(data, size); };
 }
 
-void count_cells(tools::Tool& tool, const EnergyCells& cells, double edge) {
+void count_cells(tools::Tool& tool, const FluxCells& cells, double edge) {
   tool.stats().count("cells", double(cells.size()));
   tool.stats().count("bright_cells", double(cells.bright_count()));
   tool.stats().set("cell_edge_m", edge);
@@ -60,7 +60,7 @@ void count_cells(tools::Tool& tool, const EnergyCells& cells, double edge) {
   tool.stats().set("mean_irradiance_W_m2", cells.mean_irradiance());
 }
 
-/// Photons in as many passes as needed; what comes through a pipe is kept beside the low part until the end.
+/// Reads photons in as many passes as needed. Photons from a pipe are stored in a temporary file next to the low part.
 class PhotonFile {
  public:
   PhotonFile(tools::Tool& tool, std::string path, const Options& options) : tool_(tool), path_(std::move(path)) {
@@ -91,7 +91,7 @@ class PhotonFile {
     totals_ = reader.totals();
     ledger_ = reader.ledger();
   }
-  /// Writes the whole map of standard input to a temporary file, which goes when this object does.
+  /// Writes the whole map from standard input to a temporary file, which this object removes at its end.
   void spool(const std::string& low) {
     tool_.stats().phase("spool");
     const std::filesystem::path beside(low);
@@ -115,7 +115,7 @@ class PhotonFile {
   std::vector<formats::GroupFlux> ledger_;
 };
 
-/// The header of a part: history and, of an overlay, no base any more.
+/// The header of a part: with this tool's history, and without the base of an overlay.
 formats::PhotonHeader part_header(const tools::Tool& tool, formats::PhotonHeader header, const std::string& part) {
   header.history += tool.history_line();
   header.base_name.clear(), header.base_digest.clear();
@@ -138,10 +138,10 @@ void split_photons(tools::Tool& tool, const std::string& path, const Options& op
     });
     edge = found.edge();
   }
-  EnergyCells cells(*edge, 0);
-  file.read("cells", [&](const formats::PhotonBlock& block) { add_energy(block, cells); });
+  FluxCells cells(*edge, 0);
+  file.read("cells", [&](const formats::PhotonBlock& block) { add_flux(block, cells); });
   refuse_part(options.input, file.header().part);
-  cells.close(options.energy_limit());
+  cells.close(options.bright_limit());
   formats::PhotonWriter low(sink_of(outputs.first), part_header(tool, file.header(), "low"));
   formats::PhotonWriter high(sink_of(*outputs.second), part_header(tool, file.header(), "high"));
   file.read("divide", [&](const formats::PhotonBlock& block) {
@@ -162,11 +162,11 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
   refuse_part(options.input, file.header.part);
   tool.stats().phase("cells");
   const double spacing = file.header.spacing;
-  // Points are spread evenly: 4 x 4 of them lie in a square four spacings wide.
+  // Points are evenly spaced: a square of four spacings holds 4 x 4 of them.
   const double edge = options.cell_edge().value_or(4 * spacing);
-  EnergyCells cells(edge, spacing * spacing);
-  add_energy(file.records, spacing * spacing, cells);
-  cells.close(options.energy_limit());
+  FluxCells cells(edge, spacing * spacing);
+  add_flux(file.records, spacing * spacing, cells);
+  cells.close(options.bright_limit());
   tool.stats().phase("divide");
   const DividedPoints parts = divide(file.records, cells);
   const auto write = [&](tools::Output& output, const char* part,
@@ -185,7 +185,7 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
   tool.stats().count("high", double(parts.high.size()));
 }
 
-/// The names of `list` that are in `chosen`, or are not; in their order.
+/// The names of `list` that are (or are not) in `chosen`, in the order of `list`.
 std::string names_in(const std::string& list, const std::vector<std::string>& chosen, bool in) {
   std::string names;
   for (const std::string& name : CLI::detail::split(list, ','))
@@ -195,7 +195,7 @@ std::string names_in(const std::string& list, const std::vector<std::string>& ch
 
 const std::vector<std::string> kKinds{"direct", "caustic", "indirect", "volume"};
 
-/// What --kind names, and what is left, of the kinds that a file holds.
+/// The kinds that --kind names, and the other kinds, of those in a file.
 struct KindLists {
   std::string chosen, rest;
 };
@@ -303,8 +303,8 @@ int main(int argc, char** argv) {
   app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")
       ->required()
       ->type_name("FILE");
-  tool.output_option(options.low, "what is left of bright cells, and all other cells", "--low");
-  tool.output_option(options.high, "what bright cells have above their limit", "--high");
+  tool.output_option(options.low, "light of bright cells up to their limit, and all other cells", "--low");
+  tool.output_option(options.high, "light of bright cells above their limit", "--high");
   app.add_option("--energy", options.energy,
                  "a cell keeps at most this multiple of the mean irradiance in the low part")
       ->capture_default_str()

@@ -1,9 +1,9 @@
-// tools/scene-plan.cpp -- decide what a range of frames needs, and say from which files each picture is made.
+// tools/scene-plan.cpp -- decides what a range of frames needs, and from which files each picture is made.
 //
 //     scene-plan room.glb --frames 0-47 -o out
 //
-// Writes out/plan.json, out/plan.mk and out/state/*. If neither the scene nor the options nor the programs have changed
-// it only looks and writes nothing. Format: formats/plan/plan.md.
+// Writes out/plan.json, out/plan.mk and out/state/*. If scene, options and programs have not changed it only checks
+// that and writes nothing. Format: formats/plan/plan.md.
 //
 //     scene-plan --tidy out
 #include <CLI/CLI.hpp>
@@ -52,7 +52,7 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
   wish.method = *named<FrameMethod>(kFrameMethods, options.method);
   wish.filter = options.filter == "auto" ? Wish::kAutoFilter : options.filter == "none" ? 0 : std::stoi(options.filter);
   wish.camera = tool.common().camera;
-  // Of the options that all stages share those that states of the scene do not hold.
+  // Of the options that all stages share, those that are not part of the scene's states.
   for (const CLI::Option* option : tool.app().get_options())
     if (const auto& shared = tools::kSharedWords; std::ranges::find(shared, option->get_name()) != shared.end())
       for (const std::string& word : option->results()) wish.common += option->get_name() + ' ' + word + '\n';
@@ -176,7 +176,7 @@ void add_wishes(tools::Tool& tool, Options& options) {
       ->transform(tools::percent([] {}));
   app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")
       ->type_name("FRAMES");
-  app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")
+  app.add_option("--reference-samples", wish.reference_samples, "samples per pixel of the reference")
       ->capture_default_str()
       ->check(tools::number_between(2, 1 << 20));
 }
@@ -202,10 +202,9 @@ int main(int argc, char** argv) {
   add(app.add_option("--samples", options.samples,
                      "instead of a plan: two small ones in this folder, for make to make and --estimate to read"))
       ->type_name("FOLDER");
-  add(app.add_option(
-          "--estimate", options.estimate,
-          "instead: print what a run will cost, CPU seconds and bytes of each stage, from the samples in this folder "
-          "(make -f Makefile.example estimate)"))
+  add(app.add_option("--estimate", options.estimate,
+                     "instead: print the estimated cost of a run, CPU seconds and bytes of each stage, from the "
+                     "samples in this folder (make -f Makefile.example estimate)"))
       ->type_name("FOLDER");
   add(app.add_option("--tidy", options.tidy_folder,
                      "instead: remove unfinished files of killed runs from this folder and those in it"))

@@ -36,21 +36,21 @@ struct Options {
   FilterOptions filter;
 };
 
-/// A frame's files.
+/// The files of a frame.
 struct Names {
-  std::string frame, flow;  ///< flow "": in the frame itself, if anywhere
+  std::string frame, flow;  ///< flow "": in the frame's own channels, if anywhere
 };
 
-/// A frame that is read, with what the filter needs of it.
+/// A loaded frame, and the data that the filter needs from it.
 struct LoadedFrame {
   Image image;
-  std::unique_ptr<WindowLight> light;  ///< none of a frame that is filtered alone
+  std::unique_ptr<WindowLight> light;  ///< nullptr if the frame is filtered alone
   FlowFrame flow;
 };
 
 class FilterRun {
  public:
-  /// sequence: each frame is filtered in its turn, with those around it; else one is.
+  /// sequence: filters each frame in turn, with its neighbours; otherwise only one frame.
   FilterRun(tools::Tool& tool, const Options& options, std::vector<Names> names, bool sequence)
       : tool_(tool),
         options_(options),
@@ -58,7 +58,7 @@ class FilterRun {
         sequence_(sequence),
         windowed_(sequence ? options.width > 1 : names_.size() > 1) {}
 
-  /// Filters frame `at` of the list with those from `first` to `last`.
+  /// Filters frame `at` of the list with the frames `first` to `last`.
   void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
     tools::Output output(file, tool_.common().no_clobber);
     loaded_.erase(loaded_.begin(), loaded_.lower_bound(first));
@@ -89,14 +89,14 @@ class FilterRun {
       const LoadedFrame& other = load(i, sequence_);
       tool_.stats().phase("filter", true);
       filter.add(*other.light, other.flow);
-      if (!sequence_) loaded_.erase(i);  // two frames in memory, however many there are
+      if (!sequence_) loaded_.erase(i);  // only two frames stay in memory
     };
     for (std::size_t i = at; i > first; --i) add(i - 1);
     for (std::size_t i = at + 1; i <= last; ++i) add(i);
     return filter.finish(std::move(middle.image));
   }
 
-  /// What is wrong is said with the file's name before it.
+  /// Runs body; errors get the file's name in front.
   template <class Body>
   static void naming(const std::string& file, const Body& body) {
     try {
@@ -104,8 +104,8 @@ class FilterRun {
     } catch (const InputError& error) { throw InputError(file + ": " + error.what()); }
   }
 
-  /// to_filter: the frame is filtered itself, now or later; else no more of it is read and kept than others take from
-  /// it.
+  /// to_filter: the frame itself is filtered, now or later; otherwise only the parts that its neighbours use are read
+  /// and kept.
   LoadedFrame& load(std::size_t index, bool to_filter) {
     const auto [found, is_new] = loaded_.try_emplace(index);
     LoadedFrame& loaded = found->second;
@@ -128,7 +128,7 @@ class FilterRun {
     return loaded;
   }
 
-  /// colour: pixels may hold no numbers, they are filled from those around. all: every channel, or those that
+  /// colour: pixels may be NaN and are filled from their neighbours. all: reads every channel, else those that
   /// --channels and the filter need.
   Image read(const std::string& file, bool colour, bool all) {
     const auto is_named = [&](const std::string& channel) {
@@ -144,7 +144,7 @@ class FilterRun {
     return image;
   }
 
-  /// Warnings once per run, in the words of the first file that they are about.
+  /// Gives each warning once per run, for the first file that it applies to.
   void explain(const Names& names, const LoadedFrame& loaded) {
     if (options_.width > 1 && names_.size() > 1 && loaded.flow.empty())
       warn("motion",
@@ -170,7 +170,7 @@ class FilterRun {
   const Options& options_;
   std::vector<Names> names_;
   bool sequence_, windowed_;
-  std::map<std::size_t, LoadedFrame> loaded_;  ///< of the current window
+  std::map<std::size_t, LoadedFrame> loaded_;  ///< frames of the current window
   std::map<std::string, bool> warned_;
 };
 
@@ -203,7 +203,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
   FilterRun run(tool, options, std::move(names), true);
   const int reach = (options.width - 1) / 2;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    // Flow leads to the next frame: the window ends where a number is missing.
+    // Flow leads to the next frame, so the window ends where a frame number is missing.
     std::size_t first = i, last = i;
     while (first > 0 && i - first < std::size_t(reach) && numbers[first - 1] == numbers[first] - 1) --first;
     while (last + 1 < numbers.size() && last - i < std::size_t(reach) && numbers[last + 1] == numbers[last] + 1) ++last;
@@ -228,7 +228,7 @@ int main(int argc, char** argv) {
   app.add_option("--flow", options.flow,
                  "their pixel flow, EXR, as many, or a pattern; without: the frames' own forward and backward")
       ->type_name("FILE");
-  app.add_option("--frames", options.range, "filter these frames, each with those around it in this range: 0-47")
+  app.add_option("--frames", options.range, "filter these frames, each with its neighbours in this range: 0-47")
       ->type_name("SPEC");
   app.add_option("--width", options.width, "with --frames: frames that a frame is filtered with, itself included; odd")
       ->capture_default_str()

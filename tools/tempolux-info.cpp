@@ -32,7 +32,7 @@ void print(const Facts& facts, bool as_json) {
   else std::cout << tools::facts_as_text(facts);
 }
 
-/// Exit 1 if one is not valid; a file that is not there is an error of the command.
+/// Exit code 1 if a file is not valid; a missing file is a usage error.
 int check_files(tools::Tool& tool, const Request& request) {
   int code = tools::exit_ok;
   for (const std::string& file : request.files) {
@@ -61,7 +61,7 @@ int print_files(const Request& request) {
   return tools::exit_ok;
 }
 
-/// The one input of what takes one.
+/// The single file that the option accepts.
 const std::string& only_file(const Request& request, const char* option) {
   if (request.files.size() != 1) throw InputError(std::string(option) + ": takes one file");
   return request.files.front();

@@ -36,11 +36,11 @@ struct Options {
 constexpr const char* kVolumeChannels[3] = {"volume.R", "volume.G", "volume.B"};
 constexpr const char* kColours[3] = {"R", "G", "B"};
 
-/// What a base is to the frame's smoke.
+/// Properties of the base frame.
 struct Base {
   Image image;
-  bool attenuated = true;     ///< its light has passed the smoke already
-  bool of_this_scene = true;  ///< the scene's surfaces are those it shows
+  bool attenuated = true;     ///< its light is already attenuated by the smoke
+  bool of_this_scene = true;  ///< it shows the scene's surfaces
 };
 
 bool is_smoky(const Image& image) {
@@ -134,14 +134,14 @@ void put_smoke(const std::vector<SmokePixel>& smoke, const Base& base, Image& im
   }
 }
 
-/// Where the media look at the eye from, for their phase functions; an orthographic one is far away.
+/// The eye position for the phase functions; an orthographic camera is placed far away.
 Vec3 eye_of(const CameraView& view, const PlacedCamera& camera, const SceneFrame& frame) {
   if (camera.camera.kind == Camera::Kind::perspective) return view.eye();
   const Ray middle = view.ray(0.5f * float(view.width()), 0.5f * float(view.height()));
   return middle.origin - middle.direction * (1e4f * std::max(1.0f, frame.bounds.diagonal()));
 }
 
-void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
+void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing) {
   tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
@@ -196,7 +196,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
   tool.stats().count("rays", double(counts.camera + counts.shadow + counts.bounce));
 }
 
-/// The light in the smoke alone, as OpenVDB.
+/// Writes the radiance of the smoke as OpenVDB.
 void write_radiance(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
   tools::Output output(tools::frame_name(options.radiance, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
@@ -290,7 +290,7 @@ int main(int argc, char** argv) {
                                                                 : Kind::gaussian;
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
-    StandingTree standing;
+    StaticTree standing;
     if (!options.radiance.empty())
       for (const int frame : frames) write_radiance(tool, input, options, frame);
     else

@@ -1,4 +1,4 @@
-// lib/aqm/animation_quality.cpp
+// lib/aqm/animation_quality.cpp -- judges frames and sequences by AQM.
 #include "lib/aqm/animation_quality.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ void check_colour(const Compared& pair, const std::string& name) {
                    "--metric aqm and --flow");
 }
 
-/// Luminance of a mixture: `share` of the frame, the rest of the reference or of the mean of its halves.
+/// Luminance of the mixture share x frame + (1 - share) x reference (or the mean of its halves).
 std::vector<float> shown_luminance(const Compared& pair, double share, const vision::Display& display,
                                    double exposure) {
   if (share == 1) return displayed_luminance(display, pair.test, exposure);
@@ -85,7 +85,7 @@ std::vector<float> error_probability(const std::array<std::vector<float>, 3>& pi
                                      const std::array<std::vector<float>, 3>& error,
                                      const std::vector<std::uint8_t>& counted, const PixelFlow& flow,
                                      VisionOptions options) {
-  std::array<Image, 3> images;  // the picture, more, less
+  std::array<Image, 3> images;  // the picture, the picture plus and minus half the error
   for (std::size_t k = 0; k < images.size(); ++k) {
     images[k].width = flow.width;
     images[k].height = flow.height;
@@ -122,7 +122,7 @@ Picture heat_map(const JudgedFrame& judged, const Image& frame, const PreviewOpt
     std::uint8_t* pixel = &picture.rgb[3 * i];
     const double grey = 0.7 * (0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2]),
                  p = double(judged.probability[i]);
-    // yellow to P = 1/2, red from where a difference counts as seen
+    // Yellow up to P = 1/2, red from the probability at which a difference counts as seen.
     const double green = 255 * std::clamp((vision::kSeenProbability - p) / (vision::kSeenProbability - 0.5), 0.0, 1.0);
     const double heat[3] = {255, green, 0};
     for (int c = 0; c < 3; ++c) pixel[c] = std::uint8_t(std::lround((1 - p) * grey + p * heat[c]));

@@ -1,4 +1,4 @@
-// lib/aqm/block_sums.cpp -- block grid and the quotient of block sums.
+// lib/aqm/block_sums.cpp -- sums over blocks and quotients of sums.
 #include "lib/aqm/block_sums.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// lib/aqm/compared.cpp -- choosing planes and checking that they fit.
+// lib/aqm/compared.cpp -- selects planes and checks that they match.
 #include "lib/aqm/compared.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-/// "layers RGB, direct, indirect; channels Z, id.object"
+/// Lists the image's content: "layers RGB, direct, indirect; channels Z, id.object".
 std::string what_is_there(const Image& image) {
   std::string layers, channels;
   std::set<std::string> in_layers;
@@ -33,7 +33,7 @@ void check_size(const NamedImage& image, const NamedImage& test) {
                    "; compare frames of one size");
 }
 
-/// The planes of `image` in the order of `like`.
+/// The planes of `image`, in the order of the planes `like`.
 std::vector<const std::vector<float>*> planes_like(const NamedImage& image, const std::string& layer,
                                                    const std::vector<std::string>& like) {
   LayerPlanes found = layer_planes(image, layer);
@@ -54,7 +54,7 @@ std::vector<std::uint8_t> pixels_of_mask(const NamedImage& mask) {
   return counted;
 }
 
-/// Takes pixels where `except` is not 0 out of those that count (empty: all do).
+/// Sets `counted` to 0 where `except` is not 0; an empty `counted` means that all pixels count.
 void leave_out(const NamedImage& except, std::vector<std::uint8_t>& counted) {
   if (counted.empty()) counted.assign(except.image->pixel_count(), 1);
   for (const Channel& channel : except.image->channels)

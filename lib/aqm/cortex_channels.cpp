@@ -1,4 +1,4 @@
-// lib/aqm/cortex_channels.cpp
+// lib/aqm/cortex_channels.cpp -- computes the channels with Fourier transforms.
 #include "lib/aqm/cortex_channels.h"
 
 #include <algorithm>
@@ -9,15 +9,16 @@ namespace {
 
 using Complex = std::complex<float>;
 
-constexpr int kBorder = 32;            ///< pixels, 1 / h_5: the width of what the base band averages
-constexpr int kTableSteps = 4096;      ///< of frequencies from 0 to kTableEnd; linear between
-constexpr double kTableEnd = 0.70711;  ///< c/px, the corner of the spectrum
+constexpr int kBorder = 32;            ///< pixels, 1 / h_5: the reach of the base band's filter
+constexpr int kTableSteps = 4096;      ///< steps of frequency from 0 to kTableEnd, linear between
+constexpr double kTableEnd = 0.70711;  ///< c/px, at the corner of the spectrum
 
 int padded(int n) { return 8 * fast_transform_size((n + 2 * kBorder + 7) / 8); }
 
-/// Which of n values stands at place `at` of a period of `period`: reflected at both ends.
+/// Index of the value at place `at` of a period of `period`, with n values reflected at both ends.
 int reflected(int at, int n, int period) {
-  const int place = at - n < period - at ? at : at - period;  // nearer to the right end, or before the left one
+  // The place is closer to the right end, or left of the first value.
+  const int place = at - n < period - at ? at : at - period;
   const int folded = ((place % (2 * n)) + 2 * n) % (2 * n);
   return folded < n ? folded : 2 * n - 1 - folded;
 }
@@ -88,13 +89,12 @@ float ChannelFilters::radial(int band, double frequency) const {
   return (1 - t) * table[std::size_t(i)] + t * table[std::size_t(i) + 1];
 }
 
-/// The frequencies of a channel: where they lie, how they are weighted, where they fall in the channel's own
-/// spectrum.
+/// The frequencies of a channel: their range, their weights, and their places in the channel's own spectrum.
 struct ChannelFilters::Lobe {
   const ChannelFilters& filters;
   ChannelName name;
-  int width, height, step, most_x, most_y;  ///< of the padded grid; largest |u|, |v| of the band
-  double cosine, sine;                      ///< of the orientation
+  int width, height, step, most_x, most_y;  ///< of the padded grid; most_x and most_y: largest |u| and |v| of the band
+  double cosine, sine;                      ///< of the orientation's angle
 
   Lobe(const ChannelFilters& f, ChannelName n)
       : filters(f),
@@ -107,8 +107,8 @@ struct ChannelFilters::Lobe {
         cosine(std::cos(orientation_angle(n.orientation))),
         sine(std::sin(orientation_angle(n.orientation))) {}
 
-  /// Frequency (u, v) counts twice in an oriented channel, its opposite not at all. Nyquist's frequency
-  /// stands in the spectrum once and is of both signs: half each.
+  /// In an oriented channel frequency (u, v) has weight 2 and its opposite 0. Nyquist's frequency is stored once for
+  /// both signs, so it has weight 1.
   float weight(int u, int v) const {
     const double x = double(u) / width, y = double(v) / height, square = x * x + y * y;
     if (name.orientation == 0) return filters.radial(name.band, std::sqrt(square));
@@ -119,7 +119,7 @@ struct ChannelFilters::Lobe {
     return float(2 * share * fan_filter(along / length)) * filters.radial(name.band, length);
   }
 
-  /// What frequency (u, v) is in the half of the spectrum that is stored.
+  /// The value at frequency (u, v), from the stored half of the spectrum.
   Complex at(const FourierArray<Complex>& spectrum, int u, int v) const {
     const auto row = [&](int r) {
       return std::size_t(r < 0 ? r + height : r >= height ? r - height : r) * std::size_t(width / 2 + 1);
@@ -127,11 +127,11 @@ struct ChannelFilters::Lobe {
     return u >= 0 ? spectrum[row(v) + std::size_t(u)] : std::conj(spectrum[row(-v) + std::size_t(-u)]);
   }
 
-  /// Calls add(index into the channel's spectrum, u, v, weight) for all frequencies of weight other than 0.
+  /// Calls add(index into the channel's spectrum, u, v, weight) for all frequencies whose weight is not 0.
   template <class Add>
   void each(const Add& add) const {
     const int columns = width / step, rows = height / step;
-    const bool no_left = name.orientation > 1;  // orientations -60 to 60 degrees have no frequency with u < 0
+    const bool no_left = name.orientation > 1;  // orientations from -60 to 60 degrees have no frequency with u < 0
     for (int v = -most_y; v <= most_y; ++v) {
       const std::size_t row = std::size_t(((v % rows) + rows) % rows) * std::size_t(columns);
       for (int u = no_left ? 0 : -most_x; u <= most_x; ++u)

@@ -1,5 +1,5 @@
-// lib/aqm/cortex_channels.h -- pictures taken apart into the channels of the visual cortex, each at a
-// resolution of its own.
+// lib/aqm/cortex_channels.h -- splits pictures into the channels of the visual cortex, each sampled at its own
+// resolution.
 #pragma once
 
 #include <array>
@@ -12,28 +12,26 @@
 
 namespace tempolux::vision {
 
-/// The grid on which a picture of width x height pixels is transformed: its borders are reflected, over 32
-/// pixels or more on each side together, which is what the lowest band reaches, up to a size that is
-/// transformed fast. The far half of what is added lies before column and row 0, as the transform's period
-/// has it.
+/// The padded grid on which a picture of width x height pixels is transformed. The padding reflects the picture at its
+/// borders, over at least 32 pixels on both sides together (the reach of the lowest band), up to a size with a fast
+/// transform. The second half of the padding continues before column and row 0, since the transform is periodic.
 struct ChannelGrid {
   int width = 0, height = 0;                ///< of the picture
   int padded_width = 0, padded_height = 0;  ///< multiples of 8
 
   ChannelGrid(int width, int height);
   std::size_t padded_count() const { return std::size_t(padded_width) * std::size_t(padded_height); }
-  /// A band is sampled at every `step`-th pixel: its upper edge lies at or below Nyquist's frequency of those
-  /// samples, 1 / (2 step) c/px, or it is sampled at all pixels. (Bands 1 and 2 at every second pixel, which
-  /// one orientation as complex numbers allows, would be a fifth faster, but the threshold of a dot would
-  /// then depend by 19 % on its place.)
+  /// Distance of a band's samples in pixels. The band's upper edge is at most the samples' Nyquist frequency, 1 / (2
+  /// step) c/px, or step is 1. (Every second pixel for bands 1 and 2, which complex samples of one orientation allow,
+  /// would be a fifth faster, but the threshold of a dot would vary by 19 % with its position.)
   static int step(int band);
-  /// Samples of a band that lie in the picture, and one beyond where there is one.
+  /// Columns of a band's samples inside the picture, and one more if there is one.
   int columns(int band) const;
   int rows(int band) const;
 };
 
-/// Spectrum of a picture, in the layout of FourierTransform::forward over the padded grid. `values` are width
-/// x height.
+/// The spectrum of a picture over the padded grid, in the layout of FourierTransform::forward. `values` has width x
+/// height elements.
 FourierArray<std::complex<float>> padded_spectrum(const FourierTransform& transform, const ChannelGrid& grid,
                                                   const std::vector<float>& values);
 
@@ -41,27 +39,26 @@ FourierArray<std::complex<float>> padded_spectrum(const FourierTransform& transf
 struct ChannelName {
   int band = 0, orientation = 0;
 };
-/// All 31, fine bands first, the base band last.
+/// All 31 channels: fine bands first, the base band last.
 std::vector<ChannelName> channel_names();
 
-/// The same channel of two pictures, sampled over the whole padded grid, padded_width / step columns.
-///
-/// An oriented channel is complex: its real part is what the filters of the cortex transform leave of the
-/// picture, its imaginary part the same shifted by a quarter of a period (one half plane of the spectrum,
-/// doubled), so that its magnitude is the local amplitude, whatever the phase. The base band is real.
+/// One channel of two pictures, sampled over the whole padded grid, padded_width / step columns.
+/// An oriented channel is complex: its real part is the picture filtered by the cortex transform, its imaginary part
+/// the same shifted by a quarter of a period (one half plane of the spectrum, doubled). So its magnitude is the local
+/// amplitude, whatever the phase. The base band is real.
 struct ChannelPair {
   FourierArray<std::complex<float>> first, second;
 };
 
-/// Takes channels out of two spectra. Each frequency is weighted by the channel's filter and by the
-/// sensitivity to what stands still, over its largest product in the band: within a band an eye sees what it
-/// sees of each frequency, nothing of frequency 0.
+/// Extracts channels from two spectra. The weight of a frequency is the channel's filter times the sensitivity to still
+/// pictures, divided by the largest such product in the band. So the weights inside a band follow the eye's
+/// sensitivity, and frequency 0 has weight 0.
 class ChannelFilters {
  public:
-  /// `still`: sensitivity to a frequency, cpd, of what stands still.
+  /// `still`: sensitivity of the eye to a frequency (cpd) of a still picture.
   ChannelFilters(const ChannelGrid& grid, double pixels_per_degree, const std::function<double(double)>& still);
-  /// What a channel is to be multiplied by so that a grating of band_frequency() that moves at `speed` deg/s
-  /// gives contrast times sensitivity. Other frequencies of the band change with speed as that one does.
+  /// Factor for a channel, by which a grating of band_frequency() that moves at `speed` deg/s gives contrast times
+  /// sensitivity. The speed is taken to change the sensitivity to all frequencies of the band alike.
   double sensitivity(int band, double speed) const;
   ChannelPair channel(const FourierTransform& transform, ChannelName name,
                       const FourierArray<std::complex<float>>& first,
@@ -72,8 +69,8 @@ class ChannelFilters {
   float radial(int band, double frequency) const;
   ChannelGrid grid_;
   double pixels_per_degree_;
-  std::vector<std::vector<float>> radial_;  ///< by band - 1, over frequency
-  std::array<double, kBands> most_{};       ///< largest product of filter and sensitivity, by band - 1
+  std::vector<std::vector<float>> radial_;  ///< by band - 1, by frequency
+  std::array<double, kBands> most_{};       ///< by band - 1: largest product of filter and sensitivity
 };
 
 }  // namespace tempolux::vision

@@ -1,4 +1,4 @@
-// lib/aqm/difference.cpp -- signed differences as channels and as colours.
+// lib/aqm/difference.cpp -- stores signed differences as channels and as colours.
 #include "lib/aqm/difference.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace tempolux {
 namespace {
 
-/// Mean over channels of x - r; 0 where the pixel does not count.
+/// Mean of x - r over the channels; 0 where the pixel does not count.
 double mean_difference(const Compared& pair, std::size_t i) {
   if (!pair.counts(i)) return 0;
   double sum = 0;

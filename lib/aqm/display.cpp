@@ -1,4 +1,4 @@
-// lib/aqm/display.cpp
+// lib/aqm/display.cpp -- displays and their luminance.
 #include "lib/aqm/display.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace tempolux::vision {
 namespace {
 
-/// Pixels per degree in the middle of a display of 16:9.
+/// Pixels per degree at the centre of a 16:9 display.
 double pixels_per_degree(double columns, double diagonal_inches, double distance_m) {
   const double width_m = diagonal_inches * 0.0254 * 16 / std::hypot(16.0, 9.0);
   return 2 * std::tan(0.5 * std::numbers::pi / 180) * distance_m * columns / width_m;
@@ -54,7 +54,7 @@ std::vector<float> displayed_luminance(const Display& display, const std::vector
       double sum = 0;
       for (std::size_t c = 0; c < planes.size(); ++c) {
         const double value = double((*planes[c])[i]) * exposure;
-        sum += weight[c] * (value > 0 ? std::min(value, largest) : 0);  // not-a-number is not above 0
+        sum += weight[c] * (value > 0 ? std::min(value, largest) : 0);  // NaN counts as 0
       }
       luminance[i] = float(display.black + range * sum);
     }

@@ -1,4 +1,4 @@
-// lib/aqm/display_speed.cpp
+// lib/aqm/display_speed.cpp -- converts pixel flow to speeds on a display.
 #include "lib/aqm/display_speed.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ void neighbours(const PixelFlow& flow, std::size_t i, const Visit& visit) {
       if (u != x || v != y) visit(std::size_t(v) * std::size_t(flow.width) + std::size_t(u));
 }
 
-/// Gives unknown pixels the fastest of their known neighbours, ring by ring.
+/// Unknown pixels get the largest speed of their known neighbours, ring by ring.
 void fill_unknown(const PixelFlow& flow, std::vector<float>& speed) {
   std::vector<std::size_t> ring, next;
   std::vector<float> found;

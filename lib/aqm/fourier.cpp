@@ -1,4 +1,4 @@
-// lib/aqm/fourier.cpp
+// lib/aqm/fourier.cpp -- calls the module that links FFTW.
 #include "lib/aqm/fourier.h"
 
 #include "formats/error.h"

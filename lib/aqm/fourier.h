@@ -1,5 +1,4 @@
-// lib/aqm/fourier.h -- Fourier transforms of pictures, by FFTW, which a module of its own links
-// (modules/tempolux-fourier.cpp).
+// lib/aqm/fourier.h -- Fourier transforms of pictures by FFTW, which the module modules/tempolux-fourier.cpp links.
 #pragma once
 
 #include <complex>
@@ -11,7 +10,7 @@
 
 namespace tempolux {
 
-/// `count` floats or complex floats, not initialised, aligned as FFTW wants them.
+/// `count` floats or complex floats, uninitialised, aligned for FFTW.
 template <class T>
 class FourierArray {
  public:
@@ -32,11 +31,11 @@ class FourierArray {
   std::size_t count_;
 };
 
-/// The smallest number >= n whose only prime factors are 2, 3, 5: sizes that are transformed fast. n >= 1.
+/// The smallest number >= n whose only prime factors are 2, 3 and 5: such sizes are transformed fast. n >= 1.
 int fast_transform_size(int n);
 
-/// Transforms of two dimensions, row after row, not normalised. From any thread. Opens the module with the
-/// first object; throws InputError if the module is not there, std::bad_alloc without memory.
+/// Two-dimensional transforms, row by row, not normalised. Any thread may call. The first object loads the module;
+/// throws InputError if the module is missing, std::bad_alloc without memory.
 class FourierTransform {
  public:
   FourierTransform();

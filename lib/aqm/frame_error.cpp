@@ -1,4 +1,4 @@
-// lib/aqm/frame_error.cpp -- sums over pixels, and the figures made of them.
+// lib/aqm/frame_error.cpp -- sums errors over pixels and computes figures from the sums.
 #include "lib/aqm/frame_error.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ PixelError pixel_error(const Compared& pair, std::size_t i) {
           sum.half_difference_squared * each};
 }
 
-/// Mean of r over the pixels that count, added block by block as the other sums are.
+/// Mean of r over the pixels that count, added block by block like the other sums.
 double mean_reference(const Compared& pair, const BlockGrid& grid) {
   std::vector<BlockQuotient> blocks(grid.count());
   for (int y = 0; y < pair.height; ++y)
@@ -63,7 +63,7 @@ void add_block(ErrorSums::Block& to, const ErrorSums::Block& from) {
   to.reference += from.reference;
 }
 
-/// Quotient over the blocks that have pixels.
+/// Quotient of sums over the blocks with pixels.
 std::optional<Estimate> over_blocks(const std::vector<ErrorSums::Block>& blocks, double ErrorSums::Block::*numerator,
                                     double ErrorSums::Block::*denominator) {
   std::vector<BlockQuotient> used;

@@ -1,4 +1,4 @@
-// lib/aqm/visible_difference.cpp
+// lib/aqm/visible_difference.cpp -- computes the map of detection probabilities.
 #include "lib/aqm/visible_difference.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace tempolux::vision {
 namespace {
 
-/// Responses to both pictures less their mean, and that mean.
+/// Receptor responses to both pictures minus their common mean, and that mean.
 struct Responses {
   std::vector<float> first, second;
   double mean = 0;
@@ -36,11 +36,11 @@ Responses responses_of(const DisplayedPair& pair) {
     if (pair.counted.empty() || pair.counted[i]) sum += double(out.first[i]) + double(out.second[i]), count += 2;
   out.mean = count ? sum / double(count) : 0;
   for (std::vector<float>* picture : {&out.first, &out.second})
-    for (float& value : *picture) value -= float(out.mean);  // digits: the channels hold nothing of frequency 0
+    for (float& value : *picture) value -= float(out.mean);  // keeps digits: no channel contains frequency 0
   return out;
 }
 
-/// Means of a picture over squares, by sums over rectangles.
+/// Means of a picture over squares, from cumulative sums.
 class SquareMeans {
  public:
   SquareMeans(const std::vector<float>& values, int width, int height)
@@ -53,8 +53,8 @@ class SquareMeans {
       }
     }
   }
-  /// Over the pixels within `radius` columns and rows of (x, y) that lie in the picture; (x, y) is moved into
-  /// it.
+  /// Mean over the pixels within `radius` columns and rows of (x, y) inside the picture; (x, y) is clamped to the
+  /// picture.
   double mean(int x, int y, int radius) const {
     x = std::min(x, width_ - 1), y = std::min(y, height_ - 1);
     const int left = std::max(x - radius, 0), right = std::min(x + radius + 1, width_);
@@ -70,12 +70,12 @@ class SquareMeans {
   std::vector<double> sums_;
 };
 
-/// What turns a band's amplitude into thresholds, at each of its samples.
+/// Factors from a band's amplitude to multiples of the threshold, at each sample.
 using BandGains = std::array<std::vector<float>, kBands>;
 
-/// Thresholds per response: sensitivity at the speed around a sample over the response that one unit of
-/// contrast gives, scaled so that a grating at its threshold is seen with probability 1/2. `speed` is across
-/// the retina; empty: all is seen as what stands still.
+/// Thresholds per response: the sensitivity at the local speed, over the response that unit contrast gives, scaled so
+/// that a grating at its threshold is seen with probability 1/2. `speed` is the speed across the retina; empty: the
+/// sensitivity to still pictures.
 BandGains band_gains(const ChannelGrid& grid, const ChannelFilters& filters, const std::vector<float>& speed,
                      double response_per_contrast) {
   BandGains gains;
@@ -104,14 +104,14 @@ std::vector<float> retinal_speeds(const std::vector<float>& speed, Gaze gaze) {
   return retinal;
 }
 
-/// threshold_elevation() in float; `slope` 1 without powers: k1 k2 = W = 6.
+/// threshold_elevation() in float; for `slope` 1 without powers: k1 k2 = W = 6.
 float elevation(float contrast, double slope) {
   if (slope != 1) return float(threshold_elevation(double(contrast), slope));
   const float masked = 6 * contrast, square = masked * masked;
   return std::sqrt(std::sqrt(1 + square * square));
 }
 
-/// (difference / threshold)^3.5 at each sample of a channel that lies in the picture.
+/// (difference / threshold)^3.5 at each sample of a channel inside the picture.
 std::vector<float> channel_terms(const ChannelGrid& grid, ChannelName name, const ChannelPair& pair,
                                  const std::vector<float>& gains) {
   const int columns = grid.columns(name.band), rows = grid.rows(name.band),
@@ -124,7 +124,8 @@ std::vector<float> channel_terms(const ChannelGrid& grid, ChannelName name, cons
                         to = std::size_t(y) * std::size_t(columns) + std::size_t(x);
       const std::complex<float> a = pair.first[from], b = pair.second[from];
       const float difference = gains[to] * std::sqrt(std::norm(a - b));
-      const float mask = gains[to] * std::sqrt(std::min(std::norm(a), std::norm(b)));  // the weaker of both hides
+      // The picture with the weaker contrast masks.
+      const float mask = gains[to] * std::sqrt(std::min(std::norm(a), std::norm(b)));
       const float ratio = difference / elevation(mask, slope);
       terms[to] = ratio * ratio * ratio * std::sqrt(ratio);
     }
@@ -158,7 +159,7 @@ BandTerms all_terms(const ChannelGrid& grid, const Responses& responses, const C
   return sums;
 }
 
-/// A band's sum at pixel (x, y), linear between its samples.
+/// A band's sum at pixel (x, y), interpolated linearly between its samples.
 float term_at(const ChannelGrid& grid, int band, const std::vector<float>& terms, int x, int y) {
   const int step = ChannelGrid::step(band), columns = grid.columns(band), rows = grid.rows(band);
   const int left = x / step, top = y / step, right = std::min(left + 1, columns - 1),
@@ -169,7 +170,7 @@ float term_at(const ChannelGrid& grid, int band, const std::vector<float>& terms
          ty * ((1 - tx) * at(left, bottom) + tx * at(right, bottom));
 }
 
-/// Luminance whose response is `response`.
+/// The luminance that gives this response.
 double luminance_of(double response) { return std::pow(12.6 * response / (100 - response), 1 / 0.37); }
 
 }  // namespace
@@ -179,7 +180,7 @@ Detection detection_map(const DisplayedPair& pair, const std::vector<float>& spe
   const Responses responses = responses_of(pair);
   result.adaptation_luminance = luminance_of(responses.mean);
   const double contrast_response = response_per_log_luminance(responses.mean);
-  if (!(contrast_response > 0)) return result;  // all black: nothing to see
+  if (!(contrast_response > 0)) return result;  // both pictures are black
   const ChannelGrid grid(pair.width, pair.height);
   const double ppd = viewing.pixels_per_degree, area = double(pair.width) * double(pair.height) / (ppd * ppd);
   const ChannelFilters filters(grid, ppd, [&](double frequency) {

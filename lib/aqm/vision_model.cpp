@@ -1,4 +1,4 @@
-// lib/aqm/vision_model.cpp -- the closed forms; docs/methods/vision.md lists their sources.
+// lib/aqm/vision_model.cpp -- formulas of the vision model; docs/methods/vision.md lists their sources.
 #include "lib/aqm/vision_model.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ double static_contrast_sensitivity(double frequency, double luminance, double ar
 }
 
 double receptor_response(double luminance) {
-  const double x = std::pow(luminance, 0.37);  // L / (L + 12.6 L^.63) without its 0 / 0
+  const double x = std::pow(luminance, 0.37);  // L / (L + 12.6 L^.63) in a form without 0 / 0
   return 100 * x / (x + 12.6);
 }
 
@@ -73,7 +73,7 @@ double band_frequency(int band) {
 double orientation_angle(int orientation) { return (30.0 * (orientation - 1) - 90) * kPi / 180; }
 
 double fan_filter(double cosine) {
-  const double square = cosine * cosine;  // cos 6d of cos d: Chebyshev's polynomial
+  const double square = cosine * cosine;  // cos 6d from cos d: Chebyshev's polynomial
   if (square <= 0.75) return 0;
   return 0.5 * (1 + ((32 * square - 48) * square + 18) * square - 1);
 }

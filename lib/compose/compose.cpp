@@ -17,18 +17,19 @@ namespace {
 constexpr std::size_t kChunk = 256;  ///< pixels
 constexpr float kMostSlices = 4096;  ///< along a ray
 constexpr float kMostAbove =
-    8;  ///< times the linear one at most counts the extinction: where a corner of it leaves that nearly 0
+    8;  ///< limit of the weight extinction / linear extinction, where a linear extinction is nearly 0 at a corner
 constexpr float kNothingLeft =
-    1e-30f;  ///< light from behind adds nothing to a float; slices there would be divided by 0
+    1e-30f;  ///< below this, light from behind adds nothing to a float; it also prevents a division by 0
 
-/// A piece of a ray in which the extinction is taken as linear.
+/// A piece of a ray over which extinction is taken as linear.
 struct Slice {
   float begin, length;  ///< m
   float tau;
-  float left;   ///< of light from its begin to the eye
-  float slope;  ///< extinction at its end less that at its begin, 1/m
+  float left;   ///< transmittance from its start to the eye
+  float slope;  ///< extinction at its end minus extinction at its start, 1/m
   float extinction(float t) const { return tau / length + slope * (t - 0.5f); }
-  /// Where in it, 0 to 1, the depth from its begin on is `depth`: depth = length (extinction(0) t + slope t^2 / 2).
+  /// Position in the slice, 0 to 1, at which the optical depth from its start is `depth`: depth = length (extinction(0)
+  /// t + slope t^2 / 2).
   float place_of(float depth) const {
     const float first = std::max(0.0f, extinction(0)), wanted = depth / length;
     const float root = first + std::sqrt(std::max(0.0f, first * first + 2 * slope * wanted));
@@ -45,7 +46,7 @@ double finest_voxel(const Media& media) {
 /// (1 - exp(-x)) / x.
 float mean_left(float x) { return x < 1e-4f ? 1 - x / 2 : -std::expm1(-x) / x; }
 
-/// Cuts the way into slices where there may be a medium; the depth by two points of Gauss and Legendre.
+/// Cuts the ray into slices where there may be a medium; optical depth by Gauss-Legendre quadrature with two points.
 void cut(const Media& media, const Ray& ray, float end, float step, std::vector<Slice>& slices) {
   slices.clear();
   constexpr float kGauss = 0.21132487f;
@@ -78,14 +79,14 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
   cut_piece();
 }
 
-/// A place on a ray where the medium scatters, and where the phase function sends the ray on.
+/// A place on a ray where the medium scatters, and the ray in the direction drawn from the phase function.
 struct SentOn {
   Ray ray;
   std::uint64_t key;
-  Rgb weight;  ///< of the radiance along it
+  Rgb weight;  ///< factor of the radiance along the ray
 };
 
-/// A ray from a place in the medium, if rays bring some of its light.
+/// Adds a ray from a place in the medium, if rays take a share of its light.
 void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, float weight,
              const PixelRandom& random, std::vector<SentOn>& rays) {
   const PhaseShare& share = light.share(point.g);
@@ -97,20 +98,19 @@ void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bo
                   point.albedo * (weight * share.of_rays(q))});
 }
 
-/// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them, and
-/// weighed by how far the extinction there is from linear: direct light of the lamps. `whole`: share of what the eye
-/// would see from behind that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be
-/// added.
+/// Direct light scattered towards the eye. Places along the slices are drawn in proportion to the light scattered from
+/// them, and weighed by the ratio of the extinction there to the linear one. `whole`: share of the light from behind
+/// that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be added.
 Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray,
                   const std::vector<Slice>& slices, float whole, int samples, const PixelRandom& random,
                   std::vector<SentOn>& sent_on, RayCounts& counts) {
   const std::size_t before = sent_on.size();
   Rgb sum{0.0f};
   std::size_t at = 0;
-  float passed = 0;  // of it, before slice `at`
+  float passed = 0;  // sum over the slices before slice `at`
   for (int k = 0; k < samples; ++k) {
     const float wanted = (float(k) + random.get1(0, Purpose::place)) / float(samples) * whole;
-    // Samples ascend; the last slice takes what rounding leaves over.
+    // Samples ascend; the last slice takes the remainder from rounding.
     while (at + 1 < slices.size() && passed + slices[at].left * -std::expm1(-slices[at].tau) <= wanted) {
       passed += slices[at].left * -std::expm1(-slices[at].tau);
       ++at;
@@ -146,14 +146,14 @@ SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight&
     tau += double(slice.tau);
   }
   pixel.left = float(std::exp(-tau));
-  const auto whole = float(-std::expm1(-tau));  // 1 - left would have two digits where tau is 1e-6
+  const auto whole = float(-std::expm1(-tau));  // 1 - left has only two digits if tau is 1e-6
   if (options.sample_lights && whole > 0)
     pixel.light +=
         sampled_light(scene, media, light, ray, slices, whole, options.light_samples, random, sent_on, counts);
   return pixel;
 }
 
-/// What the rays of a pixel bring.
+/// Radiance that the rays of a pixel add.
 Rgb brought(const IncomingRadiance& incoming, const std::vector<SentOn>& sent_on, RayCounts& counts) {
   thread_local std::vector<Ray> rays;
   thread_local std::vector<std::uint64_t> keys;
@@ -197,7 +197,7 @@ void MediaLight::add(const formats::PhotonBlock& block, Vec3 offset, int times) 
     const formats::Photon& photon = block.photons[i];
     if (photon.kind != formats::PathKind::tentative || (photon.bounce == 0 && !options_.direct)) continue;
     const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
-    const Rgb worth{photon.flux[0], photon.flux[1], photon.flux[2]};
+    const Rgb contribution{photon.flux[0], photon.flux[1], photon.flux[2]};
     for (std::size_t g = 0; g < gs_.size(); ++g) {
       float factor = 1;
       if (gs_[g] != 0 && !block.directions.empty()) {
@@ -206,7 +206,7 @@ void MediaLight::add(const formats::PhotonBlock& block, Vec3 offset, int times) 
         factor = 4 * kPi * pdf_hg(gs_[g], travel, normalize(eye_ - position));
         factor *= shares_[g].of_photons(factor);
       }
-      sums_[g].add(position, worth * factor, times);
+      sums_[g].add(position, contribution * factor, times);
     }
   }
 }
@@ -275,7 +275,7 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
         const Ray ray = view.ray(x + within.x, y + within.y);
         float end = INFINITY;
         if (options.surfaces_by_depth) {
-          // Z runs along the view axis; the ray does not.
+          // Converts distance along the ray to Z, which runs along the view axis.
           const double along = view.depth(ray.origin + ray.direction) - view.depth(ray.origin);
           end = float(double(depth[p]) / along);
         } else {

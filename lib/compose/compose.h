@@ -1,4 +1,4 @@
-// lib/compose/compose.h -- what a camera sees of media: slices of scattered light along each ray.
+// lib/compose/compose.h -- composites media over a frame: slices of scattered light along each ray.
 #pragma once
 
 #include <cstdint>
@@ -17,35 +17,33 @@
 
 namespace tempolux {
 
-/// Light in the media of a frame: fluence as it counts towards one eye.
-///
-/// For a phase function that is even all around one volume serves all views. Otherwise each photon counts by 4 pi times
-/// its phase function from its direction to the eye's, so that the same filter and look-up give what is scattered
-/// there; one volume for each g that differs. Where the phase function has a peak rays from the eye bring what lies in
-/// it (PhaseShare).
+/// The fluence of photons in the media of a frame, weighed for one eye position.
+/// If the phase function is isotropic, one volume serves all views. Otherwise each photon is weighed by 4 pi times the
+/// phase function from its direction to the eye's, so that filtering and look-up stay the same; there is one volume per
+/// different g. Light in the peak of a phase function comes from rays instead (PhaseShare).
 class MediaLight {
  public:
   struct Options {
-    double cell = 0;  ///< m; 0: the finest voxel's edge
+    double cell = 0;  ///< m; 0: the edge of the finest voxel
     FluenceFilter filter;
-    bool direct = false;  ///< count photons straight from lamps too
-    int rays = 0;         ///< of a pixel, sent on by the phase function: PhaseShare
+    bool direct = false;  ///< true if photons directly from lights count, too
+    int rays = 0;         ///< per pixel, in directions drawn from the phase function: PhaseShare
   };
   MediaLight(const Media& media, const MajorantGrid& majorants, Vec3 eye, double emitted_flux, const Options& options);
-  /// Photons of a block, positions plus `offset` = scene space; those of other kinds are passed over. `times` -1 takes
-  /// them away.
+  /// Adds the volume photons of a block; positions plus `offset` are in scene space. With `times` -1 the photons are
+  /// subtracted.
   void add(const formats::PhotonBlock& block, Vec3 offset, int times = 1);
-  /// Filters what was added; before scattered().
+  /// Filters the sums. Call before scattered().
   void finish();
-  /// Source: light scattered towards the eye per length, [W/m^3/sr]: sum over media of sigma_s fluence / 4 pi; the
-  /// photons' share.
+  /// Source of light scattered towards the eye, per length [W/m^3/sr]: the sum over the media of sigma_s fluence / 4
+  /// pi, for the photons' share.
   Rgb scattered(Vec3 point) const;
-  /// scattered() over extinction at the centres of the volume's cells, world space = scene space + `origin`: radiance
-  /// that the smoke there would send towards the eye if it were opaque (source function) [W/m^2/sr]; black where there
-  /// is none. After finish().
+  /// scattered() over extinction at the centres of the volume's cells, in world space = scene space + `origin`: the
+  /// source function, which is the radiance [W/m^2/sr] of the smoke if it were opaque; black without extinction. Call
+  /// after finish().
   ColourGrid source(Vec3d origin) const;
   const PhaseShare& share(float g) const;
-  /// Does any medium's light come by rays in part?
+  /// True if rays take a share of any medium's light.
   bool has_rays() const;
   const std::vector<FluenceSums>& sums() const { return sums_; }
   const FluenceVolume& volume() const { return volumes_.front(); }
@@ -63,26 +61,26 @@ class MediaLight {
 
 struct ComposeOptions {
   int samples = 4;        ///< rays per pixel
-  int light_samples = 2;  ///< places on a ray from which the lamps are sampled, where direct light is, and rays sent on
+  int light_samples = 2;  ///< places per ray at which direct light is sampled, and from which rays start
   bool sample_lights = true;
-  bool surfaces_by_depth = false;  ///< rays end at the frame's depths, not at the scene's surfaces
-  /// What rays bring that smoke with a peaked phase function sends on; needed where MediaLight::has_rays.
+  bool surfaces_by_depth = false;  ///< rays end at the frame's depths instead of the scene's surfaces
+  /// Radiance of the rays in the peak of a phase function; needed if MediaLight::has_rays.
   const IncomingRadiance* incoming = nullptr;
   std::uint64_t seed = 0;
   std::function<void(double)> progress;  ///< may be empty
 };
 
-/// A pixel's smoke.
+/// Smoke in front of a pixel.
 struct SmokePixel {
-  Rgb light{0.0f};  ///< radiance scattered towards the eye on the way to what is seen [W/m^2/sr]
-  float left = 1;   ///< share of the light from behind that comes through, mean over the pixel
+  Rgb light{0.0f};  ///< radiance scattered towards the eye in front of the surface [W/m^2/sr]
+  float left = 1;   ///< transmittance, mean over the pixel
 };
 
-/// All pixels, top row first. `depth`: the frame's Z channel (distance along the view axis), read only with
-/// surfaces_by_depth. The same for any number of threads. Slices are half a voxel long; each scatters by -expm1(-tau) /
-/// tau of its source over its length and takes exp(-tau) of what lies behind (docs/methods/formulas.md). Direct light:
-/// places drawn in proportion to what they scatter towards the eye, and there a sample of the lamps, with what the
-/// media leave of it.
+/// Smoke of all pixels, top row first. `depth`: the frame's Z channel (distance along the view axis), read only with
+/// surfaces_by_depth. The same for any number of threads. Slices are half a voxel long. A slice scatters its source
+/// times its length times -expm1(-tau) / tau, and multiplies the light behind it by exp(-tau)
+/// (docs/methods/formulas.md). Direct light is sampled at places drawn along the ray in proportion to the light they
+/// scatter towards the eye. Each place samples one light; the media attenuate its shadow ray.
 std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView& view, const MediaLight& light,
                                       const std::vector<float>& depth, const ComposeOptions& options,
                                       RayCounts& counts);

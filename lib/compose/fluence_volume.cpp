@@ -11,9 +11,9 @@ namespace {
 using Cell = std::array<float, 4>;
 
 constexpr float kWidest = 16;      ///< cells
-constexpr std::size_t kLine = 64;  ///< lines of cells in a piece of work
+constexpr std::size_t kLine = 64;  ///< lines of cells that one task processes
 
-/// Weights of a line of cells around the centre, sum 1.
+/// Weights of cells in a line around the centre; their sum is 1.
 std::vector<float> kernel(const FluenceFilter& filter, float width) {
   const bool box = filter.kind == FluenceFilter::Kind::box;
   const int reach = box ? int(std::floor(width)) : int(std::ceil(3 * width));
@@ -27,7 +27,7 @@ std::vector<float> kernel(const FluenceFilter& filter, float width) {
   return weights;
 }
 
-/// One axis of a separable filter. Cells beyond the box hold nothing, neither sum nor volume.
+/// One axis of a separable filter. Cells outside the box have neither sum nor volume.
 void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, int axis,
                  const std::vector<float>& weights) {
   const std::size_t stride[3] = {std::size_t(counts[1]) * std::size_t(counts[2]), std::size_t(counts[2]), 1};
@@ -62,8 +62,9 @@ void filter_separable(std::vector<Cell>& cells, const std::array<std::int32_t, 3
 
 float brightness(const Cell& cell) { return cell[3] > 0 ? (cell[0] + cell[1] + cell[2]) / (3 * cell[3]) : 0; }
 
-/// Cells count less whose light is another: compared by a Gaussian of the same width, as single cells are noise. What
-/// the weights add to or take from the whole is put right at the end. [Durand & Dorsey 2002]
+/// Bilateral filter: cells of different light weigh less. The light is compared after a Gaussian of the same width,
+/// since single cells are noisy. At the end the total is corrected, since the weights change it.
+/// [Durand & Dorsey 2002]
 void filter_bilateral(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter,
                       float width) {
   std::vector<Cell> smooth = cells;
@@ -94,7 +95,7 @@ void filter_bilateral(std::vector<Cell>& cells, const std::array<std::int32_t, 3
             result[index(x, y, z)] = sum;
           }
       });
-  // The whole light over the open cells stays what it was, by channel.
+  // The total over the open cells must not change, per channel.
   std::array<double, 3> before{}, after{};
   for (std::size_t i = 0; i < cells.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -151,13 +152,13 @@ std::size_t FluenceSums::cell_of(Vec3 point) const {
   return index;
 }
 
-void FluenceSums::add(Vec3 point, Rgb worth, int times) {
+void FluenceSums::add(Vec3 point, Rgb contribution, int times) {
   const std::size_t cell = cell_of(point);
-  if (cell >= sums_.size() || !is_finite(worth)) return;
+  if (cell >= sums_.size() || !is_finite(contribution)) return;
   for (int c = 0; c < 3;
-       ++c) {  // unsigned: what overflows in a damaged file wraps, and comes back when it is taken away
+       ++c) {  // unsigned: an overflow from a damaged file wraps, and is undone when the photon is subtracted
     std::int64_t& sum = sums_[cell][std::size_t(c)];
-    const auto more = std::uint64_t(std::llrint(std::clamp(double(worth[c]) / unit_, -9e18, 9e18)));
+    const auto more = std::uint64_t(std::llrint(std::clamp(double(contribution[c]) / unit_, -9e18, 9e18)));
     sum = std::int64_t(std::uint64_t(sum) + std::uint64_t(std::int64_t(times)) * more);
   }
   photons_ += std::uint64_t(std::int64_t(times));
@@ -178,7 +179,7 @@ FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filte
   }
   width_ = filter.width;
   if (!(width_ > 0)) {
-    // A Gaussian of deviation s counts as many cells as (4 pi s^2)^(3/2).
+    // A Gaussian of deviation s averages as many cells as (4 pi s^2)^(3/2).
     const double density = double(sums.photons()) / double(std::max<std::size_t>(1, open));
     width_ = std::clamp(
         float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f,

@@ -1,5 +1,4 @@
-// lib/compose/fluence_volume.h -- light inside media, from tentative photons: sums by cells that can be undone, then
-// filtered.
+// lib/compose/fluence_volume.h -- fluence inside media from tentative photons: exact sums by cell, then filtered.
 #pragma once
 
 #include <array>
@@ -11,17 +10,17 @@
 
 namespace tempolux {
 
-/// Cells over the box of the majorants, each cut into `per_majorant`^3. Of every channel the sum of what photons are
-/// worth (flux / majorant, W m) is kept as a multiple of `unit` in 64 bits: adding a photon and taking it away again
-/// leaves exactly what was there, in any order.
+/// Sums over the cells of a grid: the majorants' box with each cell cut into `per_majorant`^3. A cell sums flux /
+/// majorant [W m] of its photons per channel, as a 64-bit multiple of `unit`. So adding a photon and subtracting it
+/// again restores the sums exactly, in any order.
 class FluenceSums {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 25;
 
   FluenceSums() = default;
-  /// `emitted_flux` [W]: of the lamps, all channels together; gives the unit: 2^-44 of that flux along the box's
-  /// diagonal, a power of two. So a sum holds 2^19 times what all photons could be worth that pass the box once. `cell`
-  /// [m]: their size is this or a little less, more where kMostCells would be exceeded.
+  /// `emitted_flux` [W]: of all lights, all channels together. The unit is a power of two, about 2^-44 of that flux
+  /// times the box's diagonal, so that a sum can hold 2^19 times the contribution of all photons that cross the box
+  /// once. `cell` [m]: the size of a cell is this or a little less; larger if there would be more than kMostCells.
   FluenceSums(const MajorantGrid& majorants, double cell, double emitted_flux);
 
   const Box3& box() const { return box_; }
@@ -29,15 +28,16 @@ class FluenceSums {
   double unit() const { return unit_; }
   /// m^3.
   double cell_volume() const;
-  /// Index of the cell of a scene-space point; counts()'s product if it lies outside the box.
+  /// Index of the cell that holds a scene-space point; the product of counts() outside the box.
   std::size_t cell_of(Vec3 point) const;
-  /// Adds (times = 1) or takes away (-1) a photon's worth [W m]. Not finite or outside: nothing.
-  void add(Vec3 point, Rgb worth, int times = 1);
+  /// Adds (times = 1) or subtracts (-1) a photon's contribution [W m]. A contribution that is not finite, or a point
+  /// outside the box, is ignored.
+  void add(Vec3 point, Rgb contribution, int times = 1);
   const std::vector<std::array<std::int64_t, 3>>& sums() const { return sums_; }
   std::uint64_t photons() const { return photons_; }
-  /// Can tentative collisions happen in the cell: is its majorant above 0?
+  /// By cell: true if its majorant is above 0, so that tentative collisions can happen in it.
   const std::vector<std::uint8_t>& open() const { return open_; }
-  /// The same cells, with the same sums.
+  /// True if cells and sums are equal.
   bool operator==(const FluenceSums& other) const {
     return counts_ == other.counts_ && unit_ == other.unit_ && photons_ == other.photons_ && sums_ == other.sums_;
   }
@@ -52,25 +52,24 @@ class FluenceSums {
   std::vector<std::uint8_t> open_;
 };
 
-inline constexpr float kPhotonsInFilter =
-    256;  ///< that count in a filter whose width is not given: noise of a cell 1/16
+inline constexpr float kPhotonsInFilter = 256;  ///< photons under a filter of automatic width: the noise is then 1/16
 
 struct FluenceFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;
   float width =
-      0;  ///< cells: half the box's edge, or the Gaussian's standard deviation; 0: so wide that about 256 photons count
-  float range = 0.5f;  ///< bilateral: standard deviation of ln fluence over which cells count as alike
+      0;  ///< cells: half the box's edge, or the Gaussian's standard deviation; 0: so that about 256 photons count
+  float range = 0.5f;  ///< bilateral filter: standard deviation of the difference in ln fluence
 };
 
 /// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same kernel, so that cells at the border of
-/// what photons can reach lose nothing; between the cells' centres trilinear. 0 outside.
+/// the lit region are not darkened. Trilinear between the cells' centres; 0 outside.
 class FluenceVolume {
  public:
   FluenceVolume() = default;
   FluenceVolume(const FluenceSums& sums, const FluenceFilter& filter);
   Rgb at(Vec3 point) const;
-  float width() const { return width_; }  ///< cells: that of the filter, also where it was 0
+  float width() const { return width_; }  ///< cells: the width used, also if it was chosen automatically
 
  private:
   Box3 box_;

@@ -1,5 +1,4 @@
-// lib/compose/phase_share.h -- who brings light of a direction to the eye: photons, or rays that the phase function
-// sends on.
+// lib/compose/phase_share.h -- divides the light in a medium between photons and rays drawn from the phase function.
 #pragma once
 
 #include <cmath>
@@ -9,24 +8,23 @@
 
 namespace tempolux {
 
-/// Light that a medium scatters towards the eye is found in two ways. Photons fly in all directions, more or less
-/// evenly, and count by the phase function p; where p has a peak few of them carry nearly all. Rays from the eye are
-/// sent on by p itself. Light of each direction is divided between the two by the balance heuristic (Veach and Guibas
-/// 1995), so that their sum is what either alone has in the mean. With q = 4 pi p, the phase function over that of even
-/// scattering:
+/// Light that a medium scatters towards the eye is estimated in two ways. Photons fly in all directions and are weighed
+/// by the phase function p; if p has a peak, few photons carry nearly all light. Rays from the eye are drawn from p
+/// itself. The balance heuristic (Veach and Guibas 1995) divides the light of each direction between the two, so that
+/// their sum has the right expectation. With q = 4 pi p:
 ///
-///     share of photons = n / (n + m q)     n photons in the filter, m rays of a pixel
+///     share of photons = n / (n + m q)     n photons in the filter, m rays per pixel
 ///
-/// Photons then count n / m times evenly scattered ones at most. In the mean any n and m are right; noise depends on
-/// them.
+/// The weight of a photon is then at most n / m times an isotropically scattered one's. The expectation is right for
+/// any n and m; the noise depends on them.
 class PhaseShare {
  public:
-  /// `rays` = 0: photons bring everything.
+  /// `rays` = 0: photons take all light.
   explicit PhaseShare(float g, int rays) {
     const float a = std::min(std::abs(g), kLargestG), peak = (1 + a) / ((1 - a) * (1 - a));  // largest q
     if (peak * float(rays) > kPhotonsInFilter) per_photon_ = float(rays) / kPhotonsInFilter;
   }
-  /// Are there directions of which rays bring more than photons? Else rays bring nothing.
+  /// True if there are directions of which rays take more light than photons; otherwise rays take none.
   bool has_rays() const { return per_photon_ > 0; }
   float of_photons(float q) const { return 1 / (1 + per_photon_ * q); }
   float of_rays(float q) const { return 1 - of_photons(q); }

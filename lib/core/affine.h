@@ -33,7 +33,7 @@ struct Affine {
   }
 };
 
-/// Inverse; of a singular transform the result holds infinities or NaN: test determinant() first.
+/// Inverse; for a singular transform the result holds infinities or NaN: test determinant() first.
 inline Affine inverse(const Affine& a) {
   const Vec3d c0 = cross(a.row[1], a.row[2]), c1 = cross(a.row[2], a.row[0]), c2 = cross(a.row[0], a.row[1]);
   const double d = 1 / a.determinant();
@@ -43,7 +43,7 @@ inline Affine inverse(const Affine& a) {
   return r;
 }
 
-/// Rotation by the unit quaternion (x, y, z, w), then scale applied first: T R S of glTF.
+/// Scales first, then rotates by the unit quaternion (x, y, z, w), then translates: glTF's T R S.
 inline Affine affine_from_trs(Vec3d t, std::array<double, 4> q, Vec3d s) {
   const auto [x, y, z, w] = q;
   Affine r;

@@ -1,4 +1,4 @@
-// lib/core/check.h -- our own mistakes stop the program, saying where; the world's mistakes are exceptions.
+// lib/core/check.h -- stops the program at a programming error; errors of input and system are exceptions.
 #pragma once
 
 #include <cstdio>

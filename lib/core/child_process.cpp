@@ -40,16 +40,16 @@ constexpr bool kMemoryIsLimited = true;
 constexpr bool kMemoryIsLimited = true;
 #endif
 
-/// Only the first line that a helper writes is passed on; the rest is read and dropped, so that the helper does not
-/// wait.
+/// Only the first line of the child's standard error is passed on; the remainder is read and dropped, so that the child
+/// does not wait.
 constexpr std::size_t kMostWords = 1024;
-constexpr std::size_t kPiece = 1 << 16;  ///< what a pipe of Linux holds
+constexpr std::size_t kPiece = 1 << 16;  ///< capacity of a pipe in Linux
 
 [[noreturn]] void fail(const std::string& program, const std::string& what, int error) {
   throw ResourceError(program + ": " + what + ": " + std::strerror(error));
 }
 
-/// A file descriptor that is closed at the end.
+/// Owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_(number) {}
@@ -70,12 +70,13 @@ class Descriptor {
   int number_;
 };
 
-/// Two ends of a stream; none survives into a program that another thread starts.
+/// Both ends of a stream; close-on-exec, so that programs started by other threads do not inherit them.
 struct Stream {
   Descriptor ours, theirs;
 };
 
-/// A socket, not a pipe: writing to one that the reader has closed is an error code where a pipe would send SIGPIPE.
+/// A socket instead of a pipe: writing to a socket whose reader has closed it returns an error, writing to such a pipe
+/// sends SIGPIPE.
 void open_input(const std::string& program, Stream& stream) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
@@ -91,7 +92,7 @@ void open_output(const std::string& program, Stream& stream) {
   stream.theirs.reset(ends[1]);
 }
 
-/// How posix_spawn is to start the helper.
+/// Settings for posix_spawn.
 class SpawnPlan {
  public:
   SpawnPlan(const Stream& input, const Stream& output, const Stream& words) {
@@ -130,7 +131,7 @@ class SpawnPlan {
   posix_spawnattr_t attributes_;
 };
 
-/// The running helper: killed and waited for at the end, if that has not happened before.
+/// The running child process. The destructor kills it and waits for it, if it has not ended.
 class Child {
  public:
   explicit Child(pid_t child) : child_(child) {}
@@ -140,7 +141,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Set from outside, before it has got any input: until then a helper does nothing that a file could turn to harm.
+  /// Sets the limits from outside, before the child gets input: until then a child does nothing that depends on a file.
   void limit(const std::string& program, const ChildLimits& limits) const {
     const auto set = [&](__rlimit_resource resource, rlim_t soft, rlim_t hard) {
       const rlimit both{soft, hard};
@@ -156,7 +157,7 @@ class Child {
     set(RLIMIT_CORE, 0, 0);
   }
 
-  /// Waits until it has ended or the time is over; true if it has ended.
+  /// Waits until the child has ended or the time is over; true if it has ended.
   bool wait_until(Clock::time_point deadline) {
     for (auto nap = 50us; !ended(); nap = std::min(2 * nap, std::chrono::microseconds(10ms))) {
       if (Clock::now() >= deadline) return false;
@@ -170,7 +171,7 @@ class Child {
     while (!reap(0)) {}
   }
 
-  /// As waitpid gives it, once it has ended.
+  /// The status from waitpid, once the child has ended.
   int status() const { return status_; }
 
  private:
@@ -180,8 +181,8 @@ class Child {
     int status = 0;
     const pid_t got = ::waitpid(child_, &status, options);
     if (got == child_) status_ = status;
-    // ECHILD: this process ignores SIGCHLD, so the kernel has waited for it. How it ended is not known; its output must
-    // show it.
+    // ECHILD: this process ignores SIGCHLD, so the kernel has already waited. The child's status is unknown; its output
+    // must show whether it succeeded.
     ended_ = got == child_ || (got < 0 && errno == ECHILD);
     return ended_;
   }
@@ -198,7 +199,7 @@ std::string first_line(const std::string& words) {
   return line;
 }
 
-/// How the helper ended, in words; "" for code 0.
+/// A sentence about how the child ended; "" for code 0.
 std::string ending(int status, const std::string& words, const ChildLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
@@ -216,21 +217,21 @@ std::string ending(int status, const std::string& words, const ChildLimits& limi
   return line.empty() ? "ended with code " + std::to_string(code) : line;
 }
 
-/// The exchange with a running helper.
+/// Exchanges input and output with a running child.
 class Exchange {
  public:
   Exchange(Stream& input, Stream& output, Stream& words, std::span<const unsigned char> to_write,
            const ChildLimits& limits)
       : input_(input.ours), output_(output.ours), words_(words.ours), to_write_(to_write), limits_(limits) {}
 
-  /// Until it has closed its outputs. Empty: it has; else why it must be ended.
+  /// Runs until the child has closed its outputs. Returns "" then, else the reason to kill it.
   std::string run(const std::string& program, Clock::time_point deadline) {
     while (output_.number() >= 0 || words_.number() >= 0) {
       if (to_write_.empty()) input_.close();
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
       if (left <= 0ms) return "gave no answer within " + std::to_string(limits_.wall_s) + " s";
       std::array<pollfd, 3> ends{pollfd{input_.number(), POLLOUT, 0}, pollfd{output_.number(), POLLIN, 0},
-                                 pollfd{words_.number(), POLLIN, 0}};  // a negative number is passed over
+                                 pollfd{words_.number(), POLLIN, 0}};  // poll ignores a negative number
       const int ready = ::poll(ends.data(), ends.size(), int(std::min<std::int64_t>(left.count(), 1'000'000)));
       if (ready < 0 && errno != EINTR) fail(program, "waiting for it", errno);
       if (ready <= 0) continue;
@@ -250,7 +251,7 @@ class Exchange {
     const std::size_t count = std::min(to_write_.size(), kPiece);
     const ssize_t sent = ::send(input_.number(), to_write_.data(), count, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent > 0) to_write_ = to_write_.subspan(std::size_t(sent));
-    if (sent < 0 && errno != EAGAIN && errno != EINTR) to_write_ = {};  // it reads no more
+    if (sent < 0 && errno != EAGAIN && errno != EINTR) to_write_ = {};  // the child has closed its input
   }
 
   template <class Take>

@@ -23,7 +23,7 @@ std::vector<std::uint32_t> digit_permutation(std::uint32_t base, std::uint64_t s
   return permutation;
 }
 
-/// Upper 64 bits of a b.
+/// Upper 64 bits of a times b.
 std::uint64_t high_product(std::uint64_t a, std::uint64_t b) {
   __extension__ using Product = unsigned __int128;
   return std::uint64_t(Product{a} * b >> 64);
@@ -37,10 +37,10 @@ RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scra
     block_size_ *= base;
     ++block_digits_;
   }
-  // As many whole blocks as a 64-bit numerator can hold: 2^64 / block_size never overflows.
+  // As many whole blocks as a 64-bit numerator can hold: 2^64 / block_size does not overflow.
   for (std::uint64_t power = 1; power <= ~0ull / block_size_; power *= block_size_) ++block_count_;
   scale_ = std::pow(double(block_size_), -block_count_);
-  // 2^64 / block_size; only where it divides 2^64 does rounding down need the one more.
+  // 2^64 / block_size; the 1 is added only if block_size divides 2^64.
   reciprocal_ = ~0ull / block_size_ + (~0ull % block_size_ == block_size_ - 1 ? 1 : 0);
 
   table_.resize(std::size_t(block_count_) * block_size_);
@@ -72,7 +72,7 @@ double RadicalInverse::operator()(std::uint64_t index) const {
   const std::uint32_t* table = table_.data();
   std::size_t done = 0;
   for (; index != 0 && done < rest_weight_.size() - 1; ++done, table += block_size_) {
-    // index < 2^64, so that index * reciprocal / 2^64 is the quotient or one less.
+    // Since index < 2^64, index * reciprocal / 2^64 is the quotient or one less.
     std::uint64_t quotient = high_product(index, reciprocal_), digits = index - quotient * block_size_;
     if (digits >= block_size_) digits -= block_size_, ++quotient;
     numerator = numerator * block_size_ + table[digits];

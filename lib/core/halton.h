@@ -1,4 +1,4 @@
-// lib/core/halton.h -- scrambled Halton points with exact integer digits: where photons start.
+// lib/core/halton.h -- scrambled Halton points with exact integer digits, from which photons start.
 #pragma once
 
 #include <array>
@@ -7,13 +7,14 @@
 
 namespace tempolux {
 
-/// Radical inverse in one prime base b with a random permutation of the digits at every position, keyed by
-/// (seed, base, position).
+/// Radical inverse in one prime base b with a random permutation of the digits at every position, keyed by (seed, base,
+/// position):
 ///
-/// i = sum a_k b^k  ->  sum perm_k(a_k) b^(-k-1), for as many digits as fit a 64-bit numerator. Digits are
-/// taken in blocks from tables of at most 2048 entries. Indices that agree modulo b^m agree in the first m
-/// digits of the result, scrambled or not: the property photon groups rest on (docs/methods/formulas.md).
-/// Exact for every 64-bit index; the value is rounded once and is always below 1.
+///     i = sum a_k b^k  ->  sum perm_k(a_k) b^(-k-1),
+/// for as many digits as fit into a 64-bit numerator. Digits are processed in blocks with tables of at most 2048
+/// entries. Indices that agree modulo b^m agree in the first m digits of the result, scrambled or not; photon groups
+/// rely on this (docs/methods/formulas.md). Exact for every 64-bit index; the value is rounded once and is always below
+/// 1.
 class RadicalInverse {
  public:
   /// seed 0 is scrambled like any other; scramble = false gives the plain sequence, for tests.
@@ -27,14 +28,14 @@ class RadicalInverse {
   int block_count_;
   std::uint64_t reciprocal_;                  ///< 2^64 / block_size, rounded down
   double scale_;                              ///< base^-(block_digits * block_count)
-  std::vector<std::uint32_t> table_;          ///< block_count x block_size: reversed, permuted digits
-  std::vector<std::uint64_t> rest_weight_;    ///< by blocks done: block_size^(blocks left)
-  std::vector<std::uint64_t> rest_of_zeros_;  ///< and what those add to the numerator when all digits are 0
+  std::vector<std::uint32_t> table_;          ///< block_count x block_size: the digits reversed and permuted
+  std::vector<std::uint64_t> rest_weight_;    ///< by number of finished blocks: block_size^(remaining blocks)
+  std::vector<std::uint64_t> rest_of_zeros_;  ///< numerator of the remaining blocks if all their digits are 0
 };
 
-/// The four coordinates of a photon's emission, bases 3, 5, 7, 2 in the order in which they are used:
-/// light choice and position (base 3), position (5), direction (7, 2). Photon i of group g = i mod N_g stays
-/// in one box of volume 1/N_g where N_g = 2^a 3^b 5^c 7^d.
+/// The four coordinates of a photon's emission in bases 3, 5, 7 and 2, in order of use: choice of the light and
+/// position (base 3), position (5), direction (7, 2). All photons of group g = i mod N_g with N_g = 2^a 3^b 5^c 7^d lie
+/// in one box of volume 1/N_g.
 class PhotonHalton {
  public:
   explicit PhotonHalton(std::uint64_t seed);

@@ -9,8 +9,8 @@
 namespace tempolux {
 namespace {
 
-/// The smallest limit from the group `path` up to the root of `mount`; a file that is not there or says "max" limits
-/// nothing.
+/// The smallest limit from the group `path` up to the root of `mount`; a missing file, or one that says "max", means no
+/// limit.
 std::uint64_t limit_of_groups(const std::string& mount, std::string path, const std::string& file) {
   std::uint64_t limit = ~0ull;
   for (;;) {
@@ -21,7 +21,7 @@ std::uint64_t limit_of_groups(const std::string& mount, std::string path, const 
   }
 }
 
-/// Lines of /proc/self/cgroup: "NUMBER:CONTROLLERS:/PATH"; version 2 has no controllers.
+/// Parses lines of /proc/self/cgroup: "NUMBER:CONTROLLERS:/PATH"; version 2 has no controllers.
 std::uint64_t limit_of_this_process() {
   std::uint64_t limit = ~0ull;
   std::ifstream groups("/proc/self/cgroup");

@@ -5,8 +5,8 @@
 
 namespace tempolux {
 
-/// Bytes: the machine's memory, or less where a control group (a container, a batch job) allows less; of versions 1
-/// and 2. Swap is not counted. Never 0.
+/// Bytes: the machine's memory, or the smaller limit of a control group of version 1 or 2 (a container, a batch job).
+/// Without swap. Never 0.
 std::uint64_t machine_memory();
 
 }  // namespace tempolux

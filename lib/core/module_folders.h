@@ -1,4 +1,4 @@
-// lib/core/module_folders.h -- where the parts of this program lie that are opened or started at need.
+// lib/core/module_folders.h -- folders with modules and child programs.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace tempolux {
 
-/// Folders in which modules and helper programs are looked for, best first, relative to the running program
-/// (/proc/self/exe): ../lib/tempolux and its variants where it is installed, ../modules in a build tree. The
+/// Folders to search for modules and child programs, in order of preference, relative to the running program
+/// (/proc/self/exe): ../lib/tempolux and its variants for an installed program, ../modules in a build tree. The
 /// environment is not read.
 std::vector<std::string> default_module_folders();
 

@@ -50,8 +50,8 @@ void parallel_chunks(std::size_t count, std::size_t chunk_size,
 void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take) {
-  // What is made is kept here, not in TBB's tokens: a pipeline that an exception cancels drops those it has queued
-  // without destroying them. Those in flight are consecutive, so each has a place of its own.
+  // Results are stored here instead of in TBB's tokens: a pipeline that an exception cancels drops queued tokens
+  // without destroying them. Results in flight are consecutive, so each has its own place.
   const std::size_t places = std::max<std::size_t>(1, in_flight);
   std::vector<std::shared_ptr<void>> made(places);
   std::size_t next = 0;

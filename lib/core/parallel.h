@@ -1,7 +1,8 @@
-// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB (parallel_threads.cpp: without it).
+// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB (parallel_threads.cpp is a version without
+// TBB).
 //
-// Work is cut into chunks by count alone, never by the number of threads, and results are joined in chunk
-// order: the same numbers come out for any --threads.
+// Work is cut into chunks by count, never by the number of threads, and results are joined in chunk order: the same
+// numbers for any --threads.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace tempolux {
 
-/// While it lives, at most `threads` threads work in parallel loops (also in Embree's and OpenEXR's).
+/// While an object lives, at most `threads` threads work in parallel loops (also in Embree's and OpenEXR's).
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);
@@ -26,7 +27,7 @@ class ThreadLimit {
 
 /// Processors this process may use (its CPU set, not the machine's count); at least 1.
 int usable_processor_count();
-/// Threads that a parallel loop started now would use; for what depends on it in memory, never in its result.
+/// Number of threads of a parallel loop that starts now. Memory may depend on it, results must not.
 int parallel_thread_count();
 
 /// Calls body(first, last) for each chunk [first, last) of [0, count); chunks start at multiples of
@@ -41,8 +42,8 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take);
 
-/// Runs body so that a parallel loop inside it may be waited for from within another loop's body: this thread
-/// takes up no other work meanwhile, which might need a lock it holds.
+/// Runs `body` so that waiting for a parallel loop inside it does not make this thread take up other work, which might
+/// need a lock that the thread holds.
 void run_isolated(const std::function<void()>& body);
 
 }  // namespace tempolux

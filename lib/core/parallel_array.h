@@ -1,4 +1,4 @@
-// lib/core/parallel_array.h -- an array of a fixed size whose elements all threads make.
+// lib/core/parallel_array.h -- an array of fixed size that all threads initialise.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace tempolux {
 
-/// `count` values T{}. The system clears memory page by page where it is first written: one thread would do that for
-/// all of it while the others wait.
+/// `count` values T{}. The system clears a page of memory when it is first written; if one thread initialised the
+/// array, all others would wait for that.
 template <class T>
 class ParallelArray {
  public:

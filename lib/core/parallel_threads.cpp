@@ -1,6 +1,5 @@
-// lib/core/parallel_threads.cpp -- parallel.h by threads of the standard library, in place of parallel.cpp where
-// ThreadSanitizer looks on: it does not see how Debian's TBB, which is not built for it, hands over work, and would
-// call each hand-over a race.
+// lib/core/parallel_threads.cpp -- parallel.h with threads of the standard library. Replaces parallel.cpp in builds
+// with ThreadSanitizer, which reports false races in Debian's TBB.
 #include <sched.h>
 
 #include <algorithm>
@@ -18,7 +17,7 @@ namespace {
 
 std::atomic<int> most_threads{0};  ///< 0: no limit
 
-/// body() by all threads at once; the first exception reaches the caller, `stop` is set by it.
+/// All threads call body(). The first exception sets `stop` and reaches the caller.
 void by_all(const std::function<void()>& body, std::atomic<bool>& stop) {
   std::mutex mutex;
   std::exception_ptr first;
@@ -110,7 +109,7 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
           work();
         } catch (...) {
           {
-            const std::lock_guard lock(mutex);  // else a thread that is about to wait would miss the signal
+            const std::lock_guard lock(mutex);  // otherwise a thread that is about to wait could miss the signal
             stop = true;
           }
           changed.notify_all();

@@ -1,8 +1,8 @@
-// lib/core/random.h -- counter-based random numbers: a pure function of what they are for.
+// lib/core/random.h -- counter-based random numbers: each is a pure function of its purpose.
 //
-// There is no generator state: the number for (seed, photon, bounce, purpose) is the same whatever was
-// drawn before it and by whichever thread. That is what makes files equal for any --threads, and what lets
-// two traces of one photon through two scenes stay together until the scenes differ.
+// There is no generator state: the number for (seed, photon, bounce, purpose) does not depend on numbers drawn before
+// or on the thread. So files are equal for any --threads, and two traces of one photon through two scenes stay equal up
+// to the point where the scenes differ.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// What a random number is drawn for; part of its key, so that no two uses share numbers.
+/// The purpose of a random number; part of its key, so that no two purposes share numbers.
 enum class Purpose : std::uint32_t {
   emit = 1,
   lobe,
@@ -43,7 +43,7 @@ constexpr float unit_float(std::uint32_t u) { return float(u >> 8) * 0x1p-24f; }
 /// 53 bits of u as a double in [0, 1).
 constexpr double unit_double(std::uint64_t u) { return double(u >> 11) * 0x1p-53; }
 
-/// The random numbers of one path: key = (seed, index of the photon or pixel sample).
+/// The random numbers of one path; key = (seed, index of the photon or pixel sample).
 class PathRandom {
  public:
   constexpr PathRandom(std::uint64_t seed, std::uint64_t index)

@@ -1,4 +1,4 @@
-// lib/core/sampling.h -- warps of the unit square, each sample_ beside its pdf_.
+// lib/core/sampling.h -- warps of the unit square; each sample_ function has a pdf_ function.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;  ///< the largest float below 1
 
-/// Sine and cosine of x in [-pi/4, pi/4], within 1.1 ulp: their Taylor series up to terms below 2^-28. Plain
-/// arithmetic: a third of the library's time, and the same bits whatever library there is.
+/// Sine and cosine of x in [-pi/4, pi/4], within 1.1 ulp: Taylor series up to terms below 2^-28. Plain arithmetic takes
+/// a third of the library's time and gives the same bits with any library.
 struct SinCos {
   float sin, cos;
 };
@@ -26,7 +26,7 @@ inline SinCos sin_cos_eighth(float x) {
           1 + y * (-0.5f + y * (1.0f / 24 + y * (-1.0f / 720 + y * (1.0f / 40320 - y * (1.0f / 3628800)))))};
 }
 
-/// c ? a : b without a branch, for choices that go either way at random: half of them would be foretold wrongly.
+/// c ? a : b without a branch, for random conditions, which processors cannot predict.
 inline float select(bool c, float a, float b) {
   const std::uint32_t mask = 0 - std::uint32_t(c);
   return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a) & mask) | (std::bit_cast<std::uint32_t>(b) & ~mask));
@@ -38,7 +38,7 @@ inline Vec2 sample_disc_concentric(Vec2 u) {
   const bool steep = !(std::abs(a) > std::abs(b));
   const float r = select(steep, b, a), size = std::abs(r);
   const SinCos part = sin_cos_eighth((kPi / 4) * (select(steep, a, b) / std::max(size, 1e-30f)));
-  const float along = r * part.cos, across = size * part.sin;  // the sine's argument has not r's sign
+  const float along = r * part.cos, across = size * part.sin;  // the sine's argument lacks r's sign
   return {select(steep, across, along), select(steep, along, across)};
 }
 
@@ -47,7 +47,7 @@ inline Vec3 sample_hemisphere_cos(Vec2 u) {
   const Vec2 d = sample_disc_concentric(u);
   return {d.x, d.y, std::sqrt(std::max(1e-12f, 1 - d.x * d.x - d.y * d.y))};
 }
-/// The same for many: eight at a time. directions: as many as u.
+/// The same for many numbers, eight at a time; `directions` has as many elements as u.
 inline void sample_hemisphere_cos(std::span<const Vec2> u, Vec3* directions) {
   for (std::size_t i = 0; i < u.size(); ++i) directions[i] = sample_hemisphere_cos(u[i]);
 }
@@ -59,8 +59,8 @@ inline Vec3 sample_sphere(Vec2 u) {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// Uniform direction within the cone of half angle acos(cos_max) about +z; pdf 1/(2 pi (1 - cos_max)).
-/// one_minus_cos_max is passed instead of cos_max so that narrow cones keep their digits.
+/// Uniform direction within the cone of half angle acos(cos_max) about +z; pdf 1/(2 pi (1 - cos_max)). The argument is
+/// 1 - cos_max, so that narrow cones keep their digits.
 inline Vec3 sample_cone(Vec2 u, float one_minus_cos_max) {
   const float omc = u.x * one_minus_cos_max, phi = 2 * kPi * u.y;
   const float r = std::sqrt(std::max(0.0f, omc * (2 - omc)));
@@ -74,11 +74,11 @@ inline Vec2 sample_triangle(Vec2 u) {
   return {u.x - half, u.y - half};
 }
 
-/// Power heuristic with exponent 2 for one sample of each of two techniques. Veach 1997 (9.2).
-/// Both pdfs in the same measure; scaled against overflow; 0 if pdf_a is 0.
+/// Power heuristic with exponent 2 for one sample of each of two techniques. Veach 1997 (9.2). Both pdfs are in the
+/// same measure. Their quotient is squared, which cannot overflow to NaN; 0 if pdf_a is 0.
 inline float mis_power(float pdf_a, float pdf_b) {
   if (!(pdf_a > 0)) return 0;
-  const float r = pdf_b / pdf_a;  // infinite r gives 0, as it should
+  const float r = pdf_b / pdf_a;  // an infinite r correctly gives 0
   return 1 / (1 + r * r);
 }
 

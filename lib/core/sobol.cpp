@@ -12,8 +12,8 @@ std::uint32_t reverse_bits(std::uint32_t x) {
   return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
 }
 
-/// Laine-Karras style hash on reversed bits: each bit depends on itself and lower ones only.
-/// Constants: Vegdahl, "Owen scrambling based hash functions", 2021.
+/// Laine-Karras style hash on reversed bits: each bit depends on itself and lower bits only. Constants: Vegdahl, "Owen
+/// scrambling based hash functions", 2021.
 std::uint32_t permute_low_to_high(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -23,9 +23,9 @@ std::uint32_t permute_low_to_high(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-/// Second Sobol dimension from the first, the bits of both reversed: Pascal's triangle modulo 2 applied to binary
-/// fractions, in five steps. Ahmed, "An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact",
-/// EGSR 2024.
+/// Computes the second Sobol dimension from the first, both with reversed bits: Pascal's triangle modulo 2 applied to
+/// binary fractions, in five steps. Ahmed, "An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and
+/// Compact", EGSR 2024.
 std::uint32_t reversed_second(std::uint32_t x) {
   x ^= x >> 16;
   x ^= x >> 8 & 0x00ff00ffu;
@@ -34,14 +34,14 @@ std::uint32_t reversed_second(std::uint32_t x) {
   return x ^ (x >> 1 & 0x55555555u);
 }
 
-/// Nested uniform shuffle of indices: the first 2^k map onto one aligned block of 2^k. The first Sobol dimension is the
-/// index with its bits reversed, and scrambling is a permutation of reversed bits as well, so that each number need be
-/// reversed once only.
+/// Nested uniform shuffle of indices: the first 2^k indices map onto one aligned block of 2^k. The first Sobol
+/// dimension is the index with reversed bits, and scrambling permutes reversed bits, so each number is reversed only
+/// once.
 std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
   return reverse_bits(permute_low_to_high(reverse_bits(index), seed));
 }
 
-/// Owen scrambling of a coordinate, given with its bits reversed.
+/// Owen scrambling of a coordinate with reversed bits.
 float scrambled(std::uint32_t reversed, std::uint32_t seed) {
   return unit_float(reverse_bits(permute_low_to_high(reversed, seed)));
 }

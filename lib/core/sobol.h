@@ -1,4 +1,4 @@
-// lib/core/sobol.h -- Owen-scrambled Sobol points, padded by dimension pairs: the pixel samples.
+// lib/core/sobol.h -- Owen-scrambled Sobol points, padded by dimension pairs, for pixel samples.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace tempolux {
 
-/// Point `index` of a scrambled two-dimensional Sobol sequence; the first 2^k points of one `key` are
-/// stratified in every elementary box of area 2^-k, different keys are independent.
-/// Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020. Components in [0, 1).
+/// Point `index` of a scrambled two-dimensional Sobol sequence. The first 2^k points of one `key` are stratified in
+/// every elementary box of area 2^-k; sequences of different keys are independent. Burley, "Practical Hash-based Owen
+/// Scrambling", JCGT 9(4), 2020. Components in [0, 1).
 Vec2 sobol_owen_2d(std::uint32_t index, std::uint64_t key);
 
-/// One component of the same (base 2 radical inverse, scrambled and shuffled by key).
+/// One component of the same sequence (base 2 radical inverse, scrambled and shuffled by key).
 float sobol_owen_1d(std::uint32_t index, std::uint64_t key);
 
 }  // namespace tempolux

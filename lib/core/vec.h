@@ -95,7 +95,7 @@ bool is_finite(Vec3T<T> a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// A linear Rec. 709 triple of any quantity (flux, radiance, reflectance ...): unit as said where used.
+/// A linear Rec. 709 triple of any quantity (flux, radiance, reflectance ...); its declaration gives the unit.
 template <class T>
 struct RgbT {
   T r{}, g{}, b{};

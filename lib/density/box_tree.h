@@ -1,4 +1,4 @@
-// lib/density/box_tree.h -- boxes of boxes, eight to each, over a row of leaves that lie next to each other.
+// lib/density/box_tree.h -- a tree of boxes with eight children per node over a sequence of leaves.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,11 @@
 
 namespace tempolux {
 
-/// What a search descends through. The leaves' order is the caller's: those of any aligned block of 8^j are one
-/// subtree.
+/// The tree that a search descends. The caller orders the leaves: each aligned block of 8^j leaves is one subtree.
 struct BoxTree {
   static constexpr std::size_t kChildren = 8;
   /// Boxes of the children. Level 0 has leaves as children; child c of node j is number 8 j + c of the level below.
-  /// Those of missing children are NaN, which no comparison lets through.
+  /// Boxes of missing children are NaN, for which every comparison is false.
   struct alignas(64) Node {
     float lower[3][kChildren], upper[3][kChildren];
   };
@@ -25,8 +24,8 @@ struct BoxTree {
   std::size_t level_count() const { return level_start.size(); }
   const Node& node(std::size_t level, std::uint64_t number) const { return nodes[level_start[level] + number]; }
 
-  std::vector<Node> nodes;                 ///< level by level, the root last
-  std::vector<std::uint32_t> level_start;  ///< first node of each level
+  std::vector<Node> nodes;                 ///< level by level, the root is last
+  std::vector<std::uint32_t> level_start;  ///< index of the first node of each level
 };
 
 }  // namespace tempolux

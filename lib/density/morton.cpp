@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::size_t kCodeChunk = 1 << 14;
 
-/// Where the bits of each axis go in the code, and how coordinates become cells.
+/// How coordinates become cells, and how the bits of cells are interleaved in the code.
 struct CurveLayout {
   Vec3 lower, scale;  // cell = (p - lower) * scale
   std::array<float, 3> last_cell{};
-  std::array<std::uint32_t, 3> bits{};  // positions of the axis's bits in the code
+  std::array<std::uint32_t, 3> bits{};  // positions of the axis' bits in the code
 
   explicit CurveLayout(const Box3& box) : lower(box.lower) {
     const Vec3 extent = box.upper - box.lower;
@@ -25,7 +25,7 @@ struct CurveLayout {
     for (int bit = 31; bit >= 0; --bit) {
       int axis = cell.x >= cell.y ? 0 : 1;
       if (cell.z > cell[axis]) axis = 2;
-      if (count[std::size_t(axis)] == 24) axis = (axis + 1) % 3;  // a float has no more; 3 x 24 > 32
+      if (count[std::size_t(axis)] == 24) axis = (axis + 1) % 3;  // a float has 24 bits; another axis gets the next bit
       bits[std::size_t(axis)] |= 1u << bit;
       ++count[std::size_t(axis)];
       cell[axis] *= 0.5f;

@@ -7,7 +7,7 @@
 namespace tempolux {
 namespace {
 
-/// How many of the list are <= bound. The places up to the next multiple of 8 must hold NaN.
+/// Number of list entries <= bound. The places up to the next multiple of 8 must hold NaN.
 std::size_t count_up_to(const CandidateList& list, float bound) {
   const __m256 limit = _mm256_set1_ps(bound);
   __m256i sum = _mm256_setzero_si256();
@@ -32,12 +32,12 @@ float largest(const CandidateList& list) {
 
 struct Threshold {
   float value;
-  std::size_t count;  ///< entries <= value, >= k; more than k only if several equal the k-th
+  std::size_t count;  ///< number of entries <= value; above k only if several entries equal the k-th
 };
 
-/// A value with exactly k entries up to it, if equal entries allow. Counting is so fast that the value is
-/// found by guessing: by interpolation first (distances squared on a surface are spread evenly), by halving
-/// the interval of float bit patterns if that is slow.
+/// A value with exactly k entries up to it, if equal entries allow. Counting is fast, so the value is found by trial:
+/// by interpolation first (squared distances on a surface are uniformly distributed), then, if that is slow, by
+/// bisection over float bit patterns.
 Threshold find_threshold(const CandidateList& list, std::size_t k) {
   std::uint32_t low = 0, high = std::bit_cast<std::uint32_t>(largest(list));  // bits; count(low) < k
   std::size_t low_count = 0, high_count = list.count;
@@ -61,7 +61,7 @@ Threshold find_threshold(const CandidateList& list, std::size_t k) {
   return {std::bit_cast<float>(high), high_count};
 }
 
-/// Removes what is beyond the threshold.
+/// Removes entries above the threshold.
 void compact(CandidateList& list, float threshold) {
   const __m256 limit = _mm256_set1_ps(threshold);
   const std::size_t count = list.count;
@@ -74,7 +74,7 @@ void compact(CandidateList& list, float threshold) {
   }
 }
 
-/// `value` is the largest. Drops entries equal to it, those with the highest photons first, until k are left.
+/// `value` is the largest entry. Drops entries equal to it, highest photon numbers first, until k remain.
 void drop_ties(CandidateList& list, float value, std::size_t k) {
   std::vector<std::uint32_t> ties;
   for (std::size_t i = 0; i < list.count; ++i)

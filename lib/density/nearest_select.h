@@ -1,4 +1,5 @@
-// lib/density/nearest_select.h -- inside lib/density: eight floats at a time into and out of a list.
+// lib/density/nearest_select.h -- private to lib/density: appends to lists and selects from them, eight floats at a
+// time.
 #pragma once
 
 #include <immintrin.h>
@@ -10,7 +11,7 @@
 
 namespace tempolux {
 
-/// For each 8-bit mask the lanes that are set, lowest first.
+/// For each 8-bit mask the numbers of the set lanes, lowest first.
 inline constexpr auto kCompressLanes = [] {
   std::array<std::array<std::uint8_t, 8>, 256> table{};
   for (std::size_t mask = 0; mask < 256; ++mask) {
@@ -21,10 +22,10 @@ inline constexpr auto kCompressLanes = [] {
   return table;
 }();
 
-/// Places a list needs beyond those in use, so that whole vectors can be stored.
+/// Places that a list needs after its last entry, so that whole vectors can be stored.
 inline constexpr std::size_t kListSlack = 8;
 
-/// A list of (squared distance, photon) in two arrays owned by someone else.
+/// A list of (squared distance, photon) in two arrays that the caller owns.
 struct CandidateList {
   float* distance2;
   std::uint32_t* photon;
@@ -40,8 +41,8 @@ struct CandidateList {
   }
 };
 
-/// Keeps the k nearest of the list (1 <= k <= count) by (distance2, photon), in their order; returns the
-/// place of the farthest of them. Distances are >= 0 and no NaN.
+/// Keeps the k nearest entries (1 <= k <= count) by (distance2, photon), in list order; returns the place of the
+/// farthest one. Distances must be >= 0 and not NaN.
 std::size_t keep_nearest(CandidateList& list, std::size_t k);
 
 }  // namespace tempolux

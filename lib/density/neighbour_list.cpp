@@ -7,7 +7,7 @@
 namespace tempolux {
 namespace {
 
-/// Buckets with more entries than this are left to the library's sort.
+/// Larger buckets are sorted by std::sort.
 constexpr std::uint32_t kFullBucket = 16;
 
 }  // namespace
@@ -23,8 +23,8 @@ NeighbourList::Guess& NeighbourList::guess_for(const PhotonIndex& index, int k) 
 void NeighbourList::sort_by_distance() {
   if (count_ < 2) return;
   farthest_ = count_ - 1;
-  // Squared distances on a surface are spread evenly: one bucket per entry almost sorts them, and insertion
-  // does the rest. Where they are not, buckets fill up and std::sort takes over.
+  // Squared distances on a surface are uniformly distributed, so one bucket per entry almost sorts them, and insertion
+  // sort finishes. If they are not, buckets fill up and std::sort is used.
   const auto key = [this](std::size_t i) {
     return std::uint64_t(std::bit_cast<std::uint32_t>(distance2_[i])) << 32 | photon_[i];
   };

@@ -1,4 +1,4 @@
-// lib/density/parallel_select.h -- std::nth_element by all threads.
+// lib/density/parallel_select.h -- std::nth_element with all threads.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace tempolux {
 
-/// Puts the values of which below(value) holds in front, in any order; returns how many they are. Every chunk is parted
-/// by itself, then what lies beyond the border changes places with what lies before it.
+/// Moves the values for which below(value) is true to the front, in any order; returns their number. Each chunk is
+/// partitioned separately; then values on the wrong side of the border are exchanged.
 template <class T, class Below>
 std::size_t parallel_partition(std::span<T> values, std::size_t chunk, const Below& below) {
   struct Run {
     std::size_t first, last;
     std::size_t length() const { return last - first; }
   };
-  std::vector<Run> low((values.size() + chunk - 1) / chunk);  // by chunk: its values that go in front
+  std::vector<Run> low((values.size() + chunk - 1) / chunk);  // by chunk: its values that belong to the front
   parallel_chunks(values.size(), chunk, [&](std::size_t first, std::size_t last) {
     const auto middle =
         std::partition(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(last), below);
@@ -27,7 +27,7 @@ std::size_t parallel_partition(std::span<T> values, std::size_t chunk, const Bel
   });
   std::size_t border = 0;
   for (const Run& run : low) border += run.length();
-  // Runs that are to change places, and where each begins in the row of their kind.
+  // Runs to be exchanged, and their starts when they are counted one after the other.
   std::vector<Run> high_before, low_behind;
   std::vector<std::size_t> high_start{0}, low_start{0};
   const auto note = [](std::vector<Run>& runs, std::vector<std::size_t>& starts, std::size_t first, std::size_t last) {
@@ -57,13 +57,12 @@ std::size_t parallel_partition(std::span<T> values, std::size_t chunk, const Bel
   return border;
 }
 
-/// As std::nth_element(values.begin(), values.begin() + n, values.end(), less): less is a strict order without ties. A
-/// sample gives two values that lie close before and behind the one sought; all threads part off what is outside of
-/// them.
+/// As std::nth_element(values.begin(), values.begin() + n, values.end(), less); `less` must be a strict order without
+/// ties. A sample gives two values close below and above the wanted one; all threads partition by these values.
 template <class T, class Less>
 void parallel_nth_element(std::span<T> values, std::size_t n, const Less& less) {
   constexpr std::size_t kSample = 1 << 10, kMargin = kSample / 16,
-                        kChunk = 1 << 15;  // 4 standard deviations of a median's rank
+                        kChunk = 1 << 15;  // 4 standard deviations of the rank of a sample's median
   if (values.size() >= 4 * kChunk) {
     std::vector<T> sample;
     for (std::size_t i = 0; i < kSample; ++i) sample.push_back(values[i * values.size() / kSample]);

@@ -10,7 +10,7 @@
 
 namespace tempolux {
 
-/// A photon while the tree is built.
+/// A photon during the construction of the tree.
 struct PhotonIndex::Item {
   float position[3];
   std::uint32_t source;
@@ -25,7 +25,7 @@ struct Range {
   std::size_t first, last;
 };
 
-/// Memory for `count` values, not touched yet.
+/// Uninitialised memory for `count` values.
 template <class T>
 std::unique_ptr<T[]> room_for(std::size_t count) {
   auto room = std::make_unique_for_overwrite<T[]>(count);
@@ -33,8 +33,7 @@ std::unique_ptr<T[]> room_for(std::size_t count) {
   return room;
 }
 
-/// Orders items around the n-th by coordinate, equal ones by source: the two halves as sets do not depend on how it
-/// is found.
+/// Partitions items around the n-th by coordinate, ties by source: the two halves as sets do not depend on the method.
 template <int axis, class Item>
 void select(std::span<Item> items, std::size_t n) {
   parallel_nth_element(items, n, [](const Item& a, const Item& b) {
@@ -49,7 +48,7 @@ Box3 box_of(const Item* first, const Item* last) {
   return box;
 }
 
-/// The same by all threads: the first cuts have fewer ranges than there are threads.
+/// The same with all threads: the first cuts have fewer ranges than there are threads.
 template <class Item>
 Box3 box_of_many(const Item* first, const Item* last) {
   const auto count = std::size_t(last - first);
@@ -62,8 +61,8 @@ Box3 box_of_many(const Item* first, const Item* last) {
   return whole;
 }
 
-/// Cuts the range's box across its longest side. The left part takes a power of two of leaves, all full, so
-/// that any aligned block of 2^j leaves is a subtree. False: one leaf, sorted by source and finished.
+/// Cuts the range's box across its longest side. The left part gets a power of two of full leaves, so that any aligned
+/// block of 2^j leaves is a subtree. False: the range is one leaf, sorted by source and finished.
 template <class Item>
 bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& left, Range& right) {
   Item* const first = items.data() + range.first;
@@ -93,7 +92,7 @@ void split_to_leaves(std::span<Item> items, std::size_t leaf_size, Range range) 
   split_to_leaves(items, leaf_size, right);
 }
 
-/// Sorts items into tree order: the first levels range by range, then many subtrees at once.
+/// Sorts items into tree order: the first levels range by range, then many subtrees in parallel.
 template <class Item>
 void order_as_tree(std::span<Item> items, std::size_t leaf_size) {
   std::vector<Range> ranges{{0, items.size()}};
@@ -108,7 +107,7 @@ void order_as_tree(std::span<Item> items, std::size_t leaf_size) {
   parallel_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t) { split_to_leaves(items, leaf_size, ranges[i]); });
 }
 
-/// Ten bits per component (signed, 511 is 1) and two for the kind.
+/// Encodes a photon's normal with ten bits per component (signed, 511 is 1) and its kind with two.
 std::uint32_t filter_code(const formats::Photon& photon) {
   const std::array<float, 3> n = formats::decode_normal(photon.normal);
   std::uint32_t code = std::uint32_t(photon.kind) << 30;
@@ -119,7 +118,7 @@ std::uint32_t filter_code(const formats::Photon& photon) {
   return code;
 }
 
-/// A component of the normal in a filter_code, in 1/511.
+/// Decodes a component of the normal, in 1/511.
 float coded(std::uint32_t code, int axis) { return float(std::int32_t(code << (22 - 10 * axis)) >> 22); }
 
 }  // namespace
@@ -128,7 +127,7 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
   if (photons.size() > std::size_t(1) << 31) throw std::length_error("PhotonIndex: more than 2^31 photons");
   const auto is_wanted = [kinds](const formats::Photon& photon) { return (kind_bit(photon.kind) & kinds) != 0; };
   const std::size_t chunks = (photons.size() + kChunk - 1) / kChunk;
-  std::vector<std::size_t> places(chunks + 1, 0);  // by chunk: where its photons begin
+  std::vector<std::size_t> places(chunks + 1, 0);  // by chunk: index of its first photon
   parallel_chunks(photons.size(), kChunk, [&](std::size_t first, std::size_t last) {
     places[first / kChunk + 1] =
         std::size_t(std::count_if(&photons[first], &photons[first] + (last - first), is_wanted));

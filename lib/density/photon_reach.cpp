@@ -8,7 +8,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kAsked = 1000;
-constexpr std::size_t kStray = 20;  ///< one photon in so many is farther from others than the reach
+constexpr std::size_t kStray = 20;  ///< one photon in this many may be farther from others than the reach
 
 }  // namespace
 
@@ -29,7 +29,8 @@ float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, floa
     query.normal = index.normal(i);
     query.min_cos = min_cos;
     query.flattening = flattening;
-    index.find_nearest(query, std::min(neighbours + 1, kMaxNeighbours), found);  // it finds itself
+    // One more, since a photon finds itself.
+    index.find_nearest(query, std::min(neighbours + 1, kMaxNeighbours), found);
     if (found.count() > 0) distance2.push_back(found.distance2()[found.farthest()]);
   }
   if (distance2.empty()) return index.resolution();

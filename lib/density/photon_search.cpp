@@ -1,4 +1,4 @@
-// The searches of PhotonIndex: a walk down the tree, nearer children first.
+// lib/density/photon_search.cpp -- the searches of PhotonIndex: descend the tree, nearer children first.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,25 +11,25 @@
 namespace tempolux {
 namespace {
 
-/// What the next search's squared radius is taken to be at most, over this one's: too small and the search
-/// is made twice, too large and it sees many photons in vain. 1.2 and 2 are 5 to 10 % slower.
+/// Factor from this search's squared radius to the next one's first guess. If the guess is too small the search runs
+/// twice; if it is too large the search visits many photons in vain. 1.2 and 2 are 5 to 10 % slower.
 constexpr float kGuessFactor = 1.5f;
 
 }  // namespace
 
-/// One search. Bounds are exact: a box's distance is computed with the same roundings as a photon's, and
-/// rounding is monotonic, so it is never above that of a photon inside.
+/// One search. Bounds are exact: a box's distance is computed with the same roundings as a photon's, and rounding is
+/// monotonic, so it is never above the distance of a photon inside.
 struct PhotonSearch {
   static constexpr unsigned kLeafBits = 5;  // log2(kLeafSize)
   static_assert(PhotonIndex::kLeafSize == std::size_t(1) << kLeafBits);
 
-  /// A subtree: its box's squared distance (upper half, as float bits) and its first photon (lower half).
-  /// Everything in it comes after `last_key` if key > last_key.
+  /// A subtree: its box's squared distance (upper half, as float bits) and its first photon (lower half). All its
+  /// photons come after `last_key` if key > last_key.
   struct Entry {
     std::uint64_t key;
     unsigned level;  // of the node; its number follows from the first photon
   };
-  /// Subtrees still to visit, the next one on top. A level adds at most 7, and 2^31 photons have 9 levels.
+  /// Subtrees still to be visited, the next one on top. A level adds at most 7, and 2^31 photons have 9 levels.
   struct Stack {
     std::array<Entry, 8 * 12> entries;
     std::size_t depth = 0;
@@ -74,7 +74,7 @@ struct PhotonSearch {
     last_key = make_key(d2, photon);
   }
 
-  /// Room for `more` candidates after those in the list.
+  /// Reserves memory for `more` candidates after those in the list.
   void reserve(std::size_t more) {
     const std::size_t need = list.count + more + kListSlack;
     if (found.distance2_.size() < need) {
@@ -88,7 +88,7 @@ struct PhotonSearch {
   __m256 box_distance2(const BoxTree::Node& node) const {
     const auto along = [](const float* lower, const float* upper, __m256 p) {
       const __m256 d = _mm256_max_ps(_mm256_sub_ps(_mm256_load_ps(lower), p), _mm256_sub_ps(p, _mm256_load_ps(upper)));
-      const __m256 outside = _mm256_max_ps(_mm256_setzero_ps(), d);  // NaN of a missing child stays NaN
+      const __m256 outside = _mm256_max_ps(_mm256_setzero_ps(), d);  // the NaN of a missing child stays NaN
       return _mm256_mul_ps(outside, outside);
     };
     return _mm256_add_ps(
@@ -96,7 +96,7 @@ struct PhotonSearch {
         along(node.lower[2], node.upper[2], pz));
   }
 
-  /// The children in which a photon may pass the test of normals: a bound of the cosine, with the roundings of
+  /// The children in which a photon may pass the test of normals: an upper bound of the cosine, with the roundings of
   /// filter().
   __m256 may_face(const BoxTree::Node& node) const {
     const auto most = [](const float* lower, const float* upper, __m256 n) {
@@ -143,8 +143,8 @@ struct PhotonSearch {
     }
   }
 
-  /// The children of a node within the bound, nearest first (kSorted) or in tree order; of a query that asks for
-  /// normals (kFilter) not those that face elsewhere.
+  /// The children of a node within the bound, nearest first (kSorted) or in tree order. If the query tests normals
+  /// (kFilter), children whose normals all face another way are left out.
   template <bool kSorted, bool kFilter>
   unsigned children_within(Entry entry, std::array<std::uint64_t, 8>& keys) const {
     const std::uint32_t first = std::uint32_t(entry.key);
@@ -174,7 +174,7 @@ struct PhotonSearch {
     found.farthest_ = place;
   }
 
-  /// Bounds the k-th distance from above: takes the nearest subtrees until they hold k photons that pass.
+  /// Finds an upper bound of the k-th distance: takes the nearest subtrees until they hold k photons that pass.
   template <bool kFilter, bool kFlat>
   void approach(std::size_t k) {
     reserve(k + PhotonIndex::kLeafSize);
@@ -194,10 +194,10 @@ struct PhotonSearch {
     }
   }
 
-  /// The k nearest within the bound, in tree order. Fast if the bound is not much too large.
+  /// Finds the k nearest photons within the bound, in tree order. Fast if the bound is not much too large.
   template <bool kFilter, bool kFlat>
   void collect(std::size_t k) {
-    const std::size_t limit = 2 * k + 32;  // of candidates before the bound is tightened
+    const std::size_t limit = 2 * k + 32;  // number of candidates at which the bound is tightened
     reserve(limit + PhotonIndex::kLeafSize);
     list.count = 0;
     Stack stack(root());
@@ -219,7 +219,7 @@ struct PhotonSearch {
     if (list.count > 0) tighten(std::min(k, list.count));
   }
 
-  /// Searches within the guess if there is one (finite, above 0), and from the beginning if the guess was too small.
+  /// Searches within the guess if there is one (finite, above 0), and without it if the guess was too small.
   template <bool kFilter, bool kFlat>
   void nearest(std::size_t k, float max_radius2, float guess2) {
     if (guess2 > 0 && std::isfinite(guess2)) {

@@ -1,4 +1,4 @@
-// lib/density/photon_view.h -- photons in memory and, if their file has them, the directions that they came from.
+// lib/density/photon_view.h -- photons in memory with, if their file has them, the directions they came from.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace tempolux {
 
-/// What it was made of must outlive it. With directions (one for each photon) normal maps and coats are left out of the
-/// flux of kind caustic, and who looks applies them (received_share); without, all carry what a Lambert lobe gets of it
-/// (formats/photons/photons.md, section 5).
+/// A view of photons; what it refers to must outlive it. With directions (one per photon), the flux of caustic photons
+/// excludes normal maps and coats, and the reader applies them (received_share). Without directions the flux is what a
+/// Lambert lobe receives (formats/photons/photons.md, section 5).
 struct PhotonView {
   std::span<const formats::Photon> photons;
-  std::span<const std::array<std::uint16_t, 2>> directions;  ///< octahedral wi; or none
+  std::span<const std::array<std::uint16_t, 2>> directions;  ///< wi in octahedral coding; may be empty
 
   PhotonView() = default;
   PhotonView(std::span<const formats::Photon> all) : photons(all) {}
@@ -26,7 +26,7 @@ struct PhotonView {
   bool directed() const { return !directions.empty(); }
 };
 
-/// Appends photon i of `from`, changed to `photon`, with its direction.
+/// Appends photon i of `from` as `photon`, with its direction.
 inline void append(const PhotonView& from, std::size_t i, const formats::Photon& photon, formats::PhotonBlock& to) {
   to.photons.push_back(photon);
   if (from.directed()) to.directions.push_back(from.directions[i]);

@@ -7,11 +7,11 @@ namespace tempolux {
 namespace {
 
 constexpr double kSteps = 65536;
-constexpr std::size_t kKept = 64;  ///< points within the hull that are kept before it is made again
+constexpr std::size_t kKept = 64;  ///< points inside the hull that are kept before the hull is computed again
 
 std::int32_t step(double t) { return std::int32_t(std::clamp(std::floor(t * kSteps), 0.0, kSteps - 1)); }
 
-/// Twice the area of the triangle a, b, c; positive if it runs counter-clockwise.
+/// Twice the area of the triangle a, b, c; positive if its corners are counter-clockwise.
 std::int64_t turn(const std::array<std::int32_t, 2>& a, const std::array<std::int32_t, 2>& b,
                   const std::array<std::int32_t, 2>& c) {
   return std::int64_t(b[0] - a[0]) * (c[1] - a[1]) - std::int64_t(b[1] - a[1]) * (c[0] - a[0]);
@@ -19,7 +19,7 @@ std::int64_t turn(const std::array<std::int32_t, 2>& a, const std::array<std::in
 
 }  // namespace
 
-/// Andrew's monotone chain: lower hull from left to right, then the upper one back.
+/// Andrew's monotone chain: the lower hull from left to right, then the upper hull back.
 std::vector<PlanarHull::Corner> PlanarHull::corners() const {
   std::vector<Corner> sorted = points_;
   std::sort(sorted.begin(), sorted.end());
@@ -32,7 +32,7 @@ std::vector<PlanarHull::Corner> PlanarHull::corners() const {
       while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
       hull.push_back(point);
     }
-    hull.pop_back();  // it begins the other side
+    hull.pop_back();  // it is the first corner of the other side
     std::reverse(sorted.begin(), sorted.end());
   }
   return hull;

@@ -17,7 +17,7 @@ constexpr float kLeastDivided = 0x1p-100f;
 Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 bool is_zero(const std::array<float, 3>& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Appends photon i of a block with its columns.
+/// Appends photon i of a block, as `photon`, with the block's columns.
 void append(PhotonBlock& to, const PhotonBlock& from, std::size_t i, const Photon& photon) {
   to.photons.push_back(photon);
   if (!from.directions.empty()) to.directions.push_back(from.directions[i]);
@@ -58,7 +58,7 @@ CellPlace place_of(const IrradiancePointRecord& point) {
   return {vec(point.position), vec(formats::decode_normal(point.normal)), point.object};
 }
 
-void add_energy(const PhotonBlock& block, EnergyCells& cells) {
+void add_flux(const PhotonBlock& block, FluxCells& cells) {
   for (std::size_t i = 0; i < block.photons.size(); ++i) {
     std::array<float, 3> flux = block.photons[i].flux;
     if (!block.albedos.empty())
@@ -67,10 +67,10 @@ void add_energy(const PhotonBlock& block, EnergyCells& cells) {
   }
 }
 
-void add_energy(std::span<const IrradiancePointRecord> points, double area_of_point, EnergyCells& cells) {
+void add_flux(std::span<const IrradiancePointRecord> points, double area_of_point, FluxCells& cells) {
   for (const IrradiancePointRecord& point : points) {
     std::array<float, 3> flux{};
-    // Finite though the sum of three kinds may not be: a point at the end of what floats hold is as bright as any.
+    // Clamps the sum of the three kinds to finite values: such a point is bright under any limit.
     for (std::size_t c = 0; c < 3; ++c)
       flux[c] = float(std::min(
           (double(point.direct[c]) + double(point.caustic[c]) + double(point.indirect[c])) * area_of_point, 3e38));
@@ -78,7 +78,7 @@ void add_energy(std::span<const IrradiancePointRecord> points, double area_of_po
   }
 }
 
-DividedPhotons divide(const PhotonBlock& block, const EnergyCells& cells) {
+DividedPhotons divide(const PhotonBlock& block, const FluxCells& cells) {
   DividedPhotons parts;
   parts.low.group = parts.high.group = block.group;
   for (std::size_t i = 0; i < block.photons.size(); ++i) {
@@ -94,7 +94,7 @@ DividedPhotons divide(const PhotonBlock& block, const EnergyCells& cells) {
   return parts;
 }
 
-DividedPoints divide(std::span<const IrradiancePointRecord> points, const EnergyCells& cells) {
+DividedPoints divide(std::span<const IrradiancePointRecord> points, const FluxCells& cells) {
   DividedPoints parts;
   for (const IrradiancePointRecord& point : points) {
     const double share = cells.low_share(place_of(point));
@@ -133,10 +133,10 @@ std::vector<float> join_parts(std::span<IrradiancePointRecord> low, std::span<co
 
 namespace {
 
-/// What the two parts of a photon share: all but its flux.
+/// Key of a photon: all that its two parts share, which is everything except the flux.
 auto place_key(const Photon& p) { return std::tuple(p.position, p.normal, p.object, p.kind, p.bounce); }
 
-/// Numbers of the photons in the order of their keys; equal ones in the order of the file.
+/// Numbers of the photons sorted by key; equal keys keep the order of the file.
 std::vector<std::size_t> order_by_key(std::span<const Photon> photons) {
   std::vector<std::size_t> order(photons.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -1,4 +1,5 @@
-// lib/density/split_light.h -- photons and irradiance points in two parts whose sum is the whole, to the last bit.
+// lib/density/split_light.h -- divides photons and irradiance points into two parts whose sum is the whole, to the last
+// bit.
 #pragma once
 
 #include <span>
@@ -6,7 +7,7 @@
 
 #include "formats/irradpoints/irradpoints.h"
 #include "formats/photons/photons.h"
-#include "lib/density/energy_cells.h"
+#include "lib/density/flux_cells.h"
 
 namespace tempolux {
 
@@ -14,43 +15,44 @@ struct DividedValue {
   float low = 0, high = 0;
 };
 
-/// low + high == value without rounding; low is share * value to 6e-8 of the value. share is in [0, 1]. The larger of
-/// the two is rounded and the smaller is what is left, which a float32 holds exactly (Sterbenz). Below 2^-100 the
-/// left-over could be a denormal number, which processors flush to zero: the value stays whole, with the larger part.
+/// Divides a value exactly: low + high == value without rounding; low is share * value with an error of 6e-8 of the
+/// value. share is in [0, 1]. The larger part is rounded, and the smaller part is the remainder, which a float32 holds
+/// exactly (Sterbenz). Below 2^-100 the remainder could be a denormal number, which processors flush to zero: then the
+/// larger part gets the whole value.
 DividedValue divide(float value, double share);
 
-/// Where a photon lies, relative to its file's origin.
+/// The cell position of a photon, relative to its file's origin.
 CellPlace place_of(const formats::Photon& photon);
 CellPlace place_of(const formats::IrradiancePointRecord& point);
 
-/// Adds a block's photons to the cells: their flux, times the share that is reflected if the block has that column.
-void add_energy(const formats::PhotonBlock& block, EnergyCells& cells);
-/// Adds points, each with the irradiance of all kinds times area_of_point [m^2].
-void add_energy(std::span<const formats::IrradiancePointRecord> points, double area_of_point, EnergyCells& cells);
+/// Adds a block's photons to the cells: their flux, times reflectance if the block has that column.
+void add_flux(const formats::PhotonBlock& block, FluxCells& cells);
+/// Adds points; the flux of a point is the irradiance of all kinds times area_of_point [m^2].
+void add_flux(std::span<const formats::IrradiancePointRecord> points, double area_of_point, FluxCells& cells);
 
-/// Low and high part of a block: photons in file order, without those that have no flux in that part. Whatever the
-/// cells' limit, photons without any flux are in the low part.
+/// Low and high part of a block: photons in file order, without photons that have no flux in that part. A photon
+/// without any flux is always in the low part.
 struct DividedPhotons {
   formats::PhotonBlock low, high;
 };
-DividedPhotons divide(const formats::PhotonBlock& block, const EnergyCells& cells);
+DividedPhotons divide(const formats::PhotonBlock& block, const FluxCells& cells);
 
-/// The low part has every point; the high part those that have irradiance in it. All kinds of a point are divided
-/// alike.
+/// The low part has all points, the high part the points with irradiance in it. All kinds of a point are divided by the
+/// same share.
 struct DividedPoints {
   std::vector<formats::IrradiancePointRecord> low, high;
 };
-DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, const EnergyCells& cells);
+DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, const FluxCells& cells);
 
-/// The other way: adds the high part to the low one, which becomes the whole, to the last bit. Returns for each point
-/// the share that the high part has of its light, all kinds and channels added; nothing if `high` holds a point that
-/// `low` has not, in its order.
+/// The inverse: adds the high part to the low part, which becomes the whole to the last bit. Returns for each point the
+/// high part's share of its light, summed over kinds and channels. Empty if a point of `high` is not in `low`, or in
+/// another order.
 std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low,
                               std::span<const formats::IrradiancePointRecord> high);
 
-/// The same of photons: adds the flux of the high part to the low one, which becomes the whole. Photons keep the order
-/// of the low part; those that are in the high part alone come last. `low` and `high` are the two parts of one map:
-/// InputError is the caller's.
+/// The same for photons: adds the high part's flux to the low part, which becomes the whole. Photons keep the order of
+/// the low part; those that are only in the high part come last. `low` and `high` must be the two parts of one map; the
+/// caller checks this.
 void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high);
 
 /// Photons of the kinds in `kinds` (bit k: PathKind k), and the others.

@@ -8,12 +8,12 @@
 
 namespace tempolux {
 
-/// Adds |x| of float32 values without error, so that the sum does not depend on their order. All finite float32 values
-/// are multiples of 2^-149 below 2^128: nine windows of 32 bits hold them. Room for 2^31 values. formats::ExactSum
-/// keeps signs and rounds to the nearest, but takes 4 KiB: too much for every cell of a grid.
+/// Adds |x| of float32 values exactly, so that the sum does not depend on their order. All finite float32 values are
+/// multiples of 2^-149 below 2^128, so nine windows of 32 bits hold them. Holds 2^31 values. formats::ExactSum keeps
+/// signs and rounds to nearest, but takes 4 KiB, which is too much for every cell of a grid.
 class WindowSum {
  public:
-  /// `value` must be finite. Works on bits: small numbers count though the processor flushes them to zero.
+  /// `value` must be finite. Works on bits, so denormal numbers count although the processor flushes them to zero.
   void add(float value) {
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(value) & 0x7fffffff, exponent = bits >> 23;
     const std::uint64_t mantissa = (bits & 0x7fffff) | (std::uint32_t(exponent != 0) << 23);
@@ -22,7 +22,8 @@ class WindowSum {
     windows_[unit >> 5] += shifted & 0xffffffff;
     windows_[(unit >> 5) + 1] += shifted >> 32;
   }
-  /// The sum as a double: windows added from the largest down, rounded after each; equal windows give equal bytes.
+  /// The sum as a double: windows are added from the largest down and rounded after each, so equal sums give equal
+  /// bits.
   double value() const {
     double sum = 0;
     for (int i = int(windows_.size()) - 1; i >= 0; --i)

@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kAround = 3;  ///< pixels
 constexpr int kWindow = (2 * kAround + 1) * (2 * kAround + 1);
-constexpr float kDark = 0.02f;      ///< of the layer's mean
+constexpr float kDark = 0.02f;      ///< darkest light that counts, over the layer's mean
 constexpr float kOwnNoise = 0.25f;  ///< share of a pixel's own noise in its scale
-/// 1 / sum of the squared weights of Neighbourhood::mean: n equal values summed twice have n (2 n^2 + 1) / 3 for the
-/// sum of squared weights, over n^4.
-constexpr float kWorth = [] {
+/// 1 / sum of the squared weights of Neighbourhood::mean, the number of equally weighted pixels with the same variance.
+/// Summing n equal values twice gives n (2 n^2 + 1) / 3 / n^4 for the sum of squared weights.
+constexpr float kEqualPixels = [] {
   const float n = 2 * kAround + 1, line = 3 * n * n * n / (2 * n * n + 1);
   return line * line;
 }();
@@ -69,7 +69,7 @@ class Choice {
       for (std::size_t c = 0; c < 3; ++c) {
         const float m = raw_.a[c][p] / 2 + raw_.b[c][p] / 2, f =  // halves first: their sum may not be a number
                                                              (best_.a[c][p] + best_.b[c][p]) / 2;
-        const float mixed = m + w * (f - m);  // light is never negative: rounding must not make it so
+        const float mixed = m + w * (f - m);  // rounding must not make light negative
         out[c][p] = counts_[p]         ? (m >= 0 ? std::max(mixed, 0.0f) : mixed)
                     : std::isfinite(m) ? m
                                        : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
@@ -79,7 +79,7 @@ class Choice {
   }
 
  private:
-  /// body(index, x, y).
+  /// Calls body(index, x, y) for each pixel.
   template <class Body>
   void for_each_pixel(const Body& body) const {
     for_each_row(near_.height(), [&](int y) {
@@ -87,7 +87,7 @@ class Choice {
     });
   }
 
-  /// 1 / (light around + part of the pixel's own noise)^2.
+  /// The scale 1 / (mean light of the neighbourhood + part of the pixel's own noise)^2.
   void take_scale() {
     Plane light(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
@@ -103,7 +103,7 @@ class Choice {
     });
   }
 
-  /// Sums over colours, scaled, as means of what is around.
+  /// Computes an estimate's neighbourhood means: scaled, summed over colours.
   template <class Estimate>
   Plane around(const Estimate& estimate) const {
     Plane values = Plane::unset(near_.width(), near_.height());
@@ -113,7 +113,7 @@ class Choice {
     return near_.mean(values);
   }
 
-  /// Of each candidate the share that it has in the best one.
+  /// The share of each candidate in the best candidate, by pixel.
   std::vector<Plane> take_shares() const {
     std::vector<Plane> errors, shares;
     for (const Halves& f : candidates_) {
@@ -157,7 +157,7 @@ class Choice {
     apart_ = near_.mean(own[2]);
   }
 
-  /// Of a pixel, or means: V - C, its square, (F - M)^2; all scaled, sums over colours.
+  /// Terms of one pixel, or their means: V - C, its square, and (F - M)^2; all scaled and summed over colours.
   struct Estimate {
     float gain = 0, square = 0, apart = 0;
   };
@@ -175,12 +175,12 @@ class Choice {
     return e;
   }
 
-  /// w. Inside surfaces the gain may be a standard error more than is found: what is around is worth kWorth pixels, and
-  /// with noise alone (F - M)^2 is as uncertain as V - C.
+  /// The share w. Inside surfaces the gain may be a standard error larger than estimated: the neighbourhood counts as
+  /// kEqualPixels pixels, and with noise alone (F - M)^2 is as uncertain as V - C.
   float share(std::size_t p, int x, int y) const {
     const float gain = gain_.at(x, y), apart = apart_.at(x, y);
     const float error =
-        near_.kind(p) == 1 ? std::sqrt(2 * std::max(0.0f, square_.at(x, y) - squared(gain)) / kWorth) : 0;
+        near_.kind(p) == 1 ? std::sqrt(2 * std::max(0.0f, square_.at(x, y) - squared(gain)) / kEqualPixels) : 0;
     return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
@@ -188,11 +188,11 @@ class Choice {
   const std::vector<Halves>& candidates_;
   const Neighbourhood& near_;
   std::size_t width_, count_;
-  std::vector<std::uint8_t> counts_;  ///< 0: no estimate counts the pixel
+  std::vector<std::uint8_t> counts_;  ///< by pixel; 0: the pixel enters no estimate
   float dark_;
   std::vector<float> scale_;
   Halves best_;
-  Plane gain_, square_, apart_;  ///< means of Estimate
+  Plane gain_, square_, apart_;  ///< neighbourhood means of Estimate
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// lib/filter/choose.h -- filtered or raw? Each pixel's mixture has the least squared error that the halves of its
-// samples find.
+// lib/filter/choose.h -- mixes the raw and the filtered light of each pixel for the least squared error, which the
+// halves of the samples estimate.
 #pragma once
 
 #include <array>
@@ -13,17 +13,18 @@ namespace tempolux {
 /// R, G and B of a layer, row after row.
 using Colours = std::array<std::vector<float>, 3>;
 
-/// A layer by each half of the samples alone: uncorrelated.
+/// A layer from each half of the samples alone, with uncorrelated noise.
 struct Halves {
   Colours a, b;
 };
 
-/// What counts as around a pixel: pixels of the same kind within 7 x 7, and theirs again, so that near ones count more.
+/// The neighbourhood of a pixel: the pixels of its kind within 7 x 7, and again their pixels of the kind within 7 x 7,
+/// so that close pixels weigh more.
 class Neighbourhood {
  public:
-  /// kinds: by pixel 1 inside surfaces, 0 at edges.
+  /// `kinds`, by pixel: 1 inside surfaces, 0 at edges.
   Neighbourhood(std::vector<std::uint8_t> kinds, int width, int height);
-  /// Weighted means of values over what is around.
+  /// Weighted mean of `values` over each pixel's neighbourhood.
   Plane mean(const Plane& values) const;
   std::size_t kind(std::size_t pixel) const { return kinds_[pixel]; }
   int width() const { return width_; }
@@ -39,28 +40,26 @@ class Neighbourhood {
 };
 
 /// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel.
-///
-/// With A, B the raw halves, f, g a candidate of A alone and of B alone, M = (A + B) / 2 and F = (f + g) / 2, unbiased
-/// estimates at a pixel are
-///     of the squared error of M:   V = (A - B)^2 / 4
-///     of the covariance of both:   C = (f - g) (A - B) / 4
-///     of the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal
+/// A and B are the raw halves, f and g are a candidate made from A alone and from B alone, M = (A + B) / 2 and F = (f +
+/// g) / 2. Unbiased estimates at a pixel are
+///     the squared error of M:   V = (A - B)^2 / 4
+///     the covariance of both:   C = (f - g) (A - B) / 4
+///     the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal
 ///     distribution, 1981].
-/// Each is divided by the square of the light around (at least `dark`) plus a quarter of the pixel's own noise, summed
-/// over colours and averaged over what is around. A pixel's own noise lowers its weight alike in all three: a lone
-/// bright sample does not decide for what is around it. The candidate of the least error is taken; shares of candidates
-/// are averaged likewise. Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012.
-///
-/// Then that F counts by w = (V - C + s) / (mean of (F - M)^2), from 0 to 1, and M by 1 - w. Inside surfaces s is the
-/// standard error of V - C - (F - M)^2 if there is noise alone; at edges 0. Where both halves are equal M is the
-/// answer, to the bit if (A + B) / 2 is. Pixels with a half that is not finite, or too bright for squares in float32,
-/// decide nothing: they are M, or the last candidate where M is not finite.
-///
-/// All planes have as many elements as there are pixels; `candidates` is not empty. Thread-safe; the same result for
-/// any number of threads.
+/// Each estimate is divided by the square of (the mean light of the neighbourhood, at least `dark`, plus a quarter of
+/// the pixel's own noise), summed over colours and averaged over the neighbourhood. The own noise lowers a pixel's
+/// weight in all three estimates alike, so a single bright sample does not decide for its neighbours. The candidate
+/// with the least error is taken; shares of candidates are averaged over the neighbourhood, too. Rousselle, Knaus,
+/// Zwicker: Adaptive rendering with non-local means filtering, 2012.
+/// The result is w F + (1 - w) M with w = (V - C + s) / (mean of (F - M)^2), clamped to [0, 1]. Inside surfaces s is
+/// the standard error that V - C - (F - M)^2 would have with noise alone; at edges s = 0. Where both halves are equal,
+/// the result is M to the bit. A pixel of which a half is not finite, or too bright for squares in float32, enters no
+/// estimate; its result is M, or the last candidate if M is not finite.
+/// All planes have one element per pixel; `candidates` is not empty. Thread-safe; the same result for any number of
+/// threads.
 Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
 
-/// Light so dark that a layer is not looked at more closely: 2 % of its mean over the picture [W/m^2/sr].
+/// The light up to which a layer counts as dark: 2 % of its mean over the picture [W/m^2/sr].
 float dark_of(const std::array<const std::vector<float>*, 3>& layer);
 
 }  // namespace tempolux

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kLost = std::numeric_limits<float>::quiet_NaN();
 
-/// body(y, x0, count) for strips of rows, in parallel.
+/// Calls body(y, x0, count) for strips of rows, in parallel.
 template <class Body>
 void for_each_strip(const Surfaces& of, const Body& body) {
   for_each_row(of.height, [&](int y) {
@@ -75,8 +75,8 @@ void Collector::add(const WindowFrame& frame) {
   });
 }
 
-/// Where the strip's pixels are in the frame, as places from its pixel (0, 0); weights of those that are lost become 0,
-/// others are multiplied by what the guides agree.
+/// Finds the strip's pixels in the frame, as offsets from the strip's first pixel. Weights of lost pixels become 0; the
+/// others are multiplied by the agreement of the guides.
 void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weights,
                        std::array<std::uint32_t, kStrip>& there) {
   const int y = strip.y;
@@ -86,10 +86,10 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
   const auto stride = std::uint32_t(light.use.stride()), width = std::uint32_t(light.width);
   float *px = px_.row(y) + x0, *py = py_.row(y) + x0, *step_right = right_.row(y) + x0, *step_down = down_.row(y) + x0;
   Lane alive;
-  std::array<std::uint32_t, kStrip> pixel;  // in images, which have no margin
+  std::array<std::uint32_t, kStrip> pixel;  // index into images, which have no margin
   for (std::size_t i = 0; i < count; ++i) {
     const bool inside =
-        px[i] > -0.5f && py[i] > -0.5f && px[i] < right && py[i] < bottom;  // false for what is not a number
+        px[i] > -0.5f && py[i] > -0.5f && px[i] < right && py[i] < bottom;  // false if a coordinate is NaN
     const auto cx = std::uint32_t(inside ? int(px[i] + 0.5f) : 0), cy = std::uint32_t(inside ? int(py[i] + 0.5f) : 0);
     there[i] = cy * stride + cx;
     pixel[i] = cy * width + cx;
@@ -136,13 +136,13 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
     weights[i] *= value_weight(difference[i], variance[i] + other_variance[there[i]] + rounding_variance(square[i]));
 }
 
-/// Adds what the pixels' places hold. Light of edges counts only as long as none of use is there.
+/// Adds the light at the pixels' places. The light of edge pixels counts only until a pixel with `use` is found.
 void Collector::add(const Strip& strip, const LightGroup& frame, const Lane& weights,
                     const std::array<std::uint32_t, kStrip>& there) {
   const int y = strip.y;
   const std::size_t x0 = strip.x0, count = strip.count;
   float *sum = out_.weight.row(y) + x0, *edges = edge_weight_.row(y) + x0;
-  Lane kept, factor;  // of the sum of light so far, and of what is added to it
+  Lane kept, factor;  // factors of the sum so far, and of the light that is added
   const float* use = frame.surfaces.use.row(0);
   for (std::size_t i = 0; i < count; ++i) {
     const bool of_use = use[there[i]] != 0, before = sum[i] > 0, counts = weights[i] > 0;

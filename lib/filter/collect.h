@@ -1,4 +1,4 @@
-// lib/filter/collect.h -- the light of one frame and of those around it, brought together along the pixel flow.
+// lib/filter/collect.h -- collects the light of one frame and of its neighbours along the pixel flow.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +10,29 @@
 
 namespace tempolux {
 
-/// One frame of the window: its matte light, the first fits of that (fit.h), where its pixels go.
+/// One frame of the window: its matte light, the first fits of that light (fit.h), and its pixel flow.
 struct WindowFrame {
   const LightGroup* light = nullptr;
   const BothHalves* guides = nullptr;
   const FlowFrame* flow = nullptr;
 };
 
-/// Brings one half of the light of frames together, one frame after the other, so that no more than two need to be in
-/// memory. A neighbour counts as far as the guides of the other half agree with the middle's (value_weight).
-///
-/// Each pixel of the middle is followed from frame to frame. It is lost for good where the nearest pixel lies outside
-/// the picture, shows another object or a normal turned by more than PixelSurfaces::kSameNormal, or has come from
-/// elsewhere: the flow there and back ends more than kReturn pixels, and kReturnShare of its length, from where it
-/// began.
+/// Collects one half of the light, frame after frame, so that no more than two frames need to be in memory. A
+/// neighbour's weight is the agreement of its guide with the middle frame's guide, both from the other half
+/// (value_weight).
+/// Each pixel of the middle frame is followed from frame to frame. It is lost for good if the nearest pixel lies
+/// outside the picture, shows another object or a normal turned by more than PixelSurfaces::kSameNormal, or came from
+/// elsewhere: the flow there and back ends more than kReturn pixels plus kReturnShare of its length from the start.
 class Collector {
  public:
-  /// What `middle` points to outlives this.
+  /// All that `middle` refers to must outlive this object.
   Collector(const WindowFrame& middle, std::size_t half);
 
-  /// From here on add() takes the frames after the middle (direction 1) or before it (-1), the nearest first.
+  /// The next add() calls pass the frames after the middle (direction 1) or before it (-1), the nearest first.
   void start(int direction);
   void add(const WindowFrame& frame);
-  /// Once, at the end: weighted means over frames, of pixels that are of use; if none is, of all.
+  /// Call once, at the end. Weighted means over the frames in which the pixel has `use`; if there is none, over all
+  /// frames.
   Light take();
 
  private:
@@ -45,10 +45,10 @@ class Collector {
   const Surfaces& surfaces_;
   std::size_t half_;
   int direction_ = 0;
-  Plane px_, py_;       ///< where each pixel is in the next frame, pixel centres are whole numbers; not a number: lost
-  Plane right_, down_;  ///< the last step there
-  Light out_;           ///< sums of it; guides as the middle's
-  Plane edge_weight_;   ///< of pixels that are of no use, where none is: the layers hold theirs
+  Plane px_, py_;       ///< position of each pixel in the last frame, whole numbers at pixel centres; NaN: lost
+  Plane right_, down_;  ///< the last step of each pixel
+  Light out_;           ///< sums of the weighted light; guides are the middle frame's
+  Plane edge_weight_;   ///< weight of edge pixels, where no pixel with `use` was found; `out_` then holds their light
 };
 
 }  // namespace tempolux

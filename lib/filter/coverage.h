@@ -1,4 +1,4 @@
-// lib/filter/coverage.h -- which surfaces the pixels of a frame see: its channels coverage and coverage.other.
+// lib/filter/coverage.h -- the surfaces that a pixel sees, from the channels coverage and coverage.other.
 #pragma once
 
 #include <algorithm>
@@ -9,22 +9,23 @@
 
 namespace tempolux {
 
-/// The two channels (formats/frames/frames.md 2), or nothing.
+/// The two channels (formats/frames/frames.md 2); both are optional.
 class Coverage {
  public:
   explicit Coverage(const Image& image)
       : width_(std::size_t(image.width)), around_(ids(image, "coverage")), other_(ids(image, "coverage.other")) {}
 
   bool known() const { return around_ != nullptr; }
-  /// Share of the pixel that sees what no centre around shows.
+  /// Share of the pixel that shows a surface that none of the 3 x 3 pixel centres shows.
   float other(int x, int y) const { return other_ ? float(std::min((*other_)[index(x, y)], kRays)) / float(kRays) : 0; }
-  /// Is there any such share?
+  /// True if any pixel has such a share.
   bool has_other() const {
     return other_ && std::any_of(other_->begin(), other_->end(), [](std::uint32_t count) { return count != 0; });
   }
-  /// Does the pixel see one surface?
+  /// True if the pixel shows one surface only.
   bool is_whole(int x, int y) const { return !around_ || ((*around_)[index(x, y)] == 0 && other(x, y) == 0); }
-  /// body(dx, dy, share) for each pixel around whose surface is seen too, (dx, dy) from the pixel, right and down.
+  /// Calls body(dx, dy, share) for each neighbour whose surface this pixel shows, too; (dx, dy) is the neighbour's
+  /// offset, right and down.
   template <class Body>
   void for_each_share(int x, int y, const Body& body) const {
     std::uint32_t counts = around_ ? (*around_)[index(x, y)] : 0;

@@ -17,7 +17,7 @@
 namespace tempolux {
 namespace {
 
-/// InputError if two frames of a window differ in size or layers.
+/// Throws InputError if two frames of a window differ in size or layers.
 void check_frame(const WindowLight& frame, const WindowLight& other) {
   if (other.width != frame.width || other.height != frame.height)
     throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
@@ -29,13 +29,13 @@ void check_frame(const WindowLight& frame, const WindowLight& other) {
     throw InputError("frames of a window have different layers; write all with the same --channels");
 }
 
-/// Candidates of one group, by layer.
+/// The candidates of one group, by layer.
 class Candidates {
  public:
   Candidates(const LightGroup& group, const Coverage& coverage, int scales)
       : group_(group), coverage_(coverage), scales_(scales), of_layer_(group.layers.size()) {}
 
-  /// Of what was collected of so many frames; the group's raw light is of one.
+  /// Adds candidates from light that was collected from `frames` frames; the group's raw light is from one.
   void add(const BothHalves& collected, int frames) {
     const Plane variance = smoothed(group_.surfaces, group_.variance);
     std::vector<BothHalves> fitted;
@@ -54,7 +54,7 @@ class Candidates {
   const std::vector<Halves>& of(std::size_t layer) const { return of_layer_[layer]; }
 
  private:
-  /// What a small window does not know takes what the largest has found.
+  /// Where a small window has no light, takes the light of the largest window.
   void fill(const Light& largest, Light& light) const {
     for_each_row(group_.surfaces.height, [&](int y) {
       for (int x = 0; x < group_.surfaces.width; ++x)
@@ -86,7 +86,7 @@ class Candidates {
   std::vector<std::vector<Halves>> of_layer_;
 };
 
-/// The halves of a layer, as radiance.
+/// The halves of a layer as radiance.
 Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
   const Surfaces& on = group.surfaces;
   Halves raw;
@@ -120,7 +120,7 @@ struct FrameFilter::State {
   FilterOptions options;
   std::size_t before, after, added = 0;
   std::array<std::optional<Collector>, 2>
-      collectors;  ///< of the matte layers, by half; mirrors' light has no flow of its own
+      collectors;  ///< for the matte layers, by half; light of mirrors has no flow of its own
 
   float dark(const Image& image, const std::string& layer) const {
     if (const auto found = options.dark.find(layer); found != options.dark.end()) return found->second;
@@ -186,8 +186,8 @@ Image FrameFilter::finish(Image image) {
 
 namespace {
 
-/// Pixels around a tile that its own depend on: the fits' windows, two for what is smoothed and on one surface, the
-/// windows of unmix() and resolve(), those of choose() six times.
+/// Distance in pixels from which other pixels affect a pixel: the windows of both fits, two for smoothing and the
+/// one-surface test, the windows of unmix() and resolve(), and six times the window of choose().
 constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {

@@ -1,4 +1,4 @@
-// lib/filter/filter_frame.h -- a frame filtered in space and time where the halves of its samples show that it pays.
+// lib/filter/filter_frame.h -- filters a frame in space and time where the halves of its samples show a gain.
 #pragma once
 
 #include <array>
@@ -13,42 +13,44 @@
 
 namespace tempolux {
 
-/// Fits in space. The large windows take what small ones have found that do not overlap, and reach 7 pixels.
+/// Windows of the fits. The large window reads every fifth pixel of what a small one has fitted, so the small windows
+/// do not overlap; together they reach 7 pixels.
 inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge{1, 5, false};
 inline constexpr int kMostScales = 2;
 
 struct FilterOptions {
-  int scales = kMostScales;  ///< 1: small windows alone; 0: filter in time alone
-  std::map<std::string, float>
-      dark;  ///< by layer dark_of() the whole picture (choose.h); without: of the image at hand
+  int scales = kMostScales;           ///< 1: small windows only; 0: filter in time only
+  std::map<std::string, float> dark;  ///< dark_of() the whole picture by layer (choose.h); empty: of the given image
 };
 
 /// A frame of a window: its light, and the first fits of its matte light.
 struct WindowLight {
   int width, height;
   FrameLight light;
-  std::optional<BothHalves> guides;  ///< none without matte light, nor for a frame that is filtered alone
+  std::optional<BothHalves> guides;  ///< empty without matte light, and if the frame is filtered alone
   WindowLight(const Image& image, bool alone);
 };
 
-/// Filters a frame with those around it. Each half of the light is fitted by itself at each scale (fit.h), alone and
-/// with what was collected along the flow (collect.h); which pixels count is decided by the other half. Each candidate
-/// is put together at edges where `image` has coverage (unmix.h, resolve.h) and multiplied by albedo again. choose()
-/// mixes them with the raw layer. R G B is the sum of the layers, and what it held beside them. Other channels and all
-/// attributes stay.
+/// Filters a frame together with its neighbours in time. At each scale each half of the light is fitted (fit.h), once
+/// with its own light alone and once with the light collected along the flow (collect.h); the other half decides the
+/// weights. Where `image` has coverage, edges are composed from their surfaces (unmix.h, resolve.h). Each candidate is
+/// multiplied by albedo, and choose() mixes the candidates with the raw layer. R G B becomes the sum of the layers plus
+/// any light it held besides them. Other channels and all attributes stay.
 class FrameFilter {
  public:
-  /// middle: made of the image; middle and flow outlive this. before, after: frames of the window.
+  /// `middle` is made from the image; middle and flow must outlive this object. `before` and `after` are the numbers of
+  /// frames on each side of the window.
   FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
               const FilterOptions& options);
   ~FrameFilter();
   FrameFilter(const FrameFilter&) = delete;
   FrameFilter& operator=(const FrameFilter&) = delete;
 
-  /// The frames of the window in the order in which they are followed: the `before` ones, the nearest first, then the
-  /// `after` ones. None is looked at after the call. InputError if it differs from the middle's in size or layers.
+  /// Adds the next frame of the window: first the `before` earlier frames, the nearest first, then the `after` later
+  /// ones. The frame is not used after the call. Throws InputError if it differs from the middle frame in size or
+  /// layers.
   void add(const WindowLight& frame, const FlowFrame& flow);
-  /// Once, after all were added.
+  /// Call once, after all frames were added.
   Image finish(Image image);
 
  private:
@@ -56,8 +58,8 @@ class FrameFilter {
   std::unique_ptr<State> state_;
 };
 
-/// The same without frames around, tile by tile: little memory beside the image's. The same bytes as FrameFilter's but
-/// for rounding.
+/// The same without other frames, tile by tile, which takes little memory besides the image. The result differs from
+/// FrameFilter's by rounding only.
 Image filter_alone(Image image, const FilterOptions& options);
 
 }  // namespace tempolux

@@ -11,14 +11,14 @@
 namespace tempolux {
 namespace {
 
-/// Pulls slopes to 0 as if by pixels kPull times all of them, 1 place away: decides where a window has all its pixels
-/// in one column.
+/// Pulls slopes towards 0, as kPull times the window's pixels at distance 1 would. Makes the slopes unique if all
+/// pixels of a window are in one column.
 constexpr float kPull = 0.02f;
-constexpr float kPlane = 3;  ///< variance of a plane's value over that of a mean
+constexpr float kPlane = 3;  ///< variance of a fitted plane's value over the variance of a mean
 constexpr std::size_t kTaps = std::size_t(kMostPlaces) * kMostPlaces;
 using Taps = std::array<Float8, kTaps>;
 
-/// Sums of weight, weight dx ... over the window, of eight pixels.
+/// Sums of weight, weight dx ... over the window, for eight pixels at once.
 struct Moments {
   Float8 one{}, x{}, y{}, xx{}, xy{}, yy{};
 };
@@ -33,7 +33,8 @@ class StripFit {
     y_ = y;
     x0_ = x0;
     count_ =
-        std::min(kEight, std::size_t(surfaces_.width) - x0);  // the last eight may reach into the margin: never stored
+        // the last eight may reach into the margin, which is never stored
+        std::min(kEight, std::size_t(surfaces_.width) - x0);
     Float8* same = same_.data();
     for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
       const SurfaceEight row(surfaces_, y, dy * options_.stride, x0);
@@ -57,7 +58,7 @@ class StripFit {
     return load8(plane.row(y_ + dy * options_.stride) + std::ptrdiff_t(x0_) + dx * options_.stride);
   }
 
-  /// Fills weights_, of half h.
+  /// Computes the weights of half h.
   Moments weigh(std::size_t h) {
     const int radius = options_.radius;
     const Light* other = guides_ ? &(*guides_)[1 - h] : nullptr;
@@ -108,16 +109,16 @@ class StripFit {
     return where(z > 0, z * z);
   }
 
-  /// The plane's value at the pixel is a weighted sum of differences to the pixel's own, with the weights
+  /// The plane's value at the pixel is a weighted sum of the differences to the pixel's own value, with the weights
   ///     weight (1 / one + to_x (dx - mx) + to_y (dy - my)),   their sum is 1.
-  /// Coordinates are counted from the window's centre of weight: two slopes are left to solve for.
+  /// Coordinates are relative to the window's centre of weight, so only the two slopes must be solved for.
   void to_kernel(const Moments& moments) {
     const Int8 any = moments.one > 0;
     const Float8 one = where(any, moments.one) + where(~any, all8(1)), per_weight = where(any, 1 / one);
     const Float8 mx = moments.x / one, my = moments.y / one, pull = kPull * one;
     const Float8 xx = moments.xx - moments.x * mx + pull, yy = moments.yy - moments.y * my + pull,
                  xy = moments.xy - moments.x * my;
-    const Float8 determinant = xx * yy - xy * xy;  // positive: pull is
+    const Float8 determinant = xx * yy - xy * xy;  // positive because of kPull
     const Float8 b = (my * xy - mx * yy) / determinant, c = (mx * xy - my * xx) / determinant,
                  a = per_weight - b * mx - c * my;
     store8(per_weight, per_weight_.data());
@@ -129,8 +130,7 @@ class StripFit {
     }
   }
 
-  /// Sum over the window of factors (value - own), for three planes. Differences: what is constant comes out to the
-  /// bit.
+  /// Sum over the window of factors (value - own), for three planes. Differences keep constant light to the bit.
   std::array<Float8, 3> sum_of(const Taps& factors, const ColourPlane& from) const {
     const std::array<Float8, 3> own{at(from[0], 0, 0), at(from[1], 0, 0), at(from[2], 0, 0)};
     Float8 r{}, g{}, b{};
@@ -158,7 +158,7 @@ class StripFit {
     if (below) raise(from, to);
   }
 
-  /// A plane that falls below 0 in the middle gives way to the mean, or 0 if that is above it.
+  /// If the plane is below 0 at the pixel, takes the weighted mean, or 0 if the mean is negative.
   void raise(const ColourPlane& from, ColourPlane& to) {
     const std::array<Float8, 3> sums = sum_of(weights_, from);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -178,11 +178,11 @@ class StripFit {
   std::size_t x0_ = 0, count_ = 0;
   Float8 own_variance_{};
   std::array<Float8, 3> own_guide_{};
-  Taps same_, weights_, kernel_;                        ///< of the window, row after row
+  Taps same_, weights_, kernel_;                        ///< by place in the window, row after row
   alignas(32) std::array<float, kEight> per_weight_{};  ///< 1 / sum of the weights
 };
 
-/// What further fits and other frames compare the light by.
+/// Computes the guide by which later fits and other frames compare the light.
 void take_guide(const Surfaces& surfaces, const Plane& variance, Light& light) {
   for (Plane& plane : light.guide) plane = Plane(surfaces.width, surfaces.height);
   light.guide_variance = Plane::unset(surfaces.width, surfaces.height);

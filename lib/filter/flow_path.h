@@ -1,4 +1,4 @@
-// lib/filter/flow_path.h -- where a pixel's surface point is in the frames beside: pixel flow as the filter reads it.
+// lib/filter/flow_path.h -- where a pixel's surface point is in the neighbouring frames.
 #pragma once
 
 #include <cmath>
@@ -10,23 +10,23 @@
 
 namespace tempolux {
 
-/// Pixel flow of one frame (formats/flow/flow.md; a frame with the channels of --channels motion will do), y down as in
-/// pictures. Where only one direction is there, the other is its opposite. No flow at all: nothing moves.
+/// Pixel flow of one frame (formats/flow/flow.md, or a frame with the channels of --channels motion), y down as in
+/// pictures. If only one direction is there, the other is its opposite. Without flow nothing moves.
 struct FlowFrame {
   struct Step {
     float right = 0, down = 0;  ///< pixels
     bool known = true;
   };
   FlowFrame() = default;
-  /// Copies what it needs. InputError if the size is not that of the frame, names `file`.
+  /// Copies the channels. Throws InputError, naming `file`, if the size is not the frame's.
   FlowFrame(const Image& flow, int width, int height, const std::string& file);
-  /// Takes the samples: those channels are empty afterwards.
+  /// The same, but moves the samples out: the flow's channels are empty afterwards.
   FlowFrame(Image&& flow, int width, int height, const std::string& file);
 
   bool has_forward() const { return !forward_u_.empty(); }
   bool has_backward() const { return !backward_u_.empty(); }
   bool empty() const { return !has_forward() && !has_backward(); }
-  /// direction: +1 to the next frame, -1 to the previous.
+  /// `direction`: +1 to the next frame, -1 to the previous one.
   Step step(std::size_t pixel, int direction) const;
 
  private:
@@ -37,12 +37,13 @@ struct FlowFrame {
   std::vector<std::uint32_t> valid_;
 };
 
-/// How far from its beginning flow there and back may end: pixels, and share of its length.
+/// Largest distance between the start and the end of flow there and back: in pixels, and as a share of the flow's
+/// length.
 inline constexpr float kReturn = 0.75f, kReturnShare = 0.05f;
 
 inline FlowFrame::Step FlowFrame::step(std::size_t pixel, int direction) const {
   if (empty()) return {};
-  const bool forward = direction > 0 ? has_forward() : !has_backward();  // which of the two is read
+  const bool forward = direction > 0 ? has_forward() : !has_backward();  // which of the two directions is read
   const float sign = forward == (direction > 0) ? 1.0f : -1.0f;
   const float u = (forward ? forward_u_ : backward_u_)[pixel], v = (forward ? forward_v_ : backward_v_)[pixel];
   const bool known =

@@ -1,4 +1,4 @@
-// lib/filter/lane.h -- the pixels of a row that are worked on together, one number each.
+// lib/filter/lane.h -- numbers of the pixels that are processed together, for vector instructions.
 #pragma once
 
 #include <immintrin.h>
@@ -11,13 +11,13 @@
 
 namespace tempolux {
 
-inline constexpr std::size_t kStrip = 64;  ///< pixels: their sums stay in the first-level cache
+inline constexpr std::size_t kStrip = 64;  ///< pixels whose sums fit into the first-level cache
 using Lane = std::array<float, kStrip>;
 
 /// Eight pixels: a register (vector extensions of gcc and clang; other processors take two).
 inline constexpr std::size_t kEight = 8;
 using Float8 = float __attribute__((vector_size(4 * kEight)));
-using Int8 = std::int32_t __attribute__((vector_size(4 * kEight)));  ///< of comparisons: -1 true, 0 false
+using Int8 = std::int32_t __attribute__((vector_size(4 * kEight)));  ///< results of comparisons: -1 true, 0 false
 
 inline Float8 load8(const float* from) {
   Float8 values;

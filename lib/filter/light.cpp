@@ -30,7 +30,7 @@ bool is_black(const Image& image, const std::string& layer) {
   return true;
 }
 
-/// Noise of frames whose layers have none of their own: by layer and colour, of light (radiance over albedo).
+/// Creates noise for frames whose layers have no noise channels: by layer and colour, for light (radiance over albedo).
 class MadeUpNoise {
  public:
   MadeUpNoise(const Image& image, const LightGroup& group) : group_(group) {
@@ -50,8 +50,8 @@ class MadeUpNoise {
  private:
   float sign(int x, int y) const { return mix64(std::uint64_t(y) << 32 | std::uint64_t(x)) & 1 ? 1.0f : -1.0f; }
 
-  /// Half the square of the difference to the four pixels beside on the surface: with noise alone its mean is the
-  /// variance, and smooth light adds little to it. Pixels that do not see one surface are left as they are: 0.
+  /// Estimates the variance by half the squared difference to the four neighbours on the surface: with noise alone the
+  /// mean of this is the variance, and smooth light adds little. Pixels that see several surfaces keep 0.
   void estimate(const Plane& light, Plane& noise) const {
     const Surfaces& on = group_.surfaces;
     for_each_row(on.height, [&](int y) {
@@ -68,7 +68,7 @@ class MadeUpNoise {
     });
   }
 
-  /// Of the variance of the sum of the layers what falls to layer l, by its share of the light.
+  /// The share of layer l in the variance of the sum of the layers, by its share of the light.
   void take(const std::vector<float>& variance, std::size_t l, std::size_t c, Plane& noise) const {
     const Surfaces& on = group_.surfaces;
     for_each_row(on.height, [&](int y) {
@@ -80,7 +80,7 @@ class MadeUpNoise {
             std::sqrt(variance[std::size_t(y) * std::size_t(on.width) + std::size_t(x)]) / on.albedo_at(c, x, y);
         const float share =
             sum > 0 ? std::abs(group_.raw[0].layers[l][c].at(x, y)) / sum : 1 / float(group_.layers.size());
-        noise.at(x, y) = deviation < kLargestLight ? sign(x, y) * deviation * share : 0;  // not a number: 0
+        noise.at(x, y) = deviation < kLargestLight ? sign(x, y) * deviation * share : 0;  // NaN becomes 0
       }
     });
   }
@@ -101,7 +101,7 @@ LightGroup::LightGroup(const Image& image, bool seen, std::vector<std::string> n
   }
 }
 
-/// Into the first half.
+/// Reads the light into the first half.
 void LightGroup::take_light(const Image& image) {
   for (Light& half : raw) half.layers.resize(layers.size());
   for (std::size_t l = 0; l < layers.size(); ++l)
@@ -118,7 +118,7 @@ void LightGroup::take_light(const Image& image) {
     }
 }
 
-/// The second half, and the first one: light less and plus noise.
+/// Makes the halves: the second is light - noise, the first becomes light + noise.
 void LightGroup::take_noise(const Image& image) {
   const auto has_noise = [&](const std::string& layer) { return holds(image, layer + ".noise.R"); };
   std::optional<MadeUpNoise> made_up;

@@ -1,5 +1,5 @@
-// lib/filter/light.h -- the light of a frame as the filter takes it: by group of layers, without texture, in two halves
-// whose noise is uncorrelated.
+// lib/filter/light.h -- the filter's view of a frame: light by group of layers, without texture, in two halves with
+// uncorrelated noise.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@
 
 namespace tempolux {
 
-/// Light of pixels by layer, with what it is worth and what others compare it by.
+/// Light by layer and pixel, with its weights and the guide that other pixels compare it by.
 struct Light {
   std::vector<ColourPlane> layers;  ///< radiance over albedo; empty planes: black everywhere
-  Plane weight;          ///< in pixels: 1 for each that the light was taken from; 0: none that sees one surface
-  ColourPlane guide;     ///< sum of the layers, smoothed
-  Plane guide_variance;  ///< of that, summed over channels
+  Plane weight;                     ///< number of pixels the light was averaged from; 0: no pixel that sees one surface
+  ColourPlane guide;                ///< sum of the layers, smoothed
+  Plane guide_variance;             ///< variance of the guide, summed over channels
 };
 using BothHalves = std::array<Light, 2>;
 
-/// Layers that share surfaces.
+/// Layers that are filtered by the same surfaces.
 struct LightGroup {
   Surfaces surfaces;
-  std::vector<std::string> layers;  ///< by name; "" is R G B
-  BothHalves raw;                   ///< as samples bring it; no guide
-  Plane variance;                   ///< of one half, of the sum of the layers, summed over channels
+  std::vector<std::string> layers;  ///< names; "" is R G B
+  BothHalves raw;                   ///< unfiltered; without guide
+  Plane variance;                   ///< of one half's sum of the layers, summed over channels
 
   LightGroup(const Image& image, bool seen, std::vector<std::string> names);
 
@@ -35,34 +35,33 @@ struct LightGroup {
   void take_noise(const Image& image);
 };
 
-/// A frame as the filter sees it.
-///
-/// Half h of a layer is LAYER + LAYER.noise (0) or LAYER - LAYER.noise (1); the two are uncorrelated
-/// (formats/frames/frames.md). A frame without such channels has noise of a made-up sign whose square is the variance:
-/// that of the channels diffuse.variance or variance, shared out among the layers as their light is; or, in frames that
-/// say nothing of noise but have albedo, half the mean squared difference to the four pixels beside, over the surface;
-/// else none: then no more is done than to fill what is no number. Values plus and less such a number are uncorrelated,
-/// too [Oliveira, Lei, Tibshirani: Unbiased risk estimation in the normal means problem via coupled bootstrap
-/// techniques, 2021].
+/// A frame as the filter reads it.
+/// Half h of a layer is LAYER + LAYER.noise (0) or LAYER - LAYER.noise (1); the noise of the two is uncorrelated
+/// (formats/frames/frames.md). A frame without these channels gets noise of random sign whose square is the variance.
+/// The variance is read from the channels diffuse.variance or variance and divided among the layers in proportion to
+/// their light; without these, but with albedo, the variance is half the mean squared difference to the four neighbours
+/// on the surface; without albedo there is no noise, and the filter only replaces values that are not finite. Values
+/// plus and minus random noise of this variance are uncorrelated, too [Oliveira, Lei, Tibshirani: Unbiased risk
+/// estimation in the normal means problem via coupled bootstrap techniques, 2021].
 class FrameLight {
  public:
-  /// Matte light by what the pixel sees; emission and specular by what mirrors and glass show. R G B alone where a
-  /// frame has no layers.
+  /// Matte light is filtered by the surfaces that the pixel sees; emission and specular light by the surfaces in
+  /// mirrors and glass. A frame without layers has R G B only.
   static constexpr std::size_t kGroups = 2;
-  /// InputError as check_noise().
+  /// Throws InputError as check_noise() does.
   explicit FrameLight(const Image& image);
-  /// Nothing to be filtered in the group: empty.
+  /// Empty if the group has nothing to filter.
   const std::optional<LightGroup>& group(std::size_t g) const { return groups_[g]; }
 
  private:
   std::array<std::optional<LightGroup>, kGroups> groups_;
 };
 
-/// InputError if a layer's noise is not all there, or the layer is not.
+/// Throws InputError if a layer's noise channels are incomplete, or the layer is missing.
 void check_noise(const Image& image);
-/// Does a frame say anything by which its matte light's noise is known?
+/// True if the frame has channels from which the noise of its matte light can be estimated.
 bool knows_noise(const Image& image);
-/// Does the filter read a channel of this name?
+/// True if the filter reads a channel of this name.
 bool is_read_to_filter(const std::string& channel);
 
 }  // namespace tempolux

@@ -1,5 +1,5 @@
-// lib/filter/plane.h -- one number for each pixel, with a margin around the picture, so that windows need no tests at
-// its borders.
+// lib/filter/plane.h -- one number per pixel, with a margin around the picture, so that windows need no tests at its
+// borders.
 #pragma once
 
 #include <algorithm>
@@ -11,24 +11,24 @@
 
 namespace tempolux {
 
-/// Pixels beyond the picture, as far as any window reaches. They hold T{}.
+/// Width of the margin in pixels: the farthest that any window reaches. The margin holds T{}.
 inline constexpr int kMargin = 16;
 
 template <class T>
 class PlaneT {
  public:
   PlaneT() = default;
-  /// All T{}.
+  /// Sets all pixels to T{}.
   PlaneT(int width, int height) : PlaneT(unset(width, height)) {
     for (int y = 0; y < height; ++y) std::fill_n(row(y), width, T{});
   }
-  /// Pixels are not set yet, the margin is: for a plane all of whose pixels are written before any is read.
+  /// Sets the margin but not the pixels, for a plane that is written whole before it is read.
   static PlaneT unset(int width, int height) {
     PlaneT plane;
     plane.stride_ = std::size_t(width) + 2 * kMargin;
     plane.height_ = height;
     const std::size_t all = plane.stride_ * (std::size_t(height) + 2 * kMargin),
-                      count = all + kMargin;  // eight may be read from any place
+                      count = all + kMargin;  // eight pixels may be read from any position
     plane.data_ = std::make_unique_for_overwrite<T[]>(count);
     formats::prefer_large_pages(plane.data_.get(), count * sizeof(T));
     std::fill_n(plane.data_.get() + all, kMargin, T{});
@@ -50,7 +50,7 @@ class PlaneT {
   /// row(y)[x] is row(0)[y * stride() + x].
   std::size_t stride() const { return stride_; }
   bool empty() const { return !data_; }
-  /// Copies a picture's samples in, row by row.
+  /// Copies a picture's samples, row by row.
   void take(const std::vector<T>& samples, int width) {
     for (int y = 0; y < height_; ++y) std::copy_n(samples.data() + std::size_t(y) * std::size_t(width), width, row(y));
   }

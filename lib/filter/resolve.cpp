@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-/// The formula of resolve() at a pixel that sees several surfaces. own(x, y), other: radiance of surfaces.
+/// The formula of resolve() at a pixel that sees several surfaces. own(x, y) and other are radiances of surfaces.
 template <class Own>
 float composed(const Own& own, float other, const Coverage& coverage, int x, int y, int width, int height) {
   const float unknown = coverage.other(x, y);

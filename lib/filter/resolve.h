@@ -1,4 +1,4 @@
-// lib/filter/resolve.h -- pixels at edges put together from the surfaces they see.
+// lib/filter/resolve.h -- composes pixels at edges from the surfaces they see.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace tempolux {
 
-/// One channel of the light of surfaces: radiance is light times albedo (an empty plane: 1).
+/// One channel of the light of surfaces. Radiance is light times albedo; an empty albedo plane counts as 1.
 struct EdgePlane {
-  const Plane& own;    ///< by pixel: of its own surface
-  const Plane& other;  ///< of what no centre around shows; an empty plane: black
+  const Plane& own;    ///< by pixel: light of the surface at the pixel's centre
+  const Plane& other;  ///< by pixel: light of surfaces that no neighbouring centre shows; empty: black
   const Plane& albedo;
 
   float albedo_at(int x, int y) const { return albedo.empty() ? 1 : albedo.at(x, y); }
@@ -19,12 +19,12 @@ struct EdgePlane {
   float other_at(int x, int y) const { return other.empty() ? own_at(x, y) : other.at(x, y) * albedo_at(x, y); }
 };
 
-/// Light too bright for squares in float32 stays as it is.
+/// True if the light is too bright for squares in float32; the filter leaves such light as it is.
 bool is_too_bright(float value);
 
-/// Writes the radiance of each pixel p: own(p), or if it sees several surfaces
-///     share(p) own(p) + sum over the pixels n around of share(n) own(n) + share(other) other(p),
-/// shares by coverage. Values that are too bright are left.
+/// Writes the radiance of each pixel p. If p sees one surface the radiance is own(p), else
+///     share(p) own(p) + sum over the neighbours n of share(n) own(n) + share(other) other(p),
+/// with shares from coverage. Values that are too bright stay.
 void resolve(const EdgePlane& light, const Coverage& coverage, int width, int height, std::vector<float>& values);
 
 }  // namespace tempolux

@@ -1,11 +1,11 @@
-// lib/filter/rows.h -- the rows of a picture, in parallel.
+// lib/filter/rows.h -- processes the rows of a picture in parallel.
 #pragma once
 
 #include "lib/core/parallel.h"
 
 namespace tempolux {
 
-/// body(y) for each row.
+/// Calls body(y) for each row.
 template <class Body>
 void for_each_row(int height, const Body& body) {
   constexpr std::size_t kRows = 16;  // of a chunk

@@ -1,4 +1,4 @@
-// lib/filter/surface_weight.h -- may a pixel take light from another one of its frame? One row of pixels at a time.
+// lib/filter/surface_weight.h -- decides for rows of pixels whether a pixel may take light from another one.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,8 @@
 
 namespace tempolux {
 
-/// Rows of pixels p and of those (dx, dy) away: 1 for those on one surface, as PixelSurfaces::same says, else 0.
+/// Compares a row of pixels with the row of pixels (dx, dy) away: 1 if both are on one surface (PixelSurfaces::same),
+/// else 0.
 class SurfaceRow {
  public:
   SurfaceRow(const Surfaces& of, int y, int dx, int dy)
@@ -34,7 +35,7 @@ class SurfaceRow {
     const float right = w_right_[i] * dx_, down = w_down_[i] * dy_;
     const float off = std::abs(other_w_[i] - w_[i] - right - down);
     const float allowed = PixelSurfaces::kSameDepth * w_[i] + std::abs(right) + std::abs(down);
-    // Products of conditions, not && : all lanes of a vector do the same.
+    // Products of conditions instead of &&: all lanes of a vector compute the same.
     return float(object_[i] == other_object_[i]) * float(facing >= PixelSurfaces::kSameNormal * length2) *
            float(off <= allowed);
   }
@@ -45,7 +46,7 @@ class SurfaceRow {
   float dx_, dy_;
 };
 
-/// The same of eight pixels (x + i, y) and those (dx, dy) away, for one dy: what is the pixels' own is taken once.
+/// The same for eight pixels (x + i, y) and those (dx, dy) away, for one dy. The pixels' own values are loaded once.
 class SurfaceEight {
  public:
   SurfaceEight(const Surfaces& frame, int y, int dy, std::size_t x)
@@ -65,7 +66,7 @@ class SurfaceEight {
     allowed_ = PixelSurfaces::kSameDepth * w + abs8(down);
   }
 
-  /// 1 or 0.
+  /// 1 if both are on one surface, else 0.
   Float8 surface(int dx) const {
     const Float8 facing =
         multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));

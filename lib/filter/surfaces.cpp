@@ -8,8 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kDarkest =
-    0.01f;  ///< albedo is taken to be at least this: what is nearly black has nearly no light to filter
+constexpr float kDarkest = 0.01f;  ///< least albedo: almost black surfaces have almost no light to filter
 
 Plane plane_of(const Image& image, const std::string& name) {
   const Channel* channel = image.find(name);
@@ -19,7 +18,8 @@ Plane plane_of(const Image& image, const std::string& name) {
   return plane;
 }
 
-/// Is each pixel on one surface with those around it, both ways asked? 1 or 0, for `count` of them.
+/// 1 if the pixel and each of its 3 x 3 neighbours are on one surface, compared in both directions, else 0; for `count`
+/// pixels.
 void one_surface_around(const Surfaces& surfaces, int y, std::size_t x0, std::size_t count, Lane& inside) {
   inside.fill(1);
   const auto width = std::size_t(surfaces.width);
@@ -27,7 +27,7 @@ void one_surface_around(const Surfaces& surfaces, int y, std::size_t x0, std::si
     for (int dx = -1; dx <= 1; ++dx) {
       if (dx == 0 && dy == 0) continue;
       const SurfaceRow there(surfaces, y, dx, dy), back(surfaces, y + dy, -dx, -dy);
-      // Columns beyond the picture do not count.
+      // Columns outside the picture do not count.
       const std::size_t first = x0 == 0 && dx < 0 ? 1 : 0, last = x0 + count == width && dx > 0 ? count - 1 : count;
       for (std::size_t i = first; i < last; ++i)
         inside[i] *= there.surface(x0 + i) * back.surface(std::size_t(std::ptrdiff_t(x0 + i) + dx));
@@ -49,7 +49,7 @@ Surfaces::Surfaces(const Image& image, bool seen) : width(image.width), height(i
   take_edges(image);
 }
 
-/// w and its slopes, as PixelSurfaces has them.
+/// 1 / depth and its slopes, as in PixelSurfaces.
 void Surfaces::take_depth(const Channel* z) {
   const bool there = z && !z->values.empty();
   for (Plane* plane : {&w, &w_right, &w_down}) *plane = there ? Plane::unset(width, height) : Plane(width, height);

@@ -1,4 +1,4 @@
-// lib/filter/surfaces.h -- what the pixels of a frame see, as the filter asks for it: may two of them share light?
+// lib/filter/surfaces.h -- the surfaces that the pixels of a frame see: may two pixels share light?
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@ namespace tempolux {
 /// A coloured plane.
 using ColourPlane = std::array<Plane, 3>;
 
-/// Larger values of light are left as they are: squares stay finite.
+/// Values of light above this stay unfiltered, so that squares are finite.
 inline constexpr float kLargestLight = 1e18f;
 
 struct Surfaces {
   int width = 0, height = 0;
   PlaneT<std::uint32_t> object;
   Plane w, w_right, w_down, nx, ny, nz;  ///< PixelSurfaces
-  ColourPlane albedo;                    ///< what radiance is divided by, at least .01; empty planes: nothing
-  Plane use;     ///< 1: the pixel sees one surface and holds numbers; 0: no other may take light from it
-  Plane inside;  ///< 1: of use, and the pixels around are on the same surface
+  ColourPlane albedo;                    ///< divides radiance, at least .01; empty planes: 1
+  Plane use;     ///< 1: the pixel sees one surface and its values are finite; 0: no other pixel may take light from it
+  Plane inside;  ///< 1: `use`, and all neighbours are on the same surface
 
-  /// Of the first surfaces, or of what mirrors and glass show: seen, where the image has the channels seen.*
+  /// The first surfaces, or with `seen` the surfaces in mirrors and glass, if the image has the channels seen.*
   /// (formats/frames/frames.md).
   Surfaces(const Image& image, bool seen);
 
-  /// Is the pixel (dx, dy) from (x, y) on its surface, as PixelSurfaces::same says, whether it is of use or not?
+  /// True if the pixel (dx, dy) from (x, y) is on the same surface (PixelSurfaces::same), whether or not it has `use`.
   bool on_surface(int x, int y, int dx, int dy) const;
   bool has_pixel(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
   float albedo_at(std::size_t c, int x, int y) const { return albedo[c].empty() ? 1 : albedo[c].at(x, y); }

@@ -54,7 +54,7 @@ class Unmixing {
   bool is_black(std::size_t layer) const { return collected_.layers[layer][0].empty(); }
   bool is_known(int x, int y) const { return fitted_.weight.at(x, y) >= kFewestPixels; }
   float albedo(std::size_t c, int x, int y) const { return surfaces_.albedo_at(c, x, y); }
-  /// Light of all that the pixel sees: of all frames where it is an edge in all of them, else of this one.
+  /// Light of all surfaces of the pixel together: of all frames if it is an edge in all of them, else of this frame.
   float mixed(std::size_t l, std::size_t c, int x, int y) const {
     const Plane& plane = (collected_.weight.at(x, y) == 0 ? collected_ : raw_).layers[l][c];
     return plane.empty() ? 0 : plane.at(x, y);
@@ -106,7 +106,7 @@ std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const 
   for (std::size_t l = 0; l < other.size(); ++l)
     for (std::size_t c = 0; c < 3 && any_other && !fitted.layers[l][c].empty(); ++c)
       other[l][c] = Plane(surfaces.width, surfaces.height);
-  // Only light of pixels that are known is read, only that of others written: any order will do.
+  // Pixels whose light is found are only read, all others only written, so any order gives the same result.
   parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
     Unmixing unmixing(group, half, collected, coverage, frames, fitted, other);
     for (int y = int(first); y < int(last); ++y)

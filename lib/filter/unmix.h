@@ -1,5 +1,4 @@
-// lib/filter/unmix.h -- light on surfaces so thin in the picture that no pixel sees them alone: from pixels that see a
-// part of them.
+// lib/filter/unmix.h -- estimates the light of surfaces so thin in the picture that no pixel sees them alone.
 #pragma once
 
 #include "lib/filter/coverage.h"
@@ -7,18 +6,20 @@
 
 namespace tempolux {
 
-/// A pixel whose fit rests on less than this many pixels' light does not know its surface.
+/// A pixel whose fit rests on less than this many pixels' light is treated as a surface without light of its own.
 inline constexpr float kFewestPixels = 10;
 
-/// Gives every pixel p that sees what the fit cannot know the v that has, by layer and channel, the least sum over q of
+/// Estimates light v that the fit cannot find, for every pixel p that needs it, by layer and channel: the v with the
+/// least sum over q of
 ///     (radiance(q) - sum of share(n) radiance(n) - share(q) albedo(q) v)^2 / albedo(q)^2.
-/// What is not known is p's own surface where the weight of `fitted` is below kFewestPixels (v takes the place of its
-/// layers), and else what coverage.other counts (v goes to the result). q: pixels of p's surface in the window that see
-/// several surfaces and for which the same is not known; radiance(q): what was collected there; n: q itself and the
-/// pixels around it that are known, with their shares of q; radiance(n): what was fitted; share(q): the rest of 1. The
-/// fit's own value counts as its weight / `frames` pixels, of a window of so many frames; where it has none, the plain
-/// mean of what was collected counts as one. v is not below 0 if that mean is not. Returns by layer the light of what
-/// no centre around shows; empty planes where no pixel has a share of such.
+/// Where the weight of `fitted` is below kFewestPixels, v is the light of p's own surface and replaces its layers;
+/// elsewhere v is the light of what coverage.other counts and goes to the result. q: the pixels of p's surface in the
+/// window that see several surfaces and lack the same light; radiance(q): the collected radiance there; n: q and those
+/// of its neighbours whose light was fitted, with their shares of q; radiance(n): their fitted radiance; share(q): the
+/// remainder to 1.
+/// The fit's own value counts as its weight / `frames` pixels, for a window of `frames` frames; if there is none, the
+/// plain mean of the collected light counts as one pixel. v is not negative unless that mean is. Returns by layer the
+/// light of what no neighbouring centre shows; empty planes if no pixel has such a share.
 std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const Light& collected,
                                const Coverage& coverage, int frames, Light& fitted);
 

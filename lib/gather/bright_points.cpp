@@ -75,7 +75,7 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
   // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's
   // light, so that no share of it may be sampled explicitly. Beside a lamp direct light has a division of its own.
   for (std::uint32_t i = 0; i < high_.size(); ++i)
-    if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_even_indirect(points.light(i)))) high_[i] = 0;
+    if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_uniform_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
   place_lamp_light(options.beside_lamps);
   gather_spots();
@@ -113,7 +113,7 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<std::uint32_t> uneven;
   for (std::uint32_t i = 0; i < sites_.size(); ++i)
-    if (!points.is_even(*points.find(sites_[i].place.position, sites_[i].normal))) uneven.push_back(i);
+    if (!points.is_uniform(*points.find(sites_[i].place.position, sites_[i].normal))) uneven.push_back(i);
   sample_uneven(lights, uneven, options);
 }
 

@@ -55,7 +55,7 @@ struct BrightLight {
 class BrightPoints {
  public:
   /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours
-  /// (PointLookup::is_even_indirect) get none. All must outlive it.
+  /// (PointLookup::is_uniform_indirect) get none. All must outlive it.
   BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares,
                const BrightOptions& options);
 

@@ -7,7 +7,7 @@
 #include "lib/gather/whole_photons.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/moving_objects.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux {
 

@@ -201,9 +201,9 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
     // Most hits are far from the seam: they need no random number.
     const bool near = point && depth == 0 && met.distance < 1.5f * near_factor_ * point->radius &&
                       PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather), near_factor_);
-    if (point && !near && points_.is_even_indirect(*point)) {
+    if (point && !near && points_.is_uniform_indirect(*point)) {
       ++to.counts.points_read;
-      const bool even = lights_.empty() || points_.is_even(*point);
+      const bool even = lights_.empty() || points_.is_uniform(*point);
       if (source) source->partial |= !even;
       result = scale * (even ? point->all : beside_edge(met, *point, from.low, random, to.counts));
       if (from.low) result *= bright_->left(*point, met.distance);
@@ -294,7 +294,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   const SeenSide side(met.hit, met.wo);
   Rgb irradiance{0.0f};
   if (point) irradiance = points_.point(*point).caustic;
-  if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random))
+  if (point && points_.is_uniform(*point) && met.distance >= points_.spacing() * threshold(random))
     irradiance += points_.point(*point).direct;
   else irradiance += sampled_light(met, side, point, from.low, random, to.counts);
   if (bright_) {

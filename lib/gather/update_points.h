@@ -7,7 +7,7 @@
 
 #include "formats/photons/photons.h"
 #include "lib/gather/irradiance_points.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux {
 

@@ -20,10 +20,9 @@ namespace tempolux {
 namespace {
 
 constexpr const char* kHelper = "tempolux-oiio";
-constexpr std::uint64_t kLibraries = 2ull
-                                     << 30;  ///< address space of OpenImageIO and its 261 libraries, with room to spare
+constexpr std::uint64_t kLibraries = 2ull << 30;  ///< address space of OpenImageIO with its 261 libraries, and a margin
 
-/// "exr", "hdr", "png", or OpenImageIO's name of a format the helper may open; "" for everything else.
+/// "exr", "hdr", "png", or OpenImageIO's name of a format that the child process may open; "" for any other format.
 std::string format_of(const ByteFile& file) {
   std::array<char, 11> start{};
   file.read_at(0, start.data(), std::size_t(std::min<std::uint64_t>(start.size(), file.size())));
@@ -37,7 +36,7 @@ std::string format_of(const ByteFile& file) {
   return "";
 }
 
-/// What the helper prints.
+/// The child process' output.
 struct Interleaved {
   std::vector<float> samples;
   int width = 0, height = 0, channels = 0, bits = 0;
@@ -78,7 +77,7 @@ std::vector<unsigned char> request_for(const std::string& path, const std::strin
   return request;
 }
 
-/// Reads what the helper printed. Every number is checked, as the helper has read a stranger's file.
+/// Parses the child's output. Every number is checked, since the child has read an untrusted file.
 std::optional<Interleaved> parse(const std::vector<unsigned char>& printed, std::uint64_t max_pixels) {
   ImagePipeHead head;
   if (printed.size() < sizeof head) return {};
@@ -98,7 +97,7 @@ Image load_by_helper(const std::string& path, const std::string& format, const I
   const std::string program =
       helper_program(kHelper, path + ": reading " + format,
                      "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG", options.module_folders);
-  // Pixels as floats of four channels at most, and as much again for what the libraries decode.
+  // Memory for the pixels as floats of up to four channels, and as much again for decoding.
   const std::uint64_t most = options.max_pixels * 4 * sizeof(float);
   ChildLimits limits;
   limits.memory_bytes = memory_that_fits(kLibraries + 2 * most);

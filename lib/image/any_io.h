@@ -1,5 +1,4 @@
-// lib/image/any_io.h -- images of any format we read: EXR, PNG and Radiance HDR here, others by a helper
-// program.
+// lib/image/any_io.h -- reads images of any format: EXR, PNG and Radiance HDR directly, others by a child process.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +15,14 @@ struct ImageReadOptions {
   std::vector<std::string> module_folders = default_module_folders();
 };
 
-/// Reads an image as linear Rec. 709 R, G, B (and whatever else an EXR has). The first bytes decide the
-/// format, not the name: OpenEXR, PNG and Radiance HDR are read here, JPEG and TIFF by the program
-/// tempolux-oiio in a process of its own, which has limits of memory and time and can open nothing else; everything
-/// else is refused. Samples of 8 or 16 bits are sRGB and become linear, float samples are linear already;
-/// "tempolux:source" says which. One channel is grey.
+/// Reads an image as linear Rec. 709 R, G, B; an EXR keeps all its channels. The format follows from the first bytes,
+/// not from the name. OpenEXR, PNG and Radiance HDR are read in this process; JPEG and TIFF by the program
+/// tempolux-oiio in a child process, which has limits of memory and time and can open nothing else; all other formats
+/// are refused. Samples of 8 or 16 bits are decoded as sRGB; float samples are linear already; "tempolux:source" says
+/// which. A single channel is grey.
 ///
-/// Throws InputError "FILE: ...": unreadable, unknown or damaged, too large, NaN or infinite (as load_exr),
-/// of a format whose helper was not built or not installed, or of one on which the helper dies; ResourceError without
-/// memory.
+/// Throws InputError "FILE: ...": unreadable, unknown or damaged, too large, NaN or infinite (as load_exr), a format
+/// whose program was not built or installed, or a file on which the child process dies; ResourceError without memory.
 Image load_image(const std::string& path, const ImageReadOptions& options = {});
 
 }  // namespace tempolux

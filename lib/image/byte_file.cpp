@@ -15,7 +15,7 @@
 namespace tempolux {
 
 ByteFile::ByteFile(std::string path) : path_(std::move(path)) {
-  // Not blocking: opening a pipe by mistake must give a message, not a wait.
+  // Non-blocking: opening a pipe by mistake must give a message, not wait.
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) throw InputError(path_ + ": cannot open: " + std::strerror(errno));
   struct stat status;

@@ -18,7 +18,7 @@ class ByteFile {
 
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
-  /// Fills all of `to`; InputError "FILE: byte N: ends here ..." if the file ends before. Thread-safe.
+  /// Fills all of `to`; throws InputError "FILE: byte N: ends here ..." if the file ends first. Thread-safe.
   void read_at(std::uint64_t offset, void* to, std::size_t count) const;
 
  private:
@@ -27,11 +27,11 @@ class ByteFile {
   std::uint64_t size_ = 0;
 };
 
-/// Creates or truncates `path` and writes the pieces one after the other; never seeks, not synced. Throws
-/// ResourceError with the reason.
+/// Creates or truncates `path` and writes the pieces in order, without seeking or syncing. Throws ResourceError with
+/// the reason.
 void write_pieces(const std::string& path, std::span<const std::string> pieces);
 
-/// Text of somebody else's library for a one-line message: control characters become spaces, at most 1 KB.
+/// Makes a foreign library's message fit for one line: control characters become spaces, at most 1 KB.
 std::string one_line(const std::string& text);
 
 }  // namespace tempolux

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kGap = 2;
 
-/// Area average of linear light; a target pixel covers (source size / target size) source pixels, parts of
-/// them by their share.
+/// Area average of linear light. A target pixel covers (source size / target size) source pixels; partly covered ones
+/// count by their covered share.
 Picture shrink(const Picture& from, int width, int height) {
   std::array<float, 256> linear;
   for (std::size_t code = 0; code < linear.size(); ++code) linear[code] = srgb_to_linear(float(code) / 255);

@@ -1,4 +1,5 @@
-// Apart from encoded_image.cpp: who reads headers does not link the decoders.
+// lib/image/decode_image.cpp -- decodes images. Separate from encoded_image.cpp, so that readers of headers do not link
+// the decoders.
 #include "formats/error.h"
 #include "lib/core/unpack.h"
 #include "lib/image/encoded_image.h"

@@ -30,7 +30,7 @@ bool png_size(Bytes bytes, ImageHeader& header) {
   return true;
 }
 
-/// Size in the first start-of-frame segment (ITU-T T.81, B.2.2): markers FFC0 .. FFCF but for DHT, JPG and DAC.
+/// Size in the first start-of-frame segment (ITU-T T.81, B.2.2): markers FFC0 .. FFCF except DHT, JPG and DAC.
 bool jpeg_size(Bytes bytes, ImageHeader& header) {
   for (std::size_t at = 2; at + 4 <= bytes.size();) {
     if (bytes[at] != 0xff) return false;
@@ -39,7 +39,7 @@ bool jpeg_size(Bytes bytes, ImageHeader& header) {
       ++at;
       continue;
     }
-    if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8)) {  // without a length
+    if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8)) {  // markers without a length
       at += 2;
       continue;
     }
@@ -49,7 +49,7 @@ bool jpeg_size(Bytes bytes, ImageHeader& header) {
       header.width = int(big_endian(bytes, at + 7, 2));
       return true;
     }
-    if (marker == 0xd9 || marker == 0xda) return false;  // end, or pixels before any frame
+    if (marker == 0xd9 || marker == 0xda) return false;  // end of the image, or pixels before any frame
     at += 2 + big_endian(bytes, at + 2, 2);
   }
   return false;

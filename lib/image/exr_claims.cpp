@@ -16,9 +16,9 @@ constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
 constexpr std::uint64_t kFreeDisplayBytes = 256ull << 20;
 constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800, kMultipartFlag = 0x1000;
 
-/// Compressions by their number in the file: lines of a chunk, and how many bytes of samples one byte of file
-/// can make at most: deflate 1032, run lengths 64, Pxr24 drops a quarter before deflate, Piz 410 (a run of
-/// 256 16-bit values in 10 bits), B44 11; the DWA pair 64 times deflate (one coefficient for 8x8 pixels).
+/// Compressions by their number in the file: lines per chunk, and the most bytes of samples that one byte of the file
+/// can expand to. Deflate: 1032; run lengths: 64; Pxr24 drops a quarter before deflate; Piz: 410 (a run of 256 16-bit
+/// values in 10 bits); B44: 11; both DWA: 64 times deflate (one coefficient for 8x8 pixels).
 struct CompressionFacts {
   std::int32_t lines;
   std::uint64_t expansion;
@@ -94,8 +94,8 @@ std::vector<ExrClaims::ClaimedChannel> read_channels(HeaderReader& in) {
   return channels;
 }
 
-/// Bytes of a value; 0: as many as the attribute says. OpenEXR takes so many whatever the attribute says, and would go
-/// on to read the rest of the header at another place than we.
+/// Bytes of a value; 0: the attribute gives the size. OpenEXR reads this many bytes whatever size the attribute gives,
+/// and would read the rest of the header from another position than this reader.
 std::int32_t size_of_type(std::string_view type) {
   constexpr std::pair<std::string_view, std::int32_t> kSizes[] = {{"box2f", 16},
                                                                   {"box2i", 16},
@@ -125,7 +125,7 @@ std::int32_t size_of_type(std::string_view type) {
   return found == std::end(kSizes) ? 0 : found->second;
 }
 
-/// A preview has as many pixels of 4 bytes as it says.
+/// Checks that a preview has 4 bytes for each of its pixels.
 void check_preview(HeaderReader& in, std::int32_t size) {
   const std::uint64_t width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>();
   if (width > 65536 || height > 65536 || 8 + 4 * width * height != std::uint64_t(size))
@@ -133,7 +133,7 @@ void check_preview(HeaderReader& in, std::int32_t size) {
             std::to_string(size) + " bytes; the header is damaged");
 }
 
-/// One part's attributes up to the empty name that ends them. False: an empty header, which ends the parts.
+/// Reads one part's attributes up to the empty name that ends them. False for an empty header, which ends the parts.
 bool read_part(HeaderReader& in, ExrClaims& part, std::uint64_t& chunk_count) {
   bool any = false;
   for (std::string name; !(name = in.name("an attribute")).empty();) {
@@ -188,7 +188,7 @@ void check_window(const HeaderReader& in, const PixelWindow& window, const char*
             "; raise the limit if that is the image's size");
 }
 
-/// Windows and chunks: every part's, since OpenEXR makes offset tables for all of them.
+/// Checks windows and chunks of every part, since OpenEXR allocates offset tables for all parts.
 void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chunk_count, std::uint64_t file_size,
                 std::uint64_t max_pixels) {
   check_window(in, part.data, "dataWindow", max_pixels);
@@ -201,7 +201,7 @@ void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chu
   const std::uint64_t chunks = part.tile_width > 0 && part.tile_height > 0
                                    ? up(part.data.width(), part.tile_width) * up(part.data.height(), part.tile_height)
                                    : up(part.data.height(), part.lines_per_chunk());
-  // A chunk has 8 bytes in the offset table and 8 of its own before any sample.
+  // A chunk takes 8 bytes in the offset table and 8 bytes of its own before any sample.
   if (std::max(chunks, chunk_count) > file_size / 16)
     in.fail("claims " + std::to_string(std::max(chunks, chunk_count)) + " chunks in " + std::to_string(file_size) +
             " bytes; the file is truncated or damaged");
@@ -220,8 +220,8 @@ void check_samples(const HeaderReader& in, const ExrClaims& part, std::uint64_t 
   if (bytes / kCompressions[std::size_t(part.compression)].expansion > file_size)
     in.fail("claims " + std::to_string(bytes) + " bytes of samples, more than the file's " + std::to_string(file_size) +
             " can hold; it is truncated or damaged");
-  // The display window's rest is not in the file: memory for it is given freely up to a limit, then as
-  // deflate would.
+  // Pixels of the display window outside the data window are not in the file. Memory for them is limited to 256 MiB, or
+  // to what deflate could expand the file to.
   const std::uint64_t shown = bytes_per_pixel * std::uint64_t(part.display.width() * part.display.height());
   if (shown > std::max(kFreeDisplayBytes, 1032 * file_size))
     in.fail("displayWindow claims " + std::to_string(shown) + " bytes of samples around a data window of " +

@@ -1,8 +1,7 @@
-// lib/image/exr_claims.h -- what an EXR header claims, read without OpenEXR, checked against the file's size.
+// lib/image/exr_claims.h -- reads and checks the sizes that an EXR header claims, without OpenEXR.
 //
-// OpenEXR allocates by the numbers it finds in a header: offset tables, attributes, line buffers. So the
-// header is walked here first, in constant memory, and nothing is handed on that the file is too short to
-// hold.
+// OpenEXR allocates offset tables, attributes and line buffers by the numbers in a header. So this reader parses the
+// header first, in constant memory, and refuses claims that the file is too short to hold.
 #pragma once
 
 #include <cstdint>
@@ -29,17 +28,17 @@ struct ExrClaims {
   };
   PixelWindow data, display;
   std::vector<ClaimedChannel> channels;
-  std::int32_t compression = -1;                  ///< -1: attribute absent
+  std::int32_t compression = -1;                  ///< -1: the attribute is missing
   std::uint32_t tile_width = 0, tile_height = 0;  ///< 0: scan lines
   bool deep = false;
   bool multipart = false;
-  std::uint64_t header_bytes = 0;        ///< of a file of one part: where its offset table begins
-  std::int32_t lines_per_chunk() const;  ///< of scan-line parts
+  std::uint64_t header_bytes = 0;        ///< position of the offset table, in a file of one part
+  std::int32_t lines_per_chunk() const;  ///< in parts stored as scan lines
 };
 
-/// Claims of the first part. Throws InputError "FILE: byte N: WHAT; REMEDY" if any part's header is damaged
-/// or claims more than max_pixels or more than the file's bytes can hold, or if the first part is deep or
-/// subsampled, or shows its pixels in a display window of more than 256 MiB and 1032 times the file.
+/// Claims of the first part. Throws InputError "FILE: byte N: WHAT; REMEDY" if any part's header is damaged or claims
+/// more than max_pixels or more than the file's bytes can hold; if the first part is deep or subsampled; or if its
+/// display window takes more than 256 MiB and more than 1032 times the file.
 ExrClaims read_exr_claims(const ByteFile& file, std::uint64_t max_pixels);
 
 }  // namespace tempolux

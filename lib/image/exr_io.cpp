@@ -34,11 +34,12 @@
 namespace tempolux {
 namespace {
 
-// Lines that a thread decompresses at a time, and compresses: one chunk of ZIP, so that 540 lines keep many threads
-// busy.
+// Lines that a thread decompresses and compresses at a time: one chunk of ZIP to compress, so that 540 lines occupy
+// many threads.
 constexpr int kReadLines = 64, kSlabLines = 16;
 constexpr float kLargestHalf = 65504;
-// OpenEXR's level 4 of deflate; the default of a later OpenEXR must not change our bytes.
+// Level 4 of deflate is OpenEXR's default; written here, so that the default of a later OpenEXR does not change the
+// bytes.
 constexpr int kDeflateLevel = 4;
 
 bool is_colour(const std::string& channel) {
@@ -99,7 +100,7 @@ Matrix to_imath(const std::array<double, 16>& m) {
   return result;
 }
 
-/// Size, compression and channels alone.
+/// A header with size, compression and channels only.
 Imf::Header make_bare_header(const Image& image, const ExrWriteOptions& options) {
   const bool zip = options.compression == ExrWriteOptions::Compression::zip;
   Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
@@ -127,7 +128,7 @@ Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
   return header;
 }
 
-/// OpenEXR writes into memory; the offset table it reserves first is filled in there.
+/// Lets OpenEXR write into memory; OpenEXR reserves the offset table and fills it in at the end.
 class MemoryOut : public Imf::OStream {
  public:
   MemoryOut() : OStream("memory") {}
@@ -144,7 +145,7 @@ class MemoryOut : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-/// Lines [first, first + count) of the image as chunks, each: int32 line, int32 size, bytes.
+/// Lines [first, first + count) of the image as chunks: int32 line, int32 size, bytes.
 std::string encode_slab(const Image& image, const ExrWriteOptions& options, int first, int count) {
   if (options.compression == ExrWriteOptions::Compression::none && !options.half)
     return plain_lines(image, first, count);
@@ -178,7 +179,7 @@ std::string encode_slab(const Image& image, const ExrWriteOptions& options, int 
   return out.bytes.substr(header_size);
 }
 
-/// Header and offset table as OpenEXR writes them; the table is filled in from the chunks' sizes.
+/// The header and the offset table as OpenEXR writes them; the table follows from the chunks' sizes.
 std::string make_head(const Imf::Header& header, const std::vector<std::string>& slabs) {
   MemoryOut out;
   { Imf::OutputFile empty(out, header, 0); }
@@ -201,7 +202,7 @@ std::string make_head(const Imf::Header& header, const std::vector<std::string>&
 
 // ---- reading
 
-/// OpenEXR's view of a file that other threads read too.
+/// Gives OpenEXR access to a file that other threads read, too.
 class FileIn : public Imf::IStream {
  public:
   explicit FileIn(const ByteFile& file) : IStream(file.path().c_str()), file_(file), buffer_(kBufferSize) {}
@@ -261,8 +262,8 @@ void read_attributes(const Imf::Header& header, Image& image) {
   }
 }
 
-/// Reads lines [first, last) of the data window into the image, which has the data window's size; with the first the
-/// attributes.
+/// Reads lines [first, last) of the data window into the image, which has the data window's size; with the first line
+/// also the attributes.
 void read_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int first, int last) {
   const bool done = read_plain_lines(file, claims, image, first, last);
   if (done && first != 0) return;
@@ -312,7 +313,7 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrR
   return image;
 }
 
-/// The same attributes, the display window's pixels; what the data window lacks shows nothing.
+/// Moves the image to the display window, with the same attributes. Pixels outside the data window are empty.
 Image placed(Image&& from, const PixelWindow& data, const PixelWindow& display) {
   Image to;
   to.width = int(display.width());
@@ -353,7 +354,7 @@ void check_numbers(const std::string& path, const Image& image) {
   }
 }
 
-/// OpenEXR 3.1 keeps its limits for the whole process; set once, all to the same value.
+/// OpenEXR 3.1 has limits for the whole process; they are set once, to one value.
 void limit_openexr() {
   static const bool done = [] {
     Imf::Header::setMaxImageSize(65536, 65536);

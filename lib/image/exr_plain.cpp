@@ -13,17 +13,19 @@ static_assert(std::endian::native == std::endian::little, "EXR files are little-
 
 constexpr std::size_t kChunkHead = 8;  // int32 line, int32 bytes
 
-/// Samples of one channel within a line of the file, and where in the image they go.
+/// The samples of one channel in a line of the file, and their destination in the image.
 struct Stretch {
-  std::size_t at = 0;  ///< byte within the line
-  char* to = nullptr;  ///< its first line
+  std::size_t at = 0;  ///< byte offset in the line
+  char* to = nullptr;  ///< destination of the first line
 };
 
-/// Where in a line the image's channels are; nothing if one of them is not of 4 bytes. line_bytes: of all channels.
+/// The positions of the image's channels in a line; empty if one of them does not have 4 bytes. line_bytes receives the
+/// bytes of all channels.
 std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_t& line_bytes) {
   std::vector<const ExrClaims::ClaimedChannel*> claimed;
   for (const ExrClaims::ClaimedChannel& channel : claims.channels) claimed.push_back(&channel);
-  std::ranges::sort(claimed, {}, &ExrClaims::ClaimedChannel::name);  // as samples are, whatever the header's order
+  // Samples are in the order of names, whatever the header's order.
+  std::ranges::sort(claimed, {}, &ExrClaims::ClaimedChannel::name);
   const auto width = std::size_t(image.width);
   std::vector<Stretch> found;
   line_bytes = 0;
@@ -36,7 +38,7 @@ std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_
     }
     line_bytes += (channel->type == kHalf ? 2 : 4) * width;
   }
-  // Two channels of one name: which of them is meant is OpenEXR's to say.
+  // Two channels have one name: left to OpenEXR.
   return found.size() == image.channels.size() ? found : std::vector<Stretch>();
 }
 

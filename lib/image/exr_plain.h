@@ -1,6 +1,6 @@
-// lib/image/exr_plain.h -- lines of EXR files that are not compressed, read and written without OpenEXR.
+// lib/image/exr_plain.h -- reads and writes lines of uncompressed EXR files without OpenEXR.
 //
-// OpenEXR takes numbers byte by byte from a file and puts them so into one: 7 ns for each. Here lines are copied.
+// OpenEXR reads and writes numbers byte by byte: 7 ns each. Here lines are copied.
 #pragma once
 
 #include <string>
@@ -11,14 +11,13 @@
 
 namespace tempolux {
 
-/// Lines [first, last) of the data window into the image, which has its size and some of its channels. False if this is
-/// not for here, or a line is not where and what it should be: nothing that counts was written, OpenEXR reads them or
-/// says what is wrong. For here are files of one part, in lines, without compression, whose channels of the image are
-/// float32 or uint32.
+/// Copies lines [first, last) of the data window to the image, which has its size and some of its channels. Supports
+/// files of one part, in scan lines, uncompressed, whose wanted channels are float32 or uint32. False if the file is of
+/// another kind or a line is damaged: the caller then reads all lines with OpenEXR, which reports errors.
 bool read_plain_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int first, int last);
 
-/// Lines [first, first + count) of the image, its data window at (0, 0), as OpenEXR writes them without compression,
-/// float32 and uint32: for each line int32 line, int32 bytes, and its samples channel after channel in the order of
+/// Lines [first, first + count) of the image, with the data window at (0, 0), as OpenEXR writes them uncompressed
+/// (float32 and uint32). Each line is int32 line, int32 bytes, and its samples channel by channel in the order of
 /// names.
 std::string plain_lines(const Image& image, int first, int count);
 

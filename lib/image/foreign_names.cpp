@@ -8,9 +8,9 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNothingDepth = 1e10f;  // what Blender writes where nothing is
+constexpr float kNothingDepth = 1e10f;  // depth that Blender writes where no surface is
 
-/// A pass of another program: what its channels' names end with, before the last dot and after it.
+/// A pass of another program: the ends of its channels' names, before and after the last dot.
 struct Pass {
   std::string_view layer, component, ours;
 };
@@ -37,7 +37,7 @@ constexpr std::array<Pass, 22> kPasses{{{"Combined", "R", "R"},
                                         {"Denoising Albedo", "G", "albedo.G"},
                                         {"Denoising Albedo", "B", "albedo.B"}}};
 
-/// "VIEW.Combined.R" -> "VIEW", "Combined", "R".
+/// Splits "VIEW.Combined.R" into "VIEW", "Combined" and "R".
 struct Parts {
   std::string_view view, layer, component;
 };
@@ -55,7 +55,7 @@ const Pass* pass_of(const Parts& parts) {
   return nullptr;
 }
 
-/// The view layer whose passes count; "" if none has a picture.
+/// The view layer whose passes are used; "" if none has a picture.
 std::string view_of(const Image& image) {
   std::string first;
   bool any = false;
@@ -77,7 +77,7 @@ std::string our_name(const std::string& channel) {
 void name_as_ours(Image& image) {
   const std::string view = view_of(image);
   for (const bool for_denoisers :
-       {false, true})  // these look through mirrors and average over edges: second to the plain ones
+       {false, true})  // denoising passes look through mirrors and average over edges, so plain passes are preferred
     for (Channel& channel : image.channels) {
       const Parts parts = parts_of(channel.name);
       const Pass* pass = pass_of(parts);
@@ -85,7 +85,7 @@ void name_as_ours(Image& image) {
           (!view.empty() && parts.view != view))
         continue;
       const bool turned = parts.layer == "Vector" && pass->ours.starts_with("forward");
-      channel.name = pass->ours;  // parts looks into the name before
+      channel.name = pass->ours;  // last, since `parts` refers to the old name
       for (float& value : channel.values) {
         if (channel.name == "Z" && value >= kNothingDepth) value = INFINITY;
         if (turned) value = -value;

@@ -1,4 +1,5 @@
-// lib/image/frame_identity.h -- which state of which scene a frame shows: its attributes (formats/frames/frames.md 3).
+// lib/image/frame_identity.h -- attributes that identify the scene and the state that a frame shows
+// (formats/frames/frames.md 3).
 #pragma once
 
 #include <string_view>
@@ -8,13 +9,14 @@
 
 namespace tempolux {
 
-inline constexpr std::string_view kIdentityPrefix = "tempolux:identity.";  ///< before a concern's name
+inline constexpr std::string_view kIdentityPrefix = "tempolux:identity.";  ///< prefix of a concern's name
 
-/// Writes the attributes tempolux:identity.CONCERN for all concerns of the scene; an unknown hash is written empty.
+/// Writes the attributes tempolux:identity.CONCERN for all concerns of the scene; an unknown hash becomes an empty
+/// text.
 void set_identity(Image& image, const formats::Identity& identity);
 
-/// What set_identity() wrote; attributes that are absent are unknown. Valid for frame 0 alone, whatever
-/// tempolux:frame says; not known() if there is no hash at all.
+/// Reads what set_identity() wrote; a missing attribute is unknown. Valid for frame 0 only, whatever tempolux:frame
+/// says; not known() if there is no hash.
 formats::Identity identity_in(const Image& image);
 
 }  // namespace tempolux

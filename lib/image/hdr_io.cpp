@@ -16,7 +16,7 @@ namespace {
 using Pixel = std::array<std::uint8_t, 4>;  ///< r, g, b, e
 
 constexpr std::size_t kLongestHeader = 1 << 16;
-constexpr std::uint64_t kPixelsPerByte = 64;  ///< runs cannot say more: 255 pixels in 4 bytes
+constexpr std::uint64_t kPixelsPerByte = 64;  ///< largest expansion by run lengths: 255 pixels in 4 bytes
 
 class Reader {
  public:
@@ -44,7 +44,7 @@ class Reader {
     return bytes_[at_++];
   }
   Pixel pixel() { return {byte(), byte(), byte(), byte()}; }
-  /// The next four bytes, not taken; zeros at the end of the file.
+  /// Reads the next four bytes without consuming them; zeros at the end of the file.
   Pixel peek() const {
     return left() >= 4 ? Pixel{bytes_[at_], bytes_[at_ + 1], bytes_[at_ + 2], bytes_[at_ + 3]} : Pixel{};
   }
@@ -65,7 +65,7 @@ bool all_digits(const std::string& text) {
   return !text.empty() && text.size() <= 9 && text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// "-Y 512 +X 1024".
+/// Reads the line "-Y 512 +X 1024".
 void read_resolution(Reader& in, Header& header) {
   const std::string text = in.line();
   std::array<std::string, 4> words;
@@ -85,7 +85,7 @@ void read_resolution(Reader& in, Header& header) {
 
 Header read_header(Reader& in) {
   Header header;
-  in.line();  // #?RADIANCE or #?RGBE: known already
+  in.line();  // #?RADIANCE or #?RGBE, checked before
   for (std::string text = in.line(); !text.empty(); text = in.line()) {
     if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe")
       in.refuse(one_line(text) + ": only 32-bit_rle_rgbe is read; convert it to RGB or to EXR");
@@ -99,7 +99,7 @@ Header read_header(Reader& in) {
   return header;
 }
 
-/// Each of the four bytes of all pixels by itself: runs of up to 127 equal ones, or as many that differ.
+/// Reads each of the four bytes of all pixels separately: runs of up to 127 equal bytes, or up to 128 different ones.
 void read_planes(Reader& in, std::vector<Pixel>& row) {
   in.skip(4);
   for (std::size_t plane = 0; plane < 4; ++plane)
@@ -111,7 +111,8 @@ void read_planes(Reader& in, std::vector<Pixel>& row) {
     }
 }
 
-/// Pixel by pixel; (1, 1, 1, n) repeats the one before, n at first, times 256 for each that follows another.
+/// Reads pixel by pixel. The code (1, 1, 1, n) repeats the pixel before n times. Codes that follow each other are the
+/// digits of one number in base 256, the lowest first.
 void read_pixels(Reader& in, std::vector<Pixel>& row) {
   unsigned shift = 0;
   for (std::size_t x = 0; x < row.size();) {
@@ -147,7 +148,7 @@ Image load_hdr(const std::string& path, std::uint64_t max_pixels) {
   image.text["tempolux:source"] = "hdr, 32 bits, linear";
   for (const char* name : {"R", "G", "B"}) image.add(name);
   std::vector<Pixel> row(std::size_t(header.width));
-  constexpr std::size_t kLeast = 8, kMost = 32767;  // widths that may be stored by planes
+  constexpr std::size_t kLeast = 8, kMost = 32767;  // widths that may be stored in planes
   for (std::size_t y = 0; y < std::size_t(header.height); ++y) {
     const Pixel start = in.peek();
     const std::size_t width = std::size_t(start[2]) << 8 | start[3];

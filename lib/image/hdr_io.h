@@ -1,4 +1,4 @@
-// lib/image/hdr_io.h -- Radiance pictures (.hdr, .pic) to linear colour.
+// lib/image/hdr_io.h -- reads Radiance pictures (.hdr, .pic) as linear colour.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,13 @@
 
 namespace tempolux {
 
-/// Reads a Radiance picture of FORMAT 32-bit_rle_rgbe, stored line by line from the top left (-Y H +X W), flat
-/// or run-length encoded either way, as linear R, G, B. A pixel of bytes (r, g, b, e) is (r, g, b) 2^(e - 136),
-/// zero where e is 0, divided by the product of the header's EXPOSURE lines (Ward, "Real Pixels", Graphics
-/// Gems II, 1991; the reference manual's page on the picture format). Never NaN, infinite or negative.
+/// Reads a Radiance picture of FORMAT 32-bit_rle_rgbe, stored line by line from the top left (-Y H +X W), uncompressed
+/// or run-length encoded in either way, as linear R, G, B. A pixel of bytes (r, g, b, e) is (r, g, b) 2^(e - 136), zero
+/// if e is 0, divided by the product of the header's EXPOSURE lines (Ward, "Real Pixels", Graphics Gems II, 1991; the
+/// reference manual's page on the picture format). Never NaN, infinite or negative.
 ///
-/// Sizes are checked against max_pixels and the file's bytes before anything is allocated by them. Throws
-/// InputError "FILE: byte N: WHAT; REMEDY" for XYZE colours, another order of pixels, and what is damaged or
-/// truncated.
+/// Sizes are checked against max_pixels and the file's bytes before memory is allocated for them. Throws InputError
+/// "FILE: byte N: WHAT; REMEDY" for XYZE colours, another order of pixels, and damaged or truncated files.
 Image load_hdr(const std::string& path, std::uint64_t max_pixels);
 
 }  // namespace tempolux

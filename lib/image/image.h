@@ -1,4 +1,4 @@
-// lib/image/image.h -- pixels with named channels, a value type.
+// lib/image/image.h -- an image with named channels.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// A frame. Channels keep the order they were added in; files sort them by name.
+/// A frame. Channels keep the order in which they were added; files sort them by name.
 struct Image {
   int width = 0, height = 0;
   std::vector<Channel> channels;
@@ -33,12 +33,12 @@ struct Image {
   std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
   const Channel* find(std::string_view name) const;  ///< nullptr if absent
   Channel* find(std::string_view name);
-  /// Adds a channel of zeros and returns it (the reference is valid until the next add).
+  /// Adds a channel of zeros and returns it (the reference is valid until the next call).
   Channel& add(std::string name);
   Channel& add_ids(std::string name);
-  /// The three planes LAYER.R, .G, .B; layer "" is R, G, B. Throws InputError listing the layers if absent.
+  /// The three planes LAYER.R, .G, .B; layer "" is R, G, B. Throws InputError listing the layers if missing.
   std::array<const std::vector<float>*, 3> rgb(const std::string& layer) const;
-  std::vector<std::string> layers() const;  ///< names that have .R .G .B; "" first if R G B are there
+  std::vector<std::string> layers() const;  ///< layers with .R .G .B; "" comes first if R G B exist
 };
 
 }  // namespace tempolux

@@ -1,7 +1,7 @@
-// lib/image/image_pipe.h -- what tempolux-oiio, which alone links OpenImageIO, is asked and what it prints.
+// lib/image/image_pipe.h -- input and output of the program tempolux-oiio, the only one that links OpenImageIO.
 //
-// Asked on standard input: an ImagePipeAsk, then the path of the file up to the end of the input. Printed: an
-// ImagePipeHead, then width x height x channels floats, row 0 on top, channels of a pixel together. In trouble: one
+// Standard input: an ImagePipeAsk, then the path of the file up to the end of the input. Standard output: an
+// ImagePipeHead, then width x height x channels floats, row 0 on top, channels of a pixel together. On failure: one
 // line on standard error and exit code 2. Little-endian, without padding.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace tempolux {
 
 struct ImagePipeAsk {
   std::array<char, 8> magic{'T', 'P', 'X', 'I', 'M', 'G', '1', '\n'};
-  std::array<char, 8> format{};  ///< OpenImageIO's name: "jpeg" or "tiff"; nothing else is opened
+  std::array<char, 8> format{};  ///< OpenImageIO's name: "jpeg" or "tiff"; other formats are refused
   std::uint64_t max_pixels = 0, max_channels = 0;
 };
 

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// What the module fills: `resize(width, height, channels, bits)` says where.
+/// Receives the module's pixels: `resize(width, height, channels, bits)` returns where they go.
 template <class Resize>
 class Answer {
  public:

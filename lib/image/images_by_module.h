@@ -1,6 +1,6 @@
-// lib/image/images_by_module.h -- images for programs that seldom need one: what reads them (OpenEXR, libpng, libjpeg)
-// is linked by the module tempolux-images.so and opened with the first image. Linked, it was a fifth of scene-plan's
-// work.
+// lib/image/images_by_module.h -- images for programs that seldom need one. The libraries that read them (OpenEXR,
+// libpng, libjpeg) are linked by the module tempolux-images.so, which is loaded for the first image. Linking them
+// directly took a fifth of scene-plan's time.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tempolux {
 
-/// decode_image of encoded_image.h; InputError too if the module is not there, std::bad_alloc without memory.
+/// decode_image of encoded_image.h; also throws InputError if the module is missing, std::bad_alloc without memory.
 CodedPixels decode_by_module(const EncodedImage& image, std::uint64_t max_pixels);
 
 /// Linear colour, row 0 on top.
@@ -21,16 +21,16 @@ struct LinearPixels {
   std::vector<Rgb> pixels;
 };
 
-/// R, G and B of load_image of any_io.h; InputError if it lacks one of them, or the module is not there, std::bad_alloc
+/// R, G and B of load_image of any_io.h. Throws InputError if a channel or the module is missing, std::bad_alloc
 /// without memory.
 LinearPixels load_by_module(const std::string& path, std::uint64_t max_pixels);
 
-/// A mask: nonzero_pixels() of an image.
+/// nonzero_pixels() of an image.
 struct MaskPixels {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
 };
-/// InputError and std::bad_alloc as above.
+/// Throws InputError and std::bad_alloc as above.
 MaskPixels mask_by_module(const std::string& path, std::uint64_t max_pixels);
 
 }  // namespace tempolux

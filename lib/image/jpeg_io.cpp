@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
-// jpeglib.h needs the two above.
+// jpeglib.h needs the two headers above.
 #include <jpeglib.h>
 
 #include "formats/error.h"
@@ -13,10 +13,10 @@
 namespace tempolux {
 namespace {
 
-constexpr int kMostScans = 100;  ///< a progressive file of many empty scans would take for ever
+constexpr int kMostScans = 100;  ///< a progressive file of many empty scans would take very long
 
-/// libjpeg reports an error by a call that must not return: a jump back to the frame that set it. No object with a
-/// destructor may live in the frames jumped over.
+/// libjpeg reports an error by calling a function that must not return: it jumps back to the frame that set the jump.
+/// No object with a destructor may live in the frames jumped over.
 struct Session {
   jpeg_decompress_struct info;
   jpeg_error_mgr errors;
@@ -38,7 +38,7 @@ Session& session_of(j_common_ptr info) { return *static_cast<Session*>(info->cli
   info->err->format_message(info, session.message);
   std::longjmp(session.back, 1);
 }
-/// Level -1 is a warning: libjpeg would go on with made-up pixels. Bytes between markers harm nothing.
+/// Level -1 is a warning after which libjpeg would invent pixels: an error here. Bytes between markers are harmless.
 void on_message(j_common_ptr info, int level) {
   if (level >= 0) return;
   char text[JMSG_LENGTH_MAX];
@@ -64,7 +64,7 @@ void on_progress(j_common_ptr info) {
     stop(info, "more than 100 scans");
 }
 
-/// Reads header; false with session.message set on error.
+/// Reads the header; false with session.message set on error.
 bool start_reading(Session& session, std::span<const unsigned char> bytes) {
   session.info.err = jpeg_std_error(&session.errors);
   session.errors.error_exit = on_error;
@@ -81,7 +81,7 @@ bool start_reading(Session& session, std::span<const unsigned char> bytes) {
   if (session.info.num_components != 1 && session.info.num_components != 3)
     stop(reinterpret_cast<j_common_ptr>(&session.info), "four channels (CMYK); convert it to RGB");
   session.info.out_color_space = session.info.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  session.info.dct_method = JDCT_ISLOW;  // the same bytes on every machine
+  session.info.dct_method = JDCT_ISLOW;  // integer arithmetic: the same bytes on every machine
   return true;
 }
 

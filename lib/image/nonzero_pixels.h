@@ -1,4 +1,4 @@
-// lib/image/nonzero_pixels.h -- masks of any kind: which pixels are meant.
+// lib/image/nonzero_pixels.h -- reads masks of any kind.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// What a mask says: by pixel, 1 where any channel is not 0 (formats/mask/mask.md).
+/// By pixel: 1 where any channel is not 0 (formats/mask/mask.md).
 std::vector<std::uint8_t> nonzero_pixels(const Image& image);
 
 }  // namespace tempolux

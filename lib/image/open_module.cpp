@@ -18,8 +18,7 @@ void* module_symbol(const char* file, const char* symbol, const std::vector<std:
     looked += (looked.empty() ? "" : ", ") + folder;
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) continue;
-    // Never unloaded: OpenImageIO's own libraries do not survive it. The loader counts and shares repeated
-    // opens.
+    // Never unloaded: OpenImageIO's libraries crash if they are. The loader counts repeated opens.
     void* module = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     void* found = module ? ::dlsym(module, symbol) : nullptr;
     if (!found) throw InputError(purpose + ": " + path + ": " + one_line(::dlerror()));

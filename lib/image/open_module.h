@@ -1,4 +1,4 @@
-// lib/image/open_module.h -- shared objects that are opened at need, so that no tool pays for linking them.
+// lib/image/open_module.h -- loads modules on demand, so that tools need not link them.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace tempolux {
 
-/// The address of `symbol` in the module `file`, which is opened if this is its first use and stays. Thread-safe.
-/// `purpose` begins every message, as "FILE: reading jpeg"; `remedy` ends the one for a module that is in none of the
-/// folders. Throws InputError.
+/// The address of `symbol` in the module `file`, which is loaded at its first use and stays loaded. Thread-safe.
+/// `purpose` begins every message, as in "FILE: reading jpeg"; `remedy` ends the message for a module that is in none
+/// of the folders. Throws InputError.
 void* module_symbol(const char* file, const char* symbol, const std::vector<std::string>& folders,
                     const std::string& purpose, const std::string& remedy);
 

@@ -21,7 +21,7 @@ std::string place(const std::string& name, const char* channel, std::size_t pixe
          std::to_string(pixel / std::size_t(width)) + "): ";
 }
 
-/// One component of a vector field, checked.
+/// Reads and checks one component of a vector field.
 void take(const Image& image, const char* channel, float Vec2::*component, std::vector<Vec2>& field,
           const std::string& name) {
   const std::vector<float>& values = channel_of(image, channel, false, name).values;

@@ -1,4 +1,4 @@
-// lib/image/pixel_surfaces.h -- do two pixels of a frame see one smooth surface? By their depth, normal and object.
+// lib/image/pixel_surfaces.h -- decides by depth, normal and object whether two pixels show one smooth surface.
 #pragma once
 
 #include <algorithm>
@@ -11,26 +11,26 @@
 
 namespace tempolux {
 
-/// What each pixel's centre sees, from the channels Z, N.* and id.object. A channel that is absent agrees everywhere.
+/// The surface at each pixel's centre, from the channels Z, N.* and id.object. A missing channel is the same
+/// everywhere.
 ///
-/// Depth is kept as w = 1/Z: on a plane seen in perspective it is linear in pixels, so that a pixel's w and its slopes
-/// say what its neighbours' should be. Nothing seen: w = 0.
+/// Depth is stored as w = 1/Z. In perspective w is linear in pixels on a plane, so a pixel's w and slopes predict its
+/// neighbours' w. w = 0: no surface.
 class PixelSurfaces {
  public:
   /// Cosine of the largest angle (26 degrees) between normals of one surface (docs/methods/formulas.md).
   static constexpr float kSameNormal = 0.9f;
-  /// Relative error of depth that is always allowed (docs/methods/formulas.md).
+  /// Relative difference of w that is always allowed (docs/methods/formulas.md).
   static constexpr float kSameDepth = 1e-3f;
 
   explicit PixelSurfaces(const Image& image);
 
-  /// w of a depth; 0 where nothing is seen.
+  /// w of a depth; 0 if there is no surface.
   static float inverse_depth(float z) {
-    constexpr float kNearest = 1e-18f;  // m; 1/Z squared stays finite
+    constexpr float kNearest = 1e-18f;  // m; keeps the square of 1/Z finite
     return z > 0 && z < 3e38f ? 1 / std::max(z, kNearest) : 0;
   }
-  /// A slope of w from the differences to the pixel before and to the one after: the one nearer to 0; of one that is
-  /// not known the other.
+  /// A slope of w from the one-sided differences: the one closer to 0; if one is unknown, the other.
   static float smaller(float before, bool before_known, float after, bool after_known) {
     if (!before_known || !after_known) return before_known ? before : after_known ? after : 0;
     return std::abs(before) < std::abs(after) ? before : after;
@@ -38,17 +38,17 @@ class PixelSurfaces {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Is the pixel (dx, dy) away from `pixel` (right, down; it lies in the picture) on the surface that `pixel` is on?
-  /// Same object, normals within kSameNormal, and w off the plane through `pixel` by at most kSameDepth of it plus what
-  /// the plane itself changes: a curved surface may double its slope.
+  /// True if `pixel` and the pixel at offset (dx, dy) (right, down; inside the picture) show one surface: the same
+  /// object, normals within kSameNormal, and w off the plane through `pixel` by at most kSameDepth of w plus the
+  /// plane's own change: the slope of a curved surface may double.
   bool same(std::size_t pixel, int dx, int dy) const;
-  /// 1 for each pixel that is not on the same surface as all of its eight neighbours, both ways asked.
+  /// 1 for each pixel that is not on one surface with all of its eight neighbours, compared in both directions.
   std::vector<std::uint8_t> edges() const;
 
-  // One entry a pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 where
-  // nothing is seen or known.
+  // One entry per pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 if
+  // unknown or without a surface.
   std::vector<std::uint32_t> object;
-  std::vector<float> w, w_right, w_down;  ///< 1/m; its change per pixel: the smaller of the two one-sided differences
+  std::vector<float> w, w_right, w_down;  ///< 1/m; change of w per pixel: the smaller of the two one-sided differences
   std::vector<float> nx, ny, nz;
 
  private:

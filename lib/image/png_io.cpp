@@ -16,12 +16,12 @@
 namespace tempolux {
 namespace {
 
-/// What libpng's callbacks see. libpng reports an error by calling one of them, which must not return: a jump
-/// back to the frame that set it. No object with a destructor may live in the frames jumped over.
+/// State for libpng's callbacks. libpng reports an error by calling a function that must not return: it jumps back to
+/// the frame that set the jump. No object with a destructor may live in the frames jumped over.
 struct PngSession {
   std::jmp_buf back;
   char message[256] = "";
-  const std::uint8_t* data = nullptr;  // reading: what is left
+  const std::uint8_t* data = nullptr;  // when reading: the remaining bytes
   std::size_t left = 0;
   std::string* out = nullptr;  // writing
 
@@ -53,19 +53,19 @@ void on_flush(png_structp) {}
 struct Raw {
   png_uint_32 width = 0, height = 0;
   int channels = 0, bits = 0;
-  double gamma = 0;  // the gAMA chunk's, 0: none
+  double gamma = 0;  // from the gAMA chunk; 0: none
   bool srgb = false;
   std::vector<std::uint8_t> bytes;
 };
 
-/// Reads header and transformations into `raw`; false with session.message set on error.
+/// Reads the header and sets transformations into `raw`; false with session.message set on error.
 bool start_reading(PngSession& session, png_structp png, png_infop info, Raw& raw) {
   if (setjmp(session.back)) return false;
   png_set_read_fn(png, &session, on_read);
   png_set_user_limits(png, 65536, 65536);
   png_set_chunk_malloc_max(png, 8 << 20);
   png_read_info(png, info);
-  png_set_expand(png);  // palette to RGB, below 8 bits to 8, tRNS to alpha
+  png_set_expand(png);  // palette to RGB, less than 8 bits to 8, tRNS to alpha
   png_set_interlace_handling(png);
   raw.width = png_get_image_width(png, info);
   raw.height = png_get_image_height(png, info);
@@ -105,7 +105,7 @@ Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std
   if (!start_reading(session, handle.png, handle.info, raw)) fail(one_line(session.message));
   const std::uint64_t pixels = std::uint64_t(raw.width) * raw.height;
   if (pixels > max_pixels) fail(std::to_string(pixels) + " pixels, over the limit of " + std::to_string(max_pixels));
-  // Deflate makes at most 1032 bytes of one; a palette's index becomes at most 4 bytes, a bit at most 8 times
+  // Deflate expands a byte to at most 1032 bytes; a palette index becomes at most 4 bytes, and a 1-bit index 8 times
   // that.
   const std::size_t row = std::size_t(raw.width) * std::size_t(raw.channels * raw.bits / 8);
   if (row * raw.height / (1032 * 32) > bytes.size()) fail("claims more pixels than its bytes can hold; it is damaged");
@@ -131,7 +131,7 @@ std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
   return table;
 }
 
-constexpr int kDeflateLevel = 3;  ///< a quarter of level 6's time, 4 % more bytes of rendered frames
+constexpr int kDeflateLevel = 3;  ///< takes a quarter of level 6's time for 4 % more bytes of rendered frames
 
 bool write_all(PngSession& session, png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(session.back)) return false;

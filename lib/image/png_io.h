@@ -1,4 +1,4 @@
-// lib/image/png_io.h -- PNG to linear colour; png_io.cpp is the only user of libpng (save_png: preview.h).
+// lib/image/png_io.h -- reads PNG as linear colour; png_io.cpp is the only user of libpng (save_png: preview.h).
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace tempolux {
 
-/// Reads a PNG of any kind (grey, palette, 1 to 16 bits, interlaced) as linear R, G, B, premultiplied, with A
-/// if it has transparency. Samples are sRGB, or a power law where a gAMA chunk says another exponent. The
-/// text attribute "tempolux:source" says what was done. Size is checked against max_pixels and against the
-/// file's bytes first. Throws InputError "FILE: ..." for what is not a PNG, damaged or truncated.
+/// Reads a PNG of any kind (grey, palette, 1 to 16 bits, interlaced) as linear R, G, B, premultiplied, with A if it has
+/// transparency. Samples are sRGB, or a power law if a gAMA chunk gives another exponent; the text attribute
+/// "tempolux:source" says which. The size is first checked against max_pixels and the file's bytes. Throws InputError
+/// "FILE: ..." for other formats, damaged and truncated files.
 Image load_png(const std::string& path, std::uint64_t max_pixels);
 
-/// Pixels of a PNG in memory as they are coded, palette expanded. Checks and errors as load_png.
+/// The codes of a PNG in memory, with the palette expanded. Checks and errors as load_png.
 CodedPixels decode_png(std::span<const unsigned char> bytes, const std::string& place, std::uint64_t max_pixels);
 
 }  // namespace tempolux

@@ -13,16 +13,16 @@
 namespace tempolux {
 namespace {
 
-constexpr double kAutoTarget = 0.9;  // where the bright end of a picture goes, before the transfer
+constexpr double kAutoTarget = 0.9;  // linear value that the 98th percentile is mapped to
 constexpr double kAutoPercentile = 0.98;
-constexpr float kNothingDepth = 1e10f;  // what Blender writes where nothing is
+constexpr float kNothingDepth = 1e10f;  // depth that Blender writes where no surface is
 constexpr std::uint32_t kNothingId = 0xffffffffu;
 
 using Planes = std::vector<const std::vector<float>*>;
 
 std::string component(const std::string& layer, const char* name) { return layer.empty() ? name : layer + "." + name; }
 
-/// The planes LAYER.a, LAYER.b ... or none unless all are there.
+/// The planes LAYER.a, LAYER.b ...; empty unless all exist.
 Planes planes_of(const Image& image, const std::string& layer, std::initializer_list<const char*> names) {
   Planes planes;
   for (const char* name : names) {
@@ -33,10 +33,10 @@ Planes planes_of(const Image& image, const std::string& layer, std::initializer_
   return planes;
 }
 
-/// What a layer's name means in this image, decided once.
+/// The meaning of a layer's name in this image.
 struct Content {
   enum class Kind { colour, depth, vector, motion, ids } kind;
-  Planes planes;  // 3, 2 or 1; none of ids
+  Planes planes;  // 3, 2 or 1; empty for ids
   const std::vector<std::uint32_t>* ids = nullptr;
 };
 
@@ -69,7 +69,7 @@ float largest_component(const Planes& planes, std::size_t pixel) {
   return largest;
 }
 
-/// Value of nearest rank ceil(fraction n); 0 of no values. Reorders.
+/// The value of rank ceil(fraction n); 0 without values. Reorders the values.
 float percentile(std::vector<float>& values, double fraction) {
   if (values.empty()) return 0;
   const double rank = std::ceil(fraction * double(values.size()));
@@ -95,7 +95,7 @@ double stops_of(const Content& content) {
 
 std::uint8_t to_byte(float unit) { return std::uint8_t(std::lround(255 * std::clamp(unit, 0.0f, 1.0f))); }
 
-using Encoded = std::array<float, 3>;  // sRGB-encoded, to be clipped to [0, 1]
+using Encoded = std::array<float, 3>;  // sRGB-encoded, not yet clipped to [0, 1]
 
 /// Calls shade(i) for every pixel; black where it is not finite.
 template <class Shade>

@@ -1,4 +1,4 @@
-// lib/image/preview.h -- frames as 8-bit pictures to look at: tone curve, PNG, contact sheets.
+// lib/image/preview.h -- converts frames to 8-bit pictures for viewing: tone curve, PNG, contact sheets.
 #pragma once
 
 #include <cstdint>
@@ -18,37 +18,36 @@ struct Picture {
 
 struct PreviewOptions {
   std::string layer;                     ///< "" is RGB; or "indirect", "Z", "N", "id.object", "P" ...
-  std::optional<double> exposure_stops;  ///< absent: auto, so that the layer's 98th percentile luminance maps to 0.9
+  std::optional<double> exposure_stops;  ///< missing: auto, which maps the layer's 98th percentile of luminance to 0.9
 };
 
-/// Exposure in stops that "auto" chooses for a layer; use one value for a whole sequence.
-/// log2(0.9 / L), L the 98th percentile (nearest rank) over the pixels of the absolute luminance; of the
-/// largest |component| where the layer has negative values or is no colour. If L is 0, the largest value
-/// takes its place; 0 stops for a layer that is 0 everywhere, for Z, N, P and ids. Not finite values are left
-/// out. Throws InputError naming what there is if the image has neither layer nor channel of this name.
+/// Exposure in stops that "auto" chooses for a layer; a sequence should use one value. log2(0.9 / L), with L the 98th
+/// percentile (nearest rank) over the pixels of the absolute luminance, or of the largest |component| if the layer has
+/// negative values or is no colour. If L is 0, the largest value replaces it. 0 stops for a layer that is 0 everywhere,
+/// and for Z, N, P and ids. Values that are not finite do not count. Throws InputError listing layers and channels if
+/// the image has none of this name.
 double auto_exposure_stops(const Image& image, const std::string& layer);
 
-/// The layer as a picture, by what it holds:
-///   colour L.R .G .B    2^stops, then sRGB transfer, clipped to [0, 1]
-///   signed colour       (any value negative: differences) the component of largest magnitude d as 2^stops
-///   |d|, clipped,
-///                       sRGB transfer; 0 grey, above red, below blue
-///   Z                   linear between the 1st and the 99th percentile, near bright (1), far dark (0.1),
-///   nothing
-///                       (infinite or >= 1e10) black
-///   N or any L.X .Y .Z  of values in [-1, 1]: n/2 + 1/2; P and other vectors: each axis over the range of
-///   its values L.u .v (motion)     no motion grey; u on red, v on green, |u| 2^stops = 1 full ids a colour
-///   per id; 0xffffffff (nothing) black any other channel   grey, as colour
-/// Not finite values are black. Throws as auto_exposure_stops.
+/// Converts a layer to a picture by its kind:
+///     colour L.R .G .B     2^stops, then sRGB transfer, clipped to [0, 1]
+///     signed colour        (any value negative, as in differences) the component d of largest magnitude: 2^stops |d|,
+///     clipped, sRGB transfer; 0 grey, above red, below blue
+///     Z                    linear between the 1st percentile (bright, 1) and the 99th (dark, 0.1);
+///     no surface (infinite or >= 1e10) black
+///     N or any L.X .Y .Z   with values in [-1, 1]: n/2 + 1/2; P and other vectors: each axis over its range
+///     L.u .v (motion)      no motion grey; u on red, v on green, |u| 2^stops = 1 full
+///     ids                  a colour per id; 0xffffffff (no object) black
+///     any other channel    grey, as colour
+/// Values that are not finite are black. Throws as auto_exposure_stops.
 Picture make_picture(const Image& image, const PreviewOptions& options);
 
-/// Frames in a grid, `columns` wide (0: about square), 2 px black gaps, each shrunk to at most max_width px
-/// by a box filter over linear light, never enlarged, at the top left of its cell; cells are as large as the
-/// largest picture. Throws std::invalid_argument if there are no pictures, one is empty, columns < 0 or
+/// Puts frames into a grid, `columns` wide (0: about square), with black gaps of 2 px. Each frame is shrunk to at most
+/// max_width px by a box filter over linear light, never enlarged, and put at the top left of its cell; cells are as
+/// large as the largest picture. Throws std::invalid_argument if there are no pictures, one is empty, columns < 0 or
 /// max_width < 1.
 Picture contact_sheet(const std::vector<Picture>& pictures, int columns, int max_width);
 
-/// Draws a border, a fortieth of the width wide and 2 px at least, along the picture's edge, in amber.
+/// Draws an amber border along the picture's edge, a fortieth of the width wide and at least 2 px.
 void mark(Picture& picture);
 
 /// Writes a PNG (8-bit RGB) at exactly this path. Throws ResourceError.

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// The part of `from` samples that sample `to_index` of `to` covers, and its first sample's share.
+/// The samples of `from` that sample `to_index` of `to` covers, and the covered share of the first one.
 struct Span {
   int first, last;  ///< inclusive
   float first_share, last_share;
@@ -32,11 +32,11 @@ void put(TexelLevel& to, int bits, std::size_t sample, std::uint32_t code) {
   }
 }
 
-/// Any size from any other.
+/// Reduces any size to any smaller size.
 void reduce_any(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
   const auto channels = std::size_t(kind.channels);
   const bool has_alpha = channels % 2 == 0;
-  // A row of the result, not yet narrowed; and the same with colours times alpha, for cutouts.
+  // One row of the result before rounding; `shown` is the same with colours times alpha, for cutouts.
   std::vector<float> row(std::size_t(from.width) * channels), shown(kind.cutout ? row.size() : 0);
   for (int y = 0; y < to.height; ++y) {
     const Span tall(y, to.height, from.height);
@@ -75,7 +75,7 @@ void reduce_any(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
   }
 }
 
-/// Half as wide and half as high, as nearly all levels are: the same sums in the same order, 20 times as fast.
+/// Reduces to half the width and height, as for nearly all levels: the same sums in the same order, 20 times as fast.
 template <int kChannels, int kBits>
 void halve(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
   constexpr bool kAlpha = kChannels % 2 == 0;
@@ -143,7 +143,7 @@ const TexelCodes& TexelCodes::of(int bits, bool srgb) {
 std::uint32_t TexelCodes::nearest(float of) const {
   if (!(of > 0)) return 0;
   std::uint32_t code = start_[std::size_t(std::min(of, 1.0f) * kSteps)];
-  code += of >= from_[code + 1];  // of 8 bits no step holds more than one border
+  code += of >= from_[code + 1];  // with 8 bits no step holds more than one border
   while (of >= from_[code + 1]) ++code;
   return std::max(code, 1u);
 }

@@ -1,5 +1,4 @@
-// lib/image/statistics.h -- channels in figures: what is in one image, where two differ, one exposure for
-// many.
+// lib/image/statistics.h -- statistics of channels, differences of two images, and one exposure for a sequence.
 #pragma once
 
 #include <array>
@@ -11,7 +10,7 @@
 
 namespace tempolux {
 
-/// Statistics of one channel over its finite values. min, max and mean are 0 if there is none.
+/// Statistics of one channel over its finite values; min, max and mean are 0 without any.
 struct ChannelStatistics {
   std::string name;
   bool ids = false;
@@ -21,18 +20,18 @@ struct ChannelStatistics {
 /// One entry per channel, in the image's order. Sums are doubles in pixel order.
 std::vector<ChannelStatistics> channel_statistics(const Image& image);
 
-/// Where one channel differs between two images of the same size.
+/// Difference of one channel between two images of the same size.
 struct ChannelDifference {
   std::string name;
-  std::uint64_t differing = 0;  ///< pixels whose bits differ, but for -0 and 0; NaN equals NaN
-  double largest = 0;           ///< largest |a - b| over pixels where both are finite; of ids too
-  int x = 0, y = 0;             ///< pixel of the largest (the first in row order), from the top left
+  std::uint64_t differing = 0;  ///< pixels whose bits differ; -0 equals 0 and NaN equals NaN
+  double largest = 0;           ///< largest |a - b| over pixels where both are finite; also for ids
+  int x = 0, y = 0;             ///< first pixel of the largest difference in row order, from the top left
 };
 /// For each channel of both images, by the order of `a`. Throws std::invalid_argument if the sizes differ.
 std::vector<ChannelDifference> channel_differences(const Image& a, const Image& b);
 
-/// One exposure for all frames of a sequence: the lower median of the frames' own (auto_exposure_stops), so
-/// that a single flash does not darken the rest. Throws std::invalid_argument if there is none.
+/// One exposure for all frames of a sequence: the lower median of the frames' own exposures (auto_exposure_stops), so
+/// that a single flash does not darken the other frames. Throws std::invalid_argument without any.
 double sequence_exposure_stops(std::vector<double> stops);
 
 /// Flux as a display colour: flux / white, sRGB transfer, clipped to [0, 1], in 1/255. 0 if white is not > 0.

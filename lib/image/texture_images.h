@@ -1,4 +1,4 @@
-// lib/image/texture_images.h -- the images of a scene's textures, each decoded when it is first looked at.
+// lib/image/texture_images.h -- the images of a scene's textures; each is decoded at its first use.
 #pragma once
 
 #include <atomic>
@@ -14,27 +14,27 @@
 namespace tempolux {
 
 struct TextureLimits {
-  int max_side = 16384;                   ///< px: larger images are refused before anything is decoded
-  std::uint64_t max_pixels = 1ull << 28;  ///< of one image: more are refused
+  int max_side = 16384;                   ///< px on a side: larger images are refused before they are decoded
+  std::uint64_t max_pixels = 1ull << 28;  ///< of one image: larger images are refused
   int reduce_to = 1 << 30;                ///< px on a side: larger images are reduced when they are decoded
-  std::uint64_t max_bytes = 4ull << 30;   ///< of all decoded pyramids together
+  std::uint64_t max_bytes = 4ull << 30;   ///< of all decoded pyramids together; more is an error
 };
 
-/// Thread-safe. What no one looks at is never decoded.
+/// Thread-safe. Images that are not used are never decoded.
 class TextureImages {
  public:
   explicit TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits = {});
 
   std::size_t size() const { return images_.size(); }
   const EncodedImage& encoded(std::size_t image) const { return images_[image]; }
-  /// The image as a texture, decoded by the first call. Throws InputError if it is damaged or the limit of bytes is
-  /// reached, naming the image; ResourceError without memory.
+  /// The image as a texture; the first call decodes it. Throws InputError naming the image if it is damaged or the
+  /// limit of bytes is reached; ResourceError without memory.
   const TexturePyramid& pyramid(std::size_t image, TextureTransfer transfer) const {
     const Entry& entry = entries_[kTextureTransfers * image + std::size_t(transfer)];
     const TexturePyramid* ready = entry.ready.load(std::memory_order_acquire);
     return ready ? *ready : decode(image, transfer);
   }
-  /// Images decoded so far (one read both as colour and as numbers counts twice), and bytes they take.
+  /// Number of images decoded so far (an image read both as colour and as numbers counts twice), and their bytes.
   std::size_t decoded_count() const { return decoded_; }
   std::uint64_t decoded_bytes() const { return bytes_; }
 
@@ -48,7 +48,7 @@ class TextureImages {
 
   std::vector<EncodedImage> images_;
   TextureLimits limits_;
-  std::unique_ptr<Entry[]> entries_;  ///< kTextureTransfers for each image
+  std::unique_ptr<Entry[]> entries_;  ///< kTextureTransfers entries for each image
   mutable std::atomic<std::size_t> decoded_{0};
   mutable std::atomic<std::uint64_t> bytes_{0};
 };

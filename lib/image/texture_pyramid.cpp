@@ -9,13 +9,13 @@
 namespace tempolux {
 namespace {
 
-/// Texels left and right of a coordinate, and the right one's share.
+/// The texels left and right of a coordinate, and the weight of the right one.
 struct Pair {
   int a, b;
   float share;
 };
 
-/// A coordinate brought to [0, 1].
+/// Wraps a coordinate to [0, 1].
 float wrapped(float u, TextureWrap wrap) {
   if (!std::isfinite(u)) return 0;
   if (wrap == TextureWrap::repeat) return u - std::floor(u);
@@ -106,10 +106,10 @@ Rgba TexturePyramid::read(Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v, bool 
 }
 
 bool TexturePyramid::any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, TextureWrap wrap_v) const {
-  constexpr int kWindow = 8;  // texels on a side to look at
+  constexpr int kWindow = 8;  // texels on a side that are tested
   const Vec2 size{upper.x - lower.x, upper.y - lower.y};
   if (!std::isfinite(lower.x + lower.y + upper.x + upper.y)) return true;
-  // The finest level at which the window is small; one texel more on each side for what a read mixes in.
+  // Uses the finest level at which the window is small, and one more texel on each side, which a read may mix in.
   std::size_t l = 0;
   while (l + 1 < levels_.size() &&
          (size.x * float(levels_[l].width) > float(kWindow) || size.y * float(levels_[l].height) > float(kWindow)))

@@ -1,4 +1,4 @@
-// lib/image/texture_pyramid.h -- an image as a texture: levels of halved size, read anywhere on the plane.
+// lib/image/texture_pyramid.h -- an image as a texture with levels of halved size.
 #pragma once
 
 #include <array>
@@ -12,19 +12,19 @@
 
 namespace tempolux {
 
-/// What the codes of an image mean. srgb_cutout: sRGB colours of which alpha shows a part (alpha modes MASK and BLEND):
-/// what it hides has no share in the means of coarser levels, or leaves would turn the colour of what is between them.
+/// Meaning of an image's codes. srgb_cutout: sRGB colours whose alpha hides a part (alpha modes MASK and BLEND). Hidden
+/// texels do not count in the means of coarser levels; otherwise the colour between leaves would tint the leaves.
 enum class TextureTransfer : std::uint8_t { linear, srgb, srgb_cutout };
 inline constexpr std::size_t kTextureTransfers = 3;
 
 /// Linear R, G, B and alpha, each in [0, 1].
 using Rgba = std::array<float, 4>;
 
-/// Level 0 is the image, reduced by a box filter where it is larger than max_side; every further level is half as wide
-/// and high (rounded down, at least 1), each texel the mean of the linear light over the area it covers (of a cutout,
-/// weighted by alpha; the plain mean where all is hidden). Texels keep
-/// the code of the image (sRGB or linear, 8 or 16 bits; rounded to nearest, but never to 0 what is above it: a texel
-/// is 0 only if all it covers is 0). Alpha is linear always. (0, 0) is the top left corner, (1, 1) the lower right.
+/// Level 0 is the image, reduced by a box filter if it is larger than max_side. Every further level is half as wide and
+/// high (rounded down, at least 1); each texel is the mean of the linear light over its area (for a cutout weighted by
+/// alpha, or the plain mean where all texels are hidden). Texels are stored as codes of the image's kind (sRGB or
+/// linear, 8 or 16 bits), rounded to nearest, but to 0 only if all texels of the area are 0. Alpha is always linear.
+/// (0, 0) is the top left corner, (1, 1) the lower right.
 class TexturePyramid {
  public:
   TexturePyramid(CodedPixels pixels, TextureTransfer transfer, int max_side);
@@ -36,11 +36,11 @@ class TexturePyramid {
 
   /// One texel; x and y must lie inside.
   Rgba texel(int level, int x, int y) const;
-  /// Bilinear in the two levels around `level` (log2 of texels of the image per texel wanted; below 0: the image
-  /// itself), and linear between them. Coordinates that are not finite read (0, 0).
+  /// Reads bilinearly in the two levels around `level` and interpolates linearly between them. `level` is log2 of the
+  /// image's texels per wanted texel; below 0 the image itself is read. Coordinates that are not finite read (0, 0).
   Rgba read(Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v, bool nearest, float level) const;
-  /// Does any texel that a bilinear read of the image between these coordinates can touch have a colour above 0? May
-  /// say yes for the sake of a neighbour; never no wrongly. lower <= upper, before wrapping.
+  /// False only if every texel that a bilinear read of the image between these coordinates can touch is black. May be
+  /// true because of a neighbouring texel. lower <= upper, before wrapping.
   bool any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, TextureWrap wrap_v) const;
 
  private:

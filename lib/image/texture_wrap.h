@@ -1,4 +1,4 @@
-// lib/image/texture_wrap.h -- what a texture shows beyond [0, 1].
+// lib/image/texture_wrap.h -- how a texture continues outside [0, 1].
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kKnown = formats::kWhys.size();
 constexpr std::array<std::uint8_t, 3> kUnknownColor{120, 80, 40};
 
-/// Index into kWhys of a pixel's first cause; kKnown if it has bits without a name alone.
+/// Index into kWhys of a pixel's first cause; kKnown if it only has unnamed bits.
 std::size_t first_cause(std::uint32_t why) {
   std::size_t i = 0;
   while (i < kKnown && !(why & formats::kWhys[i].bit)) ++i;

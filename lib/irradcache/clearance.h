@@ -1,4 +1,4 @@
-// lib/irradcache/clearance.h -- how far one can go from a place over its surface before something is in the way.
+// lib/irradcache/clearance.h -- the unobstructed part of the surface around a place.
 #pragma once
 
 #include <algorithm>
@@ -12,24 +12,23 @@
 
 namespace tempolux {
 
-/// What was seen from a place along sixteen spokes across its surface: light known there may be taken for light at
-/// places inside the polygon of the spokes' ends, and nowhere else. Between two spokes a straight wall is found
-/// exactly.
+/// How far the surface around a place is unobstructed, along sixteen spokes. Light measured at the place may be used
+/// inside the polygon of the spokes' ends, and nowhere else. A straight wall between two spokes is found exactly.
 struct Clearance {
   static constexpr std::uint32_t kSpokes = 16;
-  static constexpr std::uint64_t kFull = 255;  ///< a spoke that nothing ended
+  static constexpr std::uint64_t kFull = 255;  ///< a spoke that met no obstacle
   using Shares = std::array<std::uint64_t, 2>;
-  static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};  ///< no spoke was ended
-  /// cosine between the normals of two places of one surface, at least: more is a bend, not a wall.
+  static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};  ///< no spoke met an obstacle
+  /// Least cosine between the normals of two places of one surface: a larger angle is a wall, not a bend.
   static constexpr float kBend = 0.7f;
-  /// tangent of the angle by which spokes rise: lower things do not part light.
+  /// tangent of the angle at which spokes rise: lower obstacles do not separate light.
   static constexpr float kRise = 0.05f;
 
-  float reach = INFINITY;  ///< m: how far was looked
+  float reach = INFINITY;  ///< m: length of an unobstructed spoke
   Shares shares =
-      kOpen;  ///< spoke k: byte k mod 8 of word k / 8, the lowest first: its length in 1/255 of reach, rounded down
+      kOpen;  ///< length of spoke k in 1/255 of reach, rounded down: byte k mod 8 of word k / 8, the lowest first
 
-  /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)|, f = (k mod 4) / 4, turned by k / 4
+  /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)| with f = (k mod 4) / 4, turned by k / 4
   /// quadrants.
   static Vec2 spoke(std::uint32_t k) {
     const float f = float(k % 4) / 4, x = (1 - f) / kLength[k % 4], y = f / kLength[k % 4];
@@ -45,20 +44,22 @@ struct Clearance {
     std::uint64_t& word = shares[k / 8];
     word = (word & ~(kFull << 8 * (k % 8))) | share << 8 * (k % 8);
   }
-  /// To look this many radii far: then the polygon holds the disc of that radius.
+  /// Reach in radii, so that the polygon of unobstructed spokes holds the disc of one radius.
   static constexpr float kPerRadius = 1.0277402f;  // 1 / cos of half of 26.6 degrees, the widest angle between spokes
 
-  /// Is the place `d` [m] away inside? normal: the place's own, as when it was looked. Height above the plane does not
-  /// count.
+  /// True if a place at offset `d` [m] is inside the polygon. `normal` is the centre's normal. Height above its plane
+  /// is ignored.
   bool contains(Vec3 d, Vec3 normal) const {
     if (shares == kOpen) return length2(d) < reach * reach;
     const Frame frame(normal);
     float x = dot(d, frame.tangent), y = dot(d, frame.bitangent);
     std::uint32_t first = 0;
-    for (; first < 12 && !(x > 0 && y >= 0); first += 4) x = std::exchange(y, -x);  // back by a quadrant each
+    // turns back by a quadrant each time
+    for (; first < 12 && !(x > 0 && y >= 0); first += 4) x = std::exchange(y, -x);
     const float sum = std::abs(x) + std::abs(y);
     if (!(sum > 0)) return true;
-    // d = sum ((1 - t) v_k + t v_k+1), v the spokes of |x| + |y| = 1: inside if sum ((1 - t) / r_k + t / r_k+1) < 1.
+    // d = sum ((1 - t) v_k + t v_k+1) with v the spokes on |x| + |y| = 1; d is inside if sum ((1 - t) / r_k + t /
+    // r_k+1) < 1.
     const float along = std::min(std::abs(y) / sum * 4, 3.9999998f), t = along - std::floor(along);
     const std::uint32_t k = std::uint32_t(along);
     return sum * ((1 - t) * inverse(first + k, k) + t * inverse((first + k + 1) % kSpokes, (k + 1) % 4)) < reach;
@@ -67,7 +68,7 @@ struct Clearance {
 
  private:
   static constexpr std::array<float, 4> kLength{1, 0.79056942f, 0.70710678f, 0.79056942f};
-  /// reach / length of spoke k in multiples of v_k
+  /// reach / length of spoke k, in multiples of v_k.
   float inverse(std::uint32_t k, std::uint32_t of_quadrant) const {
     return kLength[of_quadrant] * float(kFull) / std::max(float(shares[k / 8] >> 8 * (k % 8) & kFull), 1e-6f);
   }

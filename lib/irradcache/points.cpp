@@ -9,23 +9,23 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kNormalBins = 8;  ///< per octahedral coordinate
+constexpr std::uint32_t kNormalBins = 8;  ///< bins per octahedral coordinate
 constexpr float kFacesCell =
-    0.5f;  ///< cosine between a cell's direction and a point's normal, at least: a bin is 50 degrees wide
-constexpr int kCandidates = 8;  ///< points near a hit that are asked
+    0.5f;  ///< least cosine between a cell's direction and a point's normal: a bin is 50 degrees wide
+constexpr int kCandidates = 8;  ///< points around a hit that are tried
 constexpr int kMaxProbes = 16;
 constexpr float kCellsPerSpacing = 1.4f;
-constexpr int kCellBits = 19;          ///< of a cell's number along an axis
-constexpr float kRounding = 0x1p-20f;  ///< of coordinates
+constexpr int kCellBits = 19;          ///< bits of a cell's number along an axis
+constexpr float kRounding = 0x1p-20f;  ///< relative rounding of coordinates
 
-constexpr float kBeside = 1.5f;  ///< spacings: how far off the neighbours are that are compared
-constexpr double kPhotons = 50;  ///< of an estimate: PointOptions::neighbours as it is shipped
-constexpr double kSure = 3;      ///< standard errors
-constexpr std::size_t kProof =
-    2;  ///< neighbours that a point needs, of the 7 that a wide surface has: fewer show nothing
-constexpr float kOnePlane = 0.95f;  ///< cosine between normals: what faces elsewhere is not in a shadow's edge
+constexpr float kBeside = 1.5f;    ///< spacings: distance within which points count as neighbours
+constexpr double kPhotons = 50;    ///< photons of an estimate: the default of PointOptions::neighbours
+constexpr double kSure = 3;        ///< standard errors that count as certain
+constexpr std::size_t kProof = 2;  ///< neighbours that a point needs; on a wide surface it has 7
+/// Least cosine between normals of neighbours: the light of other faces shows no shadow's edge
+constexpr float kOnePlane = 0.95f;
 
-/// 3 bits of each octahedral coordinate.
+/// Bin of a normal: 3 bits of each octahedral coordinate.
 std::uint32_t normal_bin(Vec3 n) {
   const float scale = 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
   float u = n.x * scale, v = n.y * scale;
@@ -96,14 +96,14 @@ PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal) const {
   return question;
 }
 
-bool PointLookup::stands_for(const Light& light, const Question& q) const {
+bool PointLookup::represents(const Light& light, const Question& q) const {
   if (!look_) return dot(light.normal, q.normal) > 0;
   const Vec3 d = q.position - light.position;
   const float reach = kReach * spacing_;
   if (!(length2(d) < reach * reach) || !(dot(light.normal, q.normal) > Clearance::kBend) ||
       std::abs(dot(d, light.normal + q.normal)) >
           2 * (Clearance::kRise * length(d) + kRounding * max_component(abs(q.position))))
-    return false;  // higher or lower than spokes look: there may be a sheet between
+    return false;  // above or below the spokes: there may be another surface between
   Clearance::Shares shares{light.clearance[0].load(std::memory_order_relaxed),
                            light.clearance[1].load(std::memory_order_relaxed)};
   if (shares[0] == kNotLooked || shares[1] == kNotLooked) {
@@ -114,7 +114,7 @@ bool PointLookup::stands_for(const Light& light, const Question& q) const {
   return Clearance{reach, shares}.contains(d, light.normal);
 }
 
-/// The point nearest to the middle of a cell among those that face its way: point + 1, or 0.
+/// Finds the point nearest to the middle of a cell, among those with a normal in the cell's bin: point + 1, or 0.
 std::uint32_t PointLookup::search_cell(std::uint64_t cell) const {
   thread_local NeighbourList found;
   Vec3 middle;
@@ -126,7 +126,7 @@ std::uint32_t PointLookup::search_cell(std::uint64_t cell) const {
   return found.count() == 0 ? 0 : index_.source(found.photons()[0]) + 1;
 }
 
-/// The nearest that stands for the hit.
+/// Finds the nearest point that represents the hit.
 const PointLookup::Light* PointLookup::search(const Question& q) const {
   thread_local NeighbourList found;
   PhotonQuery query = facing(q.position, q.normal, look_ ? Clearance::kBend : 0);
@@ -134,7 +134,7 @@ const PointLookup::Light* PointLookup::search(const Question& q) const {
   index_.find_nearest(query, kCandidates, found);
   found.sort_by_distance();
   for (const std::uint32_t i : found.photons())
-    if (const Light& light = lights_[index_.source(i)]; stands_for(light, q)) return &light;
+    if (const Light& light = lights_[index_.source(i)]; represents(light, q)) return &light;
   return nullptr;
 }
 
@@ -169,7 +169,8 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
     indirect.add(points_[i].indirect);
   }
   const bool proven = beside.size() >= kProof;
-  // What hides behind this surface, as the outer leaf of a double wall, tells nothing of it: another object, as a rule.
+  // Points hidden behind the surface, as on the other face of a double wall, are no neighbours; usually they belong to
+  // another object.
   std::erase_if(beside, [&](std::uint32_t i) { return points_[i].object != points_[light.point].object; });
   const bool torn = !indirect.even() && std::any_of(beside.begin(), beside.end(), [&](std::uint32_t bright) {
     return std::any_of(beside.begin(), beside.end(),
@@ -180,7 +181,8 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   return uneven;
 }
 
-/// Where the first place of the table does not tell: a further one does, or the cell is searched and remembered.
+/// Called if the first entry of the table is of another cell: reads a later entry, or searches the cell and stores the
+/// result.
 PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
   if (q.cell == 0) {
     const Light* light = search(q);
@@ -192,7 +194,7 @@ PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
     std::uint64_t there = entry.cell.load(std::memory_order_relaxed);
     if (there == 0 && entry.cell.compare_exchange_strong(there, q.cell, std::memory_order_relaxed)) there = q.cell;
     if (there != q.cell) continue;
-    // Another thread may be at the same cell: it comes to the same answer.
+    // Another thread may search the same cell at the same time; both find the same point.
     if (const std::uint32_t known = entry.answer.load(std::memory_order_relaxed)) return {known - 1};
     const std::uint32_t found = search_cell(q.cell);
     entry.answer.store(found + 1, std::memory_order_relaxed);

@@ -1,4 +1,4 @@
-// lib/irradcache/points.h -- irradiance points: what a gather ray reads at its hit.
+// lib/irradcache/points.h -- irradiance points, which gather rays read at their hits.
 #pragma once
 
 #include <array>
@@ -16,61 +16,60 @@
 
 namespace tempolux {
 
-/// Irradiance at one side of a surface point, by kind of the light that arrives [W/m^2].
+/// Irradiance on one side of a surface point, by kind of light [W/m^2].
 struct IrradiancePoint {
   Vec3 position;             ///< m, scene space
-  Vec3 normal;               ///< unit, geometric, on the side that is lit
+  Vec3 normal;               ///< unit, geometric, on the lit side
   std::uint32_t object = 0;  ///< id.object
-  float radius = 0;          ///< m: of the density estimate behind `indirect`; 0: none was possible
-  Rgb direct{0.0f};          ///< L D, by light sampling
-  Rgb caustic{0.0f};         ///< L S+ D, by density
-  Rgb indirect{0.0f};        ///< everything else, by density
+  float radius = 0;          ///< m: radius of the density estimate of `indirect`; 0: the estimate found no photons
+  Rgb direct{0.0f};          ///< by light sampling (paths L D)
+  Rgb caustic{0.0f};         ///< by density estimation (paths L S+ D)
+  Rgb indirect{0.0f};        ///< by density estimation: all other paths
   Rgb total() const { return direct + caustic + indirect; }
 };
 
-/// What is seen around a place: its clearance up to `reach` [m]. lib/gather's point_clearance().
+/// Computes the clearance of a place up to `reach` [m]: lib/gather's point_clearance().
 using ClearanceTest = std::function<Clearance(Vec3 position, Vec3 normal, float reach)>;
 
-/// Finds the point that stands for a hit: one that faces the same way, lies in the same plane, and from which the hit
-/// can be reached along the surface (Clearance). Where no point stands for the hit there is no answer: whoever asks
-/// follows the light further.
-///
-/// The point nearest to the middle of the hit's cell (a cube of 1/1.4 spacing, one of 64 directions) is asked first. A
-/// cell's first choice depends on the cell alone and is remembered, so that most look-ups are one table access; what a
-/// point sees around it depends on the point alone and is looked at when it is first read. If that one does not stand
-/// for the hit, the eight nearest to the hit are asked. Answers are the same for any number of threads.
+/// Finds the point that represents a hit: a point that faces the same way, lies in the same plane, and from which the
+/// hit can be reached along the surface (Clearance). If there is none, the caller follows the light further.
+/// A hit's cell is a cube of 1/1.4 spacing, for one of 64 directions. The point nearest to the middle of the cell is
+/// tried first. It depends on the cell alone and is remembered, so most look-ups read one table entry. A point's
+/// clearance depends on the point alone and is computed when it is first needed. If the first point does not represent
+/// the hit, the eight points nearest to the hit are tried. Results are the same for any number of threads.
 class PointLookup {
  public:
-  /// What a gather ray reads: a cache line.
+  /// The data that a gather ray reads, in one cache line.
   struct alignas(64) Light {
     Vec3 position, normal;
-    Rgb all{0.0f};                                                  ///< W/m^2, of all kinds
-    float radius = 0;                                               ///< as IrradiancePoint's
-    std::uint32_t point = 0;                                        ///< index of the IrradiancePoint
-    mutable std::array<std::atomic<std::uint64_t>, 2> clearance{};  ///< Clearance::shares; kNotLooked: either
+    Rgb all{0.0f};            ///< W/m^2, sum of all kinds
+    float radius = 0;         ///< m: IrradiancePoint::radius
+    std::uint32_t point = 0;  ///< index of the IrradiancePoint
+    /// Clearance::shares; kNotLooked if not yet computed
+    mutable std::array<std::atomic<std::uint64_t>, 2> clearance{};
     mutable std::atomic<std::uint8_t> uneven{kNotAsked};
     bool beside_lamp = false;  ///< note_lamp()
   };
 
-  /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this. Without a test a
-  /// point stands for all that faces its way and is asked first or near, whatever is between.
+  /// `spacing` [m], > 0: mean distance of neighbouring points. `points` must outlive this object. Without `look`,
+  /// clearance is not tested.
   PointLookup(std::span<const IrradiancePoint> points, float spacing, ClearanceTest look = {});
 
-  /// A look-up in three steps. Memory is slow: ask for several places, then take the answers, then read them;
-  /// each step fetches what the next needs.
+  /// A look-up in three steps: ask for several hits, then take all answers, then read them. Each step prefetches the
+  /// memory that the next step needs.
   struct Question {
     Vec3 position, normal;
-    std::uint64_t cell = 0;  ///< 0: too far out to have one
+    std::uint64_t cell = 0;  ///< 0: too far from the origin to have a cell
   };
   struct Answer {
-    std::uint32_t value = 0;  ///< point + 1; 0: none faces this way
+    std::uint32_t value = 0;  ///< point + 1; 0: no point faces this way
   };
-  /// normal: unit, on the lit side. All thread-safe.
+  /// `normal` is unit, on the lit side. ask, answer and read are thread-safe.
   Question ask(Vec3 position, Vec3 normal) const;
   Answer answer(const Question& question) const;
-  /// nullptr if no point stands for the hit.
+  /// nullptr if no point represents the hit.
   const Light* read(const Question& question, Answer answer) const;
-  /// The three at once.
+  /// All three steps for one hit.
   const Light* find(Vec3 position, Vec3 normal) const {
     const Question question = ask(position, normal);
     return read(question, answer(question));
@@ -81,64 +80,65 @@ class PointLookup {
   const Light& light(std::uint32_t point) const { return lights_[point]; }
   const IrradiancePoint& point(const Light& read) const { return points_[read.point]; }
   std::span<const IrradiancePoint> points() const { return points_; }
-  /// Is a point's light of a kind that of the places near it? Not where some of the points beside it (within 1.5
-  /// spacings) get kContrast times as much of it as others, of indirect light surely kContrastOfIndirect times
-  /// (apart()): there a shadow or a bright spot ends. Nor where fewer than two points are beside it, for its direct
-  /// light: what shows that one point in a wall's shadow is not all of the wall? Direct light: a hit is to sample it
-  /// itself. Read instead, light would reach a spacing into shadows and out of gaps, where much of what sees it is: the
-  /// ground in a chair's shadow is seen by the chair. Indirect light (beside points of the same object alone): a ray is
-  /// to go on from the hit. A lamp a finger below the ceiling lights the gap behind it a hundred times as strongly as
-  /// what is seen of the ceiling; read instead, that light would reach a spacing out of the gap. A point's own light
-  /// has no say in it: it is known by a few shadow rays or photons, and were those that came out bright replaced, what
-  /// is read would be dark in the mean.
-  bool is_even(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
-  bool is_even_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
+  /// True if light of one kind changes little around a point. False if some neighbours (points within 1.5 spacings) get
+  /// kContrast times as much of it as others (indirect light: certainly kContrastOfIndirect times, see apart()), since
+  /// a shadow or a bright spot ends there. Direct light also needs at least two neighbours: a single point in a wall's
+  /// shadow does not represent the whole wall.
+  /// If direct light is uneven, the hit samples it by a shadow ray instead. The point's light would reach a spacing
+  /// into shadows, where it matters: a chair sees mostly the ground in its own shadow. If indirect light is uneven
+  /// (compared among points of one object), the gather ray continues. A lamp a finger's width below the ceiling lights
+  /// the ceiling behind it a hundred times as strongly as the visible ceiling; the point's light would spread a spacing
+  /// beyond the gap.
+  /// A point's own light is not compared: it is estimated from a few shadow rays or photons. If points that came out
+  /// too bright were left out, the mean of the light read would be too dark.
+  bool is_uniform(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
+  bool is_uniform_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
   static constexpr float kContrast = 8;
-  /// From now on the direct light of this point is not that of the places it stands for: a lamp so near lights a spot
-  /// smaller than the spacing, which a point misses as a rule and stands for all of it where it does not. Not to be
-  /// called while others look up.
+  /// Marks a point's direct light as uneven. A lamp so close lights a spot smaller than the spacing: most spots contain
+  /// no point, and a point in one would represent too large an area. Must not be called during look-ups.
   void note_lamp(std::uint32_t point) { lights_[point].beside_lamp = true; }
-  /// A ray that goes on costs several that are read, and what leaks from a place of moderate contrast is little. With 8
-  /// instead of 32 S8's frame took 17 % and S4's records 11 % more CPU at the same error; CornellBox's gap has 100.
+  /// Continuing a gather ray costs several reads, and leaks at moderate contrast are small. With 8 instead of 32 S8's
+  /// frame took 17 % and S4's records 11 % more CPU at the same error; the gap in CornellBox has a contrast of 100.
   static constexpr float kContrastOfIndirect = 32;
-  /// Is indirect light at `bright` that many times what it is at `dark`, by three standard errors? An estimate of k =
-  /// PointOptions::neighbours photons errs by 1 / sqrt(k) of itself; one that found fewer has the widest radius of all,
-  /// and does not say how many: as `bright` it proves nothing. As `dark` it is taken for one of photons like those of
-  /// `bright`: each adds e = E_bright r_bright^2 / (k r_dark^2), and the variance of n of them is (n + 1) e^2 (one
-  /// more, as none found does not prove that there is none):
+  /// True if indirect light at `bright` is kContrastOfIndirect times the light at `dark`, with three standard errors.
+  /// An estimate from k = PointOptions::neighbours photons has a relative error of 1 / sqrt(k). An estimate with fewer
+  /// photons has the widest radius of all points and an unknown number of photons, so as `bright` it proves nothing. As
+  /// `dark` its photons are taken to be like those of `bright`: each adds e = E_bright r_bright^2 / (k r_dark^2), and n
+  /// photons have the variance (n + 1) e^2 (one is added because finding no photon does not prove that there is none):
   ///     E_bright - c E_dark > 3 sqrt(E_bright^2 / k + c^2 (E_dark e + e^2)),   c = kContrastOfIndirect
   bool apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const;
 
   /// A hit reads its point only if the hit is farther away than about this many radii of the point's density estimate.
-  /// Nearer hits would show the blur of the estimate.
+  /// At closer hits the blur of the estimate would be visible.
   static constexpr float kNear = 2;
-  /// Is a hit at `distance` m along the way from the last Lambert lobe so near? u in [0, 1) moves the limit between
-  /// half and one and a half of it, so that it shows no seam.
+  /// True if a hit at `distance` m from the last Lambert lobe along the path is too close to read its point. u in [0,
+  /// 1) moves the limit between half and one and a half of its value, so that it leaves no visible seam.
   static bool is_near(const Light& light, float distance, float u, float radii = kNear) {
     return distance < radii * light.radius * (0.5f + u);
   }
-  /// Share of the u for which a hit is not near; radius: Light::radius.
+  /// Share of the values of u for which a hit is not too close; `radius` is Light::radius.
   static float share_of_far(float radius, float distance) {
     return radius > 0 ? std::clamp(distance / (kNear * radius) - 0.5f, 0.0f, 1.0f) : 1.0f;
   }
 
-  static constexpr float kReach = 2;  ///< spacings: farther off no point stands for a hit
+  static constexpr float kReach = 2;  ///< spacings: largest distance between a hit and the point that represents it
 
  private:
-  static constexpr std::uint8_t kNotAsked = 0, kKnown = 1, kDirect = 2, kIndirect = 4;  ///< of Light::uneven: the last
-                                                                                        ///< two are bits beside kKnown
-  static constexpr std::uint64_t kNotLooked = 0;  ///< eight spokes of no length are kept as one of 1/255
+  /// Values of Light::uneven; kDirect and kIndirect are bits added to kKnown.
+  static constexpr std::uint8_t kNotAsked = 0, kKnown = 1, kDirect = 2, kIndirect = 4;
+  /// Value of Light::clearance before it is computed. A clearance of eight spokes without length is stored as 1/255.
+  static constexpr std::uint64_t kNotLooked = 0;
   struct Entry {
     std::atomic<std::uint64_t> cell{0};
-    std::atomic<std::uint32_t> answer{0};  ///< Answer::value + 1; 0: not there yet
+    std::atomic<std::uint32_t> answer{0};  ///< Answer::value + 1; 0: not yet computed
   };
   std::uint8_t unevenness(const Light& light) const {
     const std::uint8_t known = light.uneven.load(std::memory_order_relaxed);
     return known == kNotAsked ? compare_neighbours(light) : known;
   }
-  float widest_ = 0;  ///< m: of the points' radii
+  float widest_ = 0;  ///< m: largest radius of the points
   std::uint8_t compare_neighbours(const Light& light) const;
-  bool stands_for(const Light& light, const Question& question) const;
+  bool represents(const Light& light, const Question& question) const;
   Answer answer_anew(const Question& question) const;
   std::uint32_t search_cell(std::uint64_t cell) const;
   const Light* search(const Question& question) const;
@@ -164,7 +164,7 @@ inline PointLookup::Answer PointLookup::answer(const Question& question) const {
 inline const PointLookup::Light* PointLookup::read(const Question& question, Answer answer) const {
   if (!answer.value) return nullptr;
   const Light& light = lights_[answer.value - 1];
-  return stands_for(light, question) ? &light : search(question);
+  return represents(light, question) ? &light : search(question);
 }
 
 }  // namespace tempolux

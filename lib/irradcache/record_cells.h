@@ -1,4 +1,4 @@
-// lib/irradcache/record_cells.h -- cells of a RecordStore's levels. Shared by records.cpp and record_lists.cpp.
+// lib/irradcache/record_cells.h -- the cells of a RecordStore's levels, for records.cpp and record_lists.cpp.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,10 @@
 namespace tempolux {
 
 inline constexpr std::size_t kFirstBuckets = 256;
-inline constexpr float kOffPlane = 0.05f;  ///< of the radius: how far off the plane between the normals a point may be
-inline constexpr double kSphereRounding = 1e-6;  ///< distances are of float: a sphere may reach this much farther
+/// Largest distance of a point from the plane between the normals, over the radius.
+inline constexpr float kOffPlane = 0.05f;
+/// relative rounding of float distances: a sphere may reach this much farther
+inline constexpr double kSphereRounding = 1e-6;
 
 /// One cell of a level.
 struct Cell {
@@ -20,19 +22,19 @@ struct Cell {
 };
 
 inline Cell cell_at(Vec3d local, double inverse) {
-  // Beyond 2^60 cells (records far outside the scene) all is one cell.
+  // Records far outside the scene share one cell beyond number 2^60.
   const auto index = [&](double x) { return std::int64_t(std::floor(std::clamp(x * inverse, -0x1p60, 0x1p60))); };
   return {index(local.x), index(local.y), index(local.z)};
 }
 
-/// The cells that a validity sphere meets.
+/// Calls body for each cell that a validity sphere meets.
 template <class Body>
 void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& body) {
   const double reach = double(radius) * (1 + kSphereRounding);
   const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, inverse_cell);
   const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, inverse_cell);
   const double width = 1 / inverse_cell;
-  // Squared distance to a cell along one axis, if there are several.
+  // Squared distance to a cell along one axis, if there are several cells.
   const auto beyond2 = [&](double centre, std::int64_t cell, std::int64_t first, std::int64_t last) {
     if (first == last) return 0.0;
     const double d = std::max({0.0, double(cell) * width - centre, centre - double(cell + 1) * width});

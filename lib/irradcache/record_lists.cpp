@@ -1,4 +1,4 @@
-// lib/irradcache/record_lists.cpp -- which records are listed where: as they come, or all at once.
+// lib/irradcache/record_lists.cpp -- lists records by cell: one by one as they are added, or all at once.
 #include <cmath>
 #include <utility>
 
@@ -35,11 +35,10 @@ void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
     if (Eight& eight = eights_[i / kLanes]; eight.record[i % kLanes] == record) eight.radius[i % kLanes] = radius;
 }
 
-/// Valid are points next to the plane between the normals: with t across n_i, n = n_i cos a + t sin a,
-///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r
-/// give
+/// A record is valid next to the plane between the normals. With t perpendicular to n_i and n = n_i cos a + t sin a,
+///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r give
 ///     |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)),
-/// the more the larger the angle. Cells beyond that need not know the record.
+/// which grows with the angle. Cells farther off need not list the record.
 template <class Body>
 void RecordStore::for_each_cell_of(const Level& level, const IrradianceRecord& r, const Body& body) const {
   const Vec3d local(r.position), normal(r.normal);
@@ -61,13 +60,13 @@ void RecordStore::list(Level& level, std::uint32_t record) const {
   const Entry entry = entry_of(record);
   for_each_cell_of(level, records_[record], [&](Cell cell) {
     Bucket& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
-    if (bucket.ends_with(record)) return;  // two cells of one hash: once
+    if (bucket.ends_with(record)) return;  // two cells with the same hash list the record once
     bucket.add(entry);
     ++level.listed;
   });
 }
 
-/// Lists of all members, made at once.
+/// Builds the lists of all members at once.
 void RecordStore::pack(Level& level) const {
   constexpr std::uint32_t kNobody = ~std::uint32_t{0};
   struct Listed {
@@ -82,7 +81,7 @@ void RecordStore::pack(Level& level) const {
   std::vector<std::uint32_t> last(count, kNobody), next(count + 1);
   const auto for_each_listed = [&](const auto& body) {
     std::fill(last.begin(), last.end(), kNobody);
-    for (const Listed& listed : all)  // two cells of one hash: once
+    for (const Listed& listed : all)  // two cells with the same hash list the record once
       if (const std::uint32_t at = listed.hash & mask; std::exchange(last[at], listed.record) != listed.record)
         body(at, listed.record);
   };

@@ -12,7 +12,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kMostLevels = 277;  ///< powers of two that a radius above 0 in float may lie below
+constexpr std::size_t kMostLevels = 277;  ///< powers of two between the smallest and the largest radius in float
 
 bool is_usable(const IrradianceRecord& r) {
   bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance));
@@ -29,7 +29,7 @@ float least_cosine_of(float error_bound) {
 template <class Found>
 inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine,
                                 const Found& found) {
-  constexpr float kSlack = 1e-5f;  // rounding differs between lanes and one by one: that decides
+  constexpr float kSlack = 1e-5f;  // rounding may differ between vector lanes and scalars; the exact test follows
   const auto all = [](float x) { return _mm256_set1_ps(x); };
   const __m256 least = all(least_cosine - kSlack), reach = all(1 + kSlack);
   for (const Eight& e : eights) {
@@ -50,7 +50,7 @@ inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Ve
   return false;
 }
 
-/// The level whose cells are from one to two radii wide.
+/// The level whose cells are one to two radii wide.
 RecordStore::Level& RecordStore::level_of(float radius) {
   const int exponent = std::ilogb(radius) + 1;
   for (Level& level : levels_)
@@ -88,7 +88,7 @@ void RecordStore::add(std::span<const IrradianceRecord> records) {
   for (Level& made : levels_) pack(made);
 }
 
-/// The record as such; the level whose lists it belongs into, null if it is refused.
+/// Stores the record; returns the level whose lists it belongs to, nullptr if the record is refused.
 RecordStore::Level* RecordStore::keep(const IrradianceRecord& record) {
   if (!is_usable(record)) {
     ++refused_;
@@ -100,7 +100,7 @@ RecordStore::Level* RecordStore::keep(const IrradianceRecord& record) {
   return &level;
 }
 
-/// A smaller radius: the record stays on its level and in its cells.
+/// Sets a smaller radius; the record stays on its level and in its cells.
 void RecordStore::shrink(std::uint32_t record, float radius) {
   for (Level& level : levels_) {
     if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
@@ -114,7 +114,7 @@ template <class Found>
 inline bool RecordStore::any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const {
   const Vec3d local(position);
   if (options_.only_read) {
-    // Where the lists are is asked of all levels at once: they lie far apart in memory.
+    // Finds the lists on all levels before reading them: they are far apart in memory.
     std::size_t at[kMostLevels];
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       const Level& level = levels_[i];

@@ -1,4 +1,4 @@
-// lib/light/aim.cpp -- starts of parallel light by a mixture of discs.
+// lib/light/aim.cpp -- start points of parallel light, drawn from a mixture of discs.
 #include "lib/light/aim.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ Vec2 disc_point(double u, double v) {
   return sample_disc_concentric({below_one(u), below_one(v)});
 }
 
-/// 1 - cosine of half the angle that a sphere covers, seen from outside of it. Exact for small angles, too.
+/// 1 - cosine of half the angle that a sphere covers, seen from outside the sphere. Small angles keep all digits.
 double one_minus_cos(double radius, Vec3d to_centre) {
   const double sine2 = std::min(1.0, radius * radius / dot(to_centre, to_centre));
   return sine2 / (1 + std::sqrt(1 - sine2));
@@ -48,7 +48,7 @@ Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_rad
   for (const double radius : around) add(middle, radius, kAround / double(around.size()));
 }
 
-/// One more disc, chosen with probability `share`.
+/// Adds a disc that is chosen with probability `share`.
 void Aim::add(Vec3d centre, double radius, double share) {
   const double ratio = scene_radius_ / radius,
                below = discs_.empty() ? kUniform : discs_.back().below + discs_.back().share;
@@ -75,12 +75,12 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
   }
   for (std::size_t k = 0; k < discs_.size(); ++k) {
     const double dx = x - dot(discs_[k].centre, across), dy = y - dot(discs_[k].centre, up);
-    // A start belongs to the disc it was drawn on, even where rounding puts it beside the rim.
+    // A start point counts as inside the disc it was drawn on, although rounding may put it just outside the rim.
     if (k == chosen || dx * dx + dy * dy < discs_[k].radius * discs_[k].radius) density += discs_[k].gain;
   }
   Start start;
   start.origin = scene_centre_ + axes.to_world({float(x), float(y), -float(scene_radius_)});
-  // No geometry lies beside the scene's disc: what starts there is not part of the flux, and black.
+  // There is no geometry outside the scene's disc: photons that start there carry no flux.
   const bool beside = chosen < discs_.size() && x * x + y * y > scene_radius_ * scene_radius_;
   start.flux = beside ? 0 : 1 / density;
   return start;
@@ -100,7 +100,7 @@ Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   std::size_t chosen = 0;
   while (chosen + 1 < given_ && left >= discs_[chosen].share) left -= discs_[chosen++].share;
   const Vec3d to = discs_[chosen].centre - from;
-  // Uniform over the cone: 1 - cos of the angle to its axis is uniform.
+  // The direction is uniform over the cone, so 1 - cos of its angle to the axis is uniform.
   const double off = std::min(left / discs_[chosen].share, 1.0) * one_minus_cos(discs_[chosen].radius, to),
                phi = 2 * M_PI * double(u.y);
   const double across = std::sqrt(off * (2 - off));
@@ -114,8 +114,8 @@ double Aim::density_towards(Vec3 place, Vec3 direction) const {
   return density_towards(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
 }
 
-/// A ray meets a sphere, or not; that of the chosen one does, whatever rounding says of the rim. `place`: from the
-/// scene's centre.
+/// A direction meets the chosen sphere by construction, so rounding at the rim is ignored for that sphere. `place` is
+/// relative to the scene's centre.
 double Aim::density_towards(Vec3d place, Vec3 direction, std::size_t chosen) const {
   double density = 0;
   for (std::size_t k = 0; k < given_; ++k) {

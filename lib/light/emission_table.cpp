@@ -1,4 +1,4 @@
-// The emission table of a segment, and the slots it stands for.
+// lib/light/emission_table.cpp -- builds the emission table of a segment.
 #include <algorithm>
 #include <vector>
 
@@ -12,11 +12,11 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLeastShare = 0.2;  ///< of the environment, and of all other lights
+constexpr double kLeastShare = 0.2;  ///< least share of the environment, and of all other lights together
 
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 
-/// Largest weight of each slot so far: those of a frame joined to `weights`.
+/// `weights` keeps the largest weight of each slot over the frames seen so far: joins those of one more frame.
 void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vector<double>& weights) {
   std::size_t slot = 0;
   const auto join = [&](Rgbd flux) {
@@ -29,7 +29,7 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
   for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
 }
 
-/// Adds the environment's weight to those of all other slots.
+/// Appends the environment's weight to the weights of the other slots.
 void add_environment(const EmissionTable& table, std::vector<double>& weights) {
   const double disc = kPiD * table.sphere_radius * table.sphere_radius;
   double weight = emission_weight(table.environment->integral() * disc), others = 0;
@@ -39,13 +39,13 @@ void add_environment(const EmissionTable& table, std::vector<double>& weights) {
   weights.push_back(weight);
 }
 
-/// Whether the flux of any slot may differ between two frames.
+/// True if the flux of any slot may differ between two frames.
 bool any_flux_changes(const SceneFrame& frame) {
   if (std::ranges::any_of(frame.segment.changes, [](const PropertyChange& c) { return c.carries != "camera"; }))
     return true;
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
     if (frame.materials[frame.surfaces[s].material].emissive()) return true;
-  return false;  // the flux of punctual lights does not depend on where they are
+  return false;  // the flux of a punctual light does not depend on its position
 }
 
 }  // namespace

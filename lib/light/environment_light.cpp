@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-constexpr double kUnits = 4294967295.0;  ///< what cells of a row share, less one each
+constexpr double kUnits = 4294967295.0;  ///< largest cumulative share that 32 bits hold
 
 /// The u for which sample_linear gives x.
 double linear_number(double a, double b, double x) { return a + b > 0 ? x * (2 * a + (b - a) * x) / (a + b) : x; }
@@ -27,14 +27,14 @@ double EnvironmentLight::Luminances::at(double x, double y) const {
 }
 
 EnvironmentLight::Luminances EnvironmentLight::luminances(const Corners& corners) const {
-  const auto l = [this](const Rgb& pixel) { return even_ + tempolux::luminance(Rgbd(pixel)); };
+  const auto l = [this](const Rgb& pixel) { return uniform_ + tempolux::luminance(Rgbd(pixel)); };
   return {l(corners.upper_left), l(corners.upper_right), l(corners.lower_left), l(corners.lower_right)};
 }
 
-EnvironmentLight::EnvironmentLight(const Environment& environment, double even)
+EnvironmentLight::EnvironmentLight(const Environment& environment, double uniform)
     : environment_(environment), width_(std::uint32_t(environment.width)), height_(std::uint32_t(environment.height)) {
   integrate();
-  even_ = even * luminance(integral_) / (4 * kPiD);
+  uniform_ = uniform * luminance(integral_) / (4 * kPiD);
   build_distribution();
 }
 
@@ -106,7 +106,7 @@ void EnvironmentLight::build_distribution() {
   });
 }
 
-/// The row and the column, among those given, that a number falls in.
+/// Finds the row of cells that u1 falls in, among the given rows.
 std::uint32_t EnvironmentLight::row_for(double u1, Guide<64>::Range rows) const {
   return std::uint32_t(std::upper_bound(row_end_.begin() + rows.first, row_end_.begin() + rows.last, u1) -
                        row_end_.begin());
@@ -120,13 +120,14 @@ std::uint32_t EnvironmentLight::column_for(std::uint32_t row, double u2, Guide<6
 
 EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
   const Vec3& d = direction;
-  // In float: right to a thousandth of a pixel of a map of 8192 columns.
+  // Single precision is enough: the error is a thousandth of a pixel in a map of 8192 columns.
   const auto polar_angle = double(std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y));
   const double longitude = double(std::atan2(d.x, d.z)) - environment_.rotation_rad;
-  // Columns from the first centre, in [0, width).
+  // Position along the row in columns, counted from the first column's centre, in [0, width).
   double along = (0.5 - longitude / (2 * kPiD)) * width_ - 0.5;
   along -= std::floor(along / width_) * width_;
-  const double down = polar_angle / kPiD * height_ + 0.5;  // rows of cells, the caps at their lower and upper half
+  // position in rows of cells; the caps at the poles have half a row each
+  const double down = polar_angle / kPiD * height_ + 0.5;
   Place place{std::min(std::uint32_t(down), height_), std::min(std::uint32_t(along), width_ - 1), 0, 0};
   place.x = std::clamp(along - place.column, 0.0, 1.0);
   place.y = std::clamp(down - place.row, 0.0, 1.0);
@@ -160,7 +161,7 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   const std::uint32_t column = column_for(row, u2, cell_guides_[row].range(u2));
   const double first = column > 0 ? ends[column - 1] : 0;
 
-  // In the cell: along it first, by the luminances of its left and right side, then across.
+  // The position along the row comes first, from the luminance of the cell's left and right side; then the one across.
   const Corners pixels = corners(row, column);
   const Luminances at = luminances(pixels);
   Place place{row, column, 0, 0};
@@ -170,7 +171,8 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   const double a = polar(row), b = polar(row + 1);
   double angle;
   if (polar_cap(row)) {
-    // Uniform in the cosine, held as its versine: from the pole that the cap surrounds.
+    // Uniform in the cosine, which is held as 1 - cos of the angle from the cap's own pole: small angles keep their
+    // digits.
     const double half = std::sqrt(row == 0 ? across : 1 - across) * std::sin(0.5 * (b - a));
     angle = row == 0 ? 2 * std::asin(half) : kPiD - 2 * std::asin(half);
     place.y = (angle - a) / (b - a);

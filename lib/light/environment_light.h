@@ -1,4 +1,5 @@
-// lib/light/environment_light.h -- an environment as a light: radiance by direction, and directions by radiance.
+// lib/light/environment_light.h -- the environment as a light: evaluates radiance by direction and samples directions
+// by radiance.
 #pragma once
 
 #include <cstdint>
@@ -10,39 +11,40 @@
 
 namespace tempolux {
 
-/// Between the centres of four neighbouring pixels lies a cell, in which radiance is bilinear in longitude and
-/// latitude; the cells of the first and last row reach to the poles. A cell is drawn in proportion to the mean
-/// luminance at its corners times its solid angle, a direction in it in proportion to its bilinear luminance: what is
-/// drawn with density zero is black, and radiance / density is the same everywhere but for colour and for the sine of
-/// the polar angle, which the cell's mean stands for.
+/// Samples directions of an environment map. A cell lies between the centres of four neighbouring pixels; radiance is
+/// bilinear in longitude and latitude inside a cell. The cells of the first and last row reach to the poles. A cell is
+/// drawn in proportion to the mean luminance of its corners times its solid angle; a direction inside the cell is drawn
+/// in proportion to its bilinear luminance. A direction of density 0 is black. radiance / density is nearly constant:
+/// only colour varies, and the sine of the polar angle inside a cell, which is replaced by the cell's mean.
 class EnvironmentLight {
  public:
-  /// The environment must outlive it. Memory: 4 bytes per pixel and 260 per row. `even`: directions are drawn as if so
-  /// many times the mean luminance were added everywhere: with 1, half of them fall evenly over the sphere.
-  explicit EnvironmentLight(const Environment& environment, double even = 0);
+  /// The environment must outlive this object. Memory: 4 bytes per pixel and 260 per row. `uniform`: directions are
+  /// drawn as if `uniform` times the mean luminance were added to every pixel; with 1, half of the directions are
+  /// uniform over the sphere.
+  explicit EnvironmentLight(const Environment& environment, double uniform = 0);
 
-  /// A place in the map: cell (row, column) and where in it, in [0, 1]. Several questions about one direction need it
-  /// once.
+  /// A place in the map: the cell (row, column) and the position inside it, in [0, 1]. Look-ups that need several
+  /// values for one direction compute the place once.
   struct Place {
     std::uint32_t row, column;
     double x, y;
   };
   Place place_of(Vec3 direction) const;
-  /// Arriving from `direction` (unit), W/m^2/sr.
+  /// Radiance [W/m^2/sr] that arrives from `direction` (unit).
   Rgb radiance(Vec3 direction) const { return radiance_at(place_of(direction)); }
   Rgb radiance_at(const Place& place) const { return corners(place.row, place.column).radiance(place.x, place.y); }
-  /// Integral of radiance over all directions [W/m^2], closed form.
+  /// Integral of radiance over all directions [W/m^2], in closed form.
   Rgbd integral() const { return integral_; }
 
   struct Sample {
-    Vec3 direction{};  ///< unit, towards where the light comes from
+    Vec3 direction{};  ///< unit, towards the environment
     Rgb radiance{0.0f};
     double pdf_solid_angle = 0;  ///< [1/sr]
   };
-  /// u1 chooses the row of cells and, stretched, the place across it; u2 the cell and the place along it. In [0, 1).
-  /// False if nothing is emitted.
+  /// u1 in [0, 1) chooses the row of cells and, stretched, the position across the row. u2 in [0, 1) chooses the cell
+  /// and the position along the row. False if the environment is black.
   bool sample(double u1, double u2, Sample& sample) const;
-  /// Density per solid angle of sample() at `direction`, to the rounding of its own arithmetic.
+  /// Density [1/sr] with which sample() gives `direction` (unit).
   double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
   double pdf_solid_angle(const Place& place, Vec3 direction) const;
   /// The numbers (u1, u2) for which sample() gives this direction, but for rounding.
@@ -72,12 +74,13 @@ class EnvironmentLight {
 
   const Environment& environment_;
   std::uint32_t width_, height_;
-  double even_ = 0;  ///< W/m^2/sr, of the luminance that directions are drawn by
+  double uniform_ = 0;  ///< W/m^2/sr, added to the luminance that directions are drawn by
   Rgbd integral_{0.0};
-  std::vector<double> row_end_;          ///< cumulative probability of the height + 1 rows of cells
-  std::vector<std::uint32_t> cell_end_;  ///< cumulative within each row; what emits has 1 at least
-  Guide<64> row_guide_;                  ///< of row_end_
-  std::vector<Guide<64>> cell_guides_;   ///< of cell_end_, by row
+  std::vector<double> row_end_;  ///< cumulative probability of the height + 1 rows of cells
+  /// Cumulative share of each cell in its row; a cell that emits has a share of at least 1
+  std::vector<std::uint32_t> cell_end_;
+  Guide<64> row_guide_;                 ///< of row_end_
+  std::vector<Guide<64>> cell_guides_;  ///< search guides into cell_end_, by row
 };
 
 }  // namespace tempolux

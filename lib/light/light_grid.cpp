@@ -10,11 +10,11 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBits = 20;                                       ///< of a coordinate
+constexpr int kBits = 20;                                       ///< bits of one coordinate in a key
 constexpr std::int64_t kHalf = std::int64_t(1) << (kBits - 1);  ///< cells on either side of the origin
 constexpr std::uint64_t kMask = (std::uint64_t(1) << kBits) - 1;
 
-/// 0 to 5: the axis along which the normal is longest, and its sign.
+/// 0 to 5: the axis of the normal's largest component (x, y, z) and its sign.
 std::uint64_t facing(Vec3 n) {
   const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
   if (x >= y && x >= z) return n.x < 0;

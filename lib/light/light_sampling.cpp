@@ -1,4 +1,4 @@
-// lib/light/light_sampling.cpp -- light samples as seen from a point, and their densities.
+// lib/light/light_sampling.cpp -- draws light samples for a point, and evaluates their densities.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,7 +12,7 @@
 namespace tempolux {
 namespace {
 
-/// Irradiance of a directional light, as a weight for choosing it; 0 if it is below the surface.
+/// Weight with which a directional light is chosen: its irradiance; 0 if the light is below the surface.
 double sun_weight(const PlacedLight& placed, Vec3 normal) {
   const double e = max_component(placed.light.intensity);
   return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
@@ -24,21 +24,22 @@ double share_of_distant(double distant, double others) {
 
 }  // namespace
 
-/// The weights of the environment and the directional lights.
+/// Sum of the weights of the environment and of all directional lights.
 double Lights::Impl::sum_distant(Vec3 normal) const {
   double total = environment_weight;
   for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
   return total;
 }
 
-/// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
-/// fifth for either kind that can be seen at all. total: their weights.
+/// Probability of choosing a distant light (environment or directional): its share in an estimate of the irradiance. If
+/// both distant lights and others can reach the point, either kind gets at least a fifth. `total` receives the weight
+/// of the distant lights.
 double Lights::Impl::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
   total = distant_irradiance(normal, from);
   return total > 0 ? share_of_distant(total, tree.importance(point, normal)) : 0;
 }
 
-/// u in [0, 1) chooses among them: the environment first.
+/// u in [0, 1) chooses among the distant lights; the environment comes first.
 bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                                   LightSample& s) const {
   const double left = u * total;
@@ -48,7 +49,7 @@ bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double 
                     share * (1 - environment_weight / total), s);
 }
 
-/// u in [0, 1) chooses among the directional lights, which have this probability together.
+/// u in [0, 1) chooses among the directional lights; `probability` is that of choosing any of them.
 bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const {
   double total = 0, weight = 0;
   for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
@@ -65,22 +66,23 @@ bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probabil
   if (!chosen) return false;
   s.wi = -chosen->direction;
   s.position = point + s.wi * distance_beyond();
-  s.radiance = Rgb(Rgbd(chosen->light.intensity) / (probability * weight / total));
+  s.facing_irradiance = Rgb(Rgbd(chosen->light.intensity) / (probability * weight / total));
   s.delta = s.distant = true;
   return true;
 }
 
-/// Light from a direction of the environment, drawn with this density [1/sr].
+/// Fills the sample with light from a direction of the environment that was drawn with density `pdf` [1/sr].
 bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const {
   s.wi = found.direction;
   s.position = point + s.wi * distance_beyond();
-  s.radiance = Rgb(Rgbd(found.radiance) / pdf);
+  s.facing_irradiance = Rgb(Rgbd(found.radiance) / pdf);
   s.pdf_solid_angle = float(pdf);
   s.distant = true;
   return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
 }
 
-/// u_float: what u comes from. Where its 24 bits are used up, bits of the other coordinate take their place.
+/// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
+/// up u.
 bool Lights::Impl::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
                                       LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
@@ -93,34 +95,34 @@ bool Lights::Impl::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, dou
   return take_from_sky(found, point, found.pdf_solid_angle * probability, s);
 }
 
-/// A point or spot light.
+/// Fills the sample with a point or spot light.
 bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const {
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0)) return false;
-  // Nearer than a millionth of the scene, the light is as bright as there.
+  // Closer than a millionth of the scene's radius, irradiance no longer grows.
   const double nearest = std::max(distance, 1e-6 * sphere_radius);
   s.wi = Vec3(to / distance);
   s.position = placed.position;
   double falloff = 1;
   if (placed.light.kind == PunctualLight::Kind::spot)
     falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
-  s.radiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
+  s.facing_irradiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
   s.delta = true;
   return falloff > 0;
 }
 
-/// What Lights::sample has of the light in the slot, chosen with this probability. left: what the choice left of its
-/// number, if joint in place of u.x.
+/// Draws a point on the light in the slot, which was chosen with this probability. With `joint`, `left` is the
+/// remainder of the number that chose the slot and replaces u.x.
 inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left,
                                       Vec2 u, bool joint, LightSample& sample) const {
   const Impl& m = *this;
   if (slot >= m.triangles.size())
     return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
-           is_finite(sample.radiance);
+           is_finite(sample.facing_irradiance);
   const TriangleLight& t = m.triangles[slot];
   if (joint) {
-    // A float has 24 bits: where the choice has used them up, bits of the other coordinate take their place.
+    // A float has 24 bits: where choosing has used them up, bits of the other coordinate replace them.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
     u.x = to_float(std::min(left + fill * step, 1.0));
   }
@@ -130,9 +132,9 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 norma
   sample.wi = on_triangle.wi;
   sample.position = on_triangle.position;
   sample.position_offset = t.offset;
-  sample.radiance = Rgb(Rgbd(m.emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
+  sample.facing_irradiance = Rgb(Rgbd(m.emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
   sample.pdf_solid_angle = float(pdf);
-  return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
+  return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.facing_irradiance);
 }
 
 Lights::Impl::Shares Lights::Impl::shares_of(const LightGrid::Cell& cell, From from) {
@@ -145,19 +147,21 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
                           LightSample& sample) const {
   sample = {};
   if (const LightGrid::Cell* cell = known(point, normal))
-    return sample_learned(*cell, point, normal, u_choice, u, joint, from, sample) && is_finite(sample.radiance);
+    return sample_learned(*cell, point, normal, u_choice, u, joint, from, sample) &&
+           is_finite(sample.facing_irradiance);
   const LightTree::Start start = tree.start(point, normal);
   const double distant = distant_irradiance(normal, from),
                share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
-    // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
+    // The environment always takes the remainder of the choice's number in place of u.x, also if u_choice and u.x
+    // differ.
     return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) &&
-           is_finite(sample.radiance);
+           is_finite(sample.facing_irradiance);
   }
   return sample_tree(start, 1 - share, point, normal, to_float(stretch(u_choice, share, 1 - share)), u, joint, sample);
 }
 
-/// A light that is somewhere; probability: of choosing one of them.
+/// Draws a sample of a light inside the scene; `probability` is that of choosing any of them.
 bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal,
                                float u_choice, Vec2 u, bool joint, LightSample& sample) const {
   if (tree.empty()) return false;
@@ -197,7 +201,7 @@ bool Lights::has_suns() const { return !impl_->suns.empty(); }
 
 bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const {
   sample = {};
-  return impl_->sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.radiance);
+  return impl_->sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.facing_irradiance);
 }
 
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,

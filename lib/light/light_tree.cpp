@@ -10,13 +10,14 @@
 namespace tempolux {
 namespace {
 
-// Rounding must never make a bound exclude what it bounds: cosines are widened by this.
+// Bounds must stay valid under rounding, so cosines are widened by this.
 constexpr float kSlack = 4e-6f;
 constexpr int kBucketCount = 16;
-constexpr int kDepthOfHalving = 32;  // below, halves by count, so that no input makes the tree a list
+// From this depth on nodes are halved by count, so that no input makes the tree a list
+constexpr int kDepthOfHalving = 32;
 
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
-/// cos(max(0, a - b)) of two angles in [0, pi]. Both sides are computed: lanes have no branches.
+/// cos(max(0, a - b)) of two angles in [0, pi]. Both branches are computed: vector lanes cannot branch.
 inline float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   const float difference = cos_a * cos_b + sin_a * sin_b;
   return cos_a > cos_b ? 1.0f : difference;
@@ -28,9 +29,9 @@ Vec3 rotate(Vec3 v, Vec3 axis, float angle) {
   return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
 }
 
-/// Smallest cone that holds both. Widened a little for rounding.
+/// Smallest cone that holds both, widened a little for rounding.
 void join_cones(LightBounds& a, const LightBounds& b) {
-  // The lines of two-sided lights have no sign of their own.
+  // A two-sided light's axis may be reversed.
   const Vec3 axis_b = a.two_sided && b.two_sided && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
   const float angle_a = std::acos(std::clamp(a.cos_spread, -1.0f, 1.0f));
   const float angle_b = std::acos(std::clamp(b.cos_spread, -1.0f, 1.0f));
@@ -60,7 +61,7 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   return a;
 }
 
-/// A group of lights while a split is looked for; its spread from the length of the mean normal, without
+/// A group of lights during the search for a split. Its spread comes from the length of the mean normal, which avoids
 /// the arc cosines of exact cones.
 struct Group {
   Box3 box;
@@ -80,7 +81,8 @@ struct Group {
     weight += g.weight;
     count += g.count;
   }
-  /// Weight x size^2 x spread, the cost of [Conty Estevez & Kulla 2018 (3)]: from 1 for one direction to 4.
+  /// Weight x size^2 x spread, the cost of [Conty Estevez & Kulla 2018 (3)]. Spread is 1 for lights of one direction
+  /// and 4 at most.
   double cost() const {
     if (count == 0) return 0;
     const double size = box.diagonal();
@@ -96,10 +98,10 @@ struct LightTree::Item {
   std::uint32_t light;
 };
 
-/// Node of the tree of two children that is built first.
+/// A node of the binary tree that is built first.
 struct LightTree::Pair {
   LightBounds bounds;
-  std::uint32_t second = 0;  ///< the other child; the first is the next node
+  std::uint32_t second = 0;  ///< the second child; the first child is the next node
   std::uint32_t light = 0;
   bool leaf = false;
 };
@@ -138,7 +140,7 @@ LightBounds LightTree::build_pairs(std::vector<Item>& items, std::size_t first, 
   return pairs[at].bounds;
 }
 
-/// The children of a pair, the weightiest and widest of them replaced by its own two until there are eight.
+/// Replaces the pair with the largest weight x size by its two children until the node has eight children.
 void LightTree::collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent) {
   std::uint32_t chosen[kWidth] = {pair};
   int count = 1;
@@ -187,8 +189,8 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.weight[lane] = bounds.weight;
 }
 
-/// Where to cut [first, last), at least two items: the cheapest of 15 planes per axis, by the sum of both
-/// sides' cost; in the middle of the count if no plane parts the centres.
+/// Where to cut [first, last), which holds at least two items: the cheapest of 15 planes per axis, by the sum of both
+/// sides' costs. If no plane separates the centres, the middle of the count.
 std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost) {
   Box3 centres;
   for (std::size_t i = first; i < last; ++i) centres.add(items[i].centre);
@@ -245,7 +247,8 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float along = -(node.axis[0][i] * x + node.axis[1][i] * y + node.axis[2][i] * z) * inverse;
     const float cos_axis = node.two_sided[i] > 0 ? std::abs(along) : along;
     const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
-    // Angle from the nearest normal, less the angle that the box fills.
+    // Smallest angle between the point's direction and any normal: the angle to the axis minus the spread and the angle
+    // of the box.
     const float cos_x = cos_difference(sin_axis, cos_axis, node.sin_spread[i], node.cos_spread[i]);
     const float sin_difference = sin_axis * node.cos_spread[i] - cos_axis * node.sin_spread[i];
     const float sin_x = cos_axis > node.cos_spread[i] ? 0.0f : sin_difference;
@@ -256,7 +259,7 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float bound = inverse * inverse * std::max(cos_light, 1e-3f) * std::max(cos_surface, 1e-3f);
     const float reached = cos_light < node.cos_reach[i] ? 0.0f : bound;
     const float outside = cos_surface < -kSlack ? 0.0f : reached;
-    // A point among the lights may see them in any direction.
+    // Inside the sphere around the box the point may see the lights in any direction.
     const float inside = 1 / std::max(radius * radius, 1e-18f);
     factor[i] = distance2 <= radius * radius ? inside : outside;
   }
@@ -292,8 +295,8 @@ bool LightTree::choose(const Start& start, Vec3 point, Vec3 normal, float u, Cho
       const double sum = first ? start.sum / whole_ : importances(*node, point, normal, below);
       if (!(sum > 0)) return false;
       left *= sum;
-      // The lane in which the running sum passes `left`; the last one that counts, should rounding pass them
-      // all.
+      // Finds the lane in which the running sum passes `left`; if rounding keeps the sum below, the last lane with a
+      // weight.
       for (int i = 0; i < kWidth; ++i) {
         if (!(each[i] > 0)) continue;
         lane = i;

@@ -1,8 +1,8 @@
 // lib/light/light_tree.h -- a tree over many lights that chooses one for a point in O(log n).
 //
-// Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", PACM CGIT 1(2),
-// 2018; bounds and cosines as in pbrt-v4, section 12.6.3. Eight children per node, weighed together in the
-// lanes of one vector, so that a few lights cost little and many lights few levels.
+// Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", PACM CGIT 1(2), 2018;
+// bounds and cosines as in pbrt-v4, section 12.6.3. A node has eight children whose importances are computed together
+// in the lanes of a vector.
 #pragma once
 
 #include <cstddef>
@@ -13,35 +13,35 @@
 
 namespace tempolux {
 
-/// What is known of one light, or of all lights below a node.
+/// Bounds of one light, or of all lights below a node.
 struct LightBounds {
   Box3 box;
-  Vec3 axis{0, 0, 1};      ///< unit: middle of the normals
-  double weight = 0;       ///< greatest irradiance at 1 m, facing it: L A, or I; summed over lights
-  float cos_spread = 1;    ///< all normals are within this angle of the axis
-  float cos_reach = 0;     ///< and shine no farther than this angle from their normal (at most pi/2)
-  bool two_sided = false;  ///< some shine backwards as well
+  Vec3 axis{0, 0, 1};      ///< unit; axis of the cone of normals
+  double weight = 0;       ///< greatest irradiance at 1 m: L A of an area light, I of a point light; summed
+  float cos_spread = 1;    ///< cosine of the largest angle between a normal and the axis
+  float cos_reach = 0;     ///< cosine of the largest angle from its normal at which a light shines (at most pi/2)
+  bool two_sided = false;  ///< true if any of the lights shines backwards, too
 };
 
 class LightTree {
  public:
-  /// Weights must be positive and finite, boxes finite.
+  /// Weights must be positive and finite; boxes must be finite.
   explicit LightTree(const std::vector<LightBounds>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Estimate of the irradiance that all of it gives, in the unit of weight / m^2; 0 only if no light can
-  /// reach the point.
+  /// Estimates the irradiance at the point from all lights, in the unit of weight / m^2. 0 only if no light can reach
+  /// the point.
   double importance(Vec3 point, Vec3 normal) const;
   struct Choice {
     std::uint32_t light = 0;
-    double probability = 0;  ///< of the light, at this point and normal
-    double left = 0;         ///< what the choice left of u, in [0, 1): uniform again
+    double probability = 0;  ///< of choosing this light at this point and normal
+    double left = 0;         ///< the remainder of u after the choice, in [0, 1): uniform again
   };
-  /// The walk's first step, before anything is chosen. [of weight / m^2]
+  /// Importances of the root's children; choose() starts from them. [unit of weight / m^2]
   static constexpr int kWidth = 8;
   struct Start {
-    double each[kWidth];  ///< importance of the children, in parts of the whole tree's weight
-    double sum = 0;       ///< of all, as importance()
+    double each[kWidth];  ///< importance of each child over the tree's whole weight
+    double sum = 0;       ///< their sum: equals importance()
   };
   Start start(Vec3 point, Vec3 normal) const {
     Start start;
@@ -50,21 +50,21 @@ class LightTree {
   }
   void start(Vec3 point, Vec3 normal, Start& start) const;
   bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
-  /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`: unit, or
-  /// zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at a node of which no
-  /// light can reach the point.
+  /// Walks down from the root. At each node a child is chosen in proportion to its importance, an upper bound of weight
+  /// cos cos / distance^2. `normal` is unit; zero means that lights below the surface count as well. u in [0, 1). False
+  /// if the walk ends at a node of which no light can reach the point.
   bool choose(Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Probability with which choose() takes this light. [1]
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
 
  private:
   struct alignas(32) Node {
-    float centre[3][kWidth], radius[kWidth];  ///< of the sphere around the child's box
+    float centre[3][kWidth], radius[kWidth];  ///< sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
     float two_sided[kWidth];      ///< 1 or 0
-    double weight[kWidth];        ///< in parts of the whole tree's; 0: no child
-    std::uint32_t child[kWidth];  ///< a node, or the light of a leaf
-    std::uint32_t parent;         ///< kWidth x node + lane
+    double weight[kWidth];        ///< over the whole tree's weight; 0: no child
+    std::uint32_t child[kWidth];  ///< number of the child node, or of the light
+    std::uint32_t parent;         ///< kWidth x node + lane of the parent
     std::uint8_t leaf[kWidth], count;
   };
   struct Item;
@@ -74,7 +74,7 @@ class LightTree {
   static std::size_t split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost);
   void collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent);
   static void set_child(Node& node, int lane, const LightBounds& bounds);
-  /// The importance of each child; returns their sum.
+  /// Computes the importance of each child; returns their sum.
   double importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const;
 
   std::vector<Node> nodes_;

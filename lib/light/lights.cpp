@@ -1,4 +1,4 @@
-// lib/light/lights.cpp -- the lights of a frame: slots of the emission table, the tree to choose from.
+// lib/light/lights.cpp -- builds the lights of a frame: slots of the emission table and the light tree.
 #include "lib/light/lights.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ LightBounds bounds_of(const PlacedLight& placed) {
   b.weight = max_component(placed.light.intensity);
   b.cos_spread = -1;
   if (placed.light.kind == PunctualLight::Kind::spot) {
-    // The cone's axis is a normal; its light reaches as far as the outer angle.
+    // The spot's axis is the only normal; light reaches as far as the outer cone.
     b.cos_spread = std::cos(std::min(placed.light.inner_cone_rad, placed.light.outer_cone_rad));
     b.cos_reach = std::max(0.0f, std::cos(placed.light.outer_cone_rad - std::acos(b.cos_spread)));
   }
@@ -107,7 +107,7 @@ void Lights::Impl::build_tree() {
   tree = LightTree(tree_bounds());
 }
 
-/// Bounds of each light of `tree`, in the tree's order.
+/// Bounds of all lights in `tree`, in the tree's order.
 std::vector<LightBounds> Lights::Impl::tree_bounds() const {
   std::vector<LightBounds> bounds;
   bounds.reserve(tree_slot.size());

@@ -20,155 +20,155 @@
 
 namespace tempolux {
 
-/// One slot of the emission table: an emissive triangle (both sides, twice the flux, if its material is
-/// double sided), a punctual light, or the environment. Slots and probabilities are frozen over a segment: a lamp that
-/// dims or moves keeps its slot and changes the photon's weight.
+/// One slot of the emission table: an emissive triangle (both sides with twice the flux if its material is double
+/// sided), a punctual light, or the environment. Slots and probabilities stay the same over a segment: a lamp that is
+/// dimmed or moved keeps its slot, and only the flux of its photons changes.
 struct EmissionSlot {
   enum class Kind : std::uint8_t { triangle, point, spot, directional, environment };
   Kind kind = Kind::triangle;
   std::uint32_t surface = kNone, triangle = 0;  ///< of a triangle
   std::uint32_t light = kNone;                  ///< index into SceneFrame::lights
-  double probability = 0;                       ///< of being chosen for a photon; sums to 1 over the table
+  double probability = 0;                       ///< of choosing this slot for a photon; sums to 1 over the table
 };
 
-/// What is frozen over a segment. Slots are the triangles of `surfaces`, one after the other, then the
-/// frame's punctual lights, then the environment if there is one; probability is proportional to the maximum flux over
-/// the segment's frames
-/// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux
-/// is its irradiance times the area pi R^2 of the scene sphere's disc, the environment's pi R^2 times the integral
-/// of its radiance). Most light from outside may never come in, or what is inside may hardly matter: where there
-/// is an environment besides other lights, either gets at least a fifth. A triangle whose emission a
-/// texture makes vary counts with its mean.
+/// Probabilities with which lights emit photons, the same for all frames of a segment. Slots are the triangles of
+/// `surfaces` in order, then the frame's punctual lights, then the environment if there is one.
+/// A probability is proportional to the slot's maximum flux over the segment's frames. Flux is measured by luminance,
+/// or by 5 % of the largest channel if that is more, so that blue lamps count. A directional light's flux is its
+/// irradiance times the area pi R^2 of the scene sphere's disc; the environment's is pi R^2 times the integral of its
+/// radiance. A triangle whose emission is textured counts with its mean.
+/// Little of the environment's light may enter a building, or lamps may hardly matter outdoors. If there is both an
+/// environment and another light, each gets at least a fifth.
 struct EmissionTable {
-  std::vector<std::uint32_t> surfaces;  ///< that emit at some frame: indices into SceneFrame::surfaces
+  std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of those that emit at some frame
   std::vector<EmissionShares> shares;   ///< of `surfaces`, at the first frame
-  std::vector<double> probability;      ///< by slot, sums to 1; equal if nothing ever emits
-  Vec3d sphere_centre{};                ///< scene sphere over the segment, scene space, m
+  std::vector<double> probability;      ///< by slot, sums to 1; all equal if nothing ever emits
+  Vec3d sphere_centre{};                ///< scene sphere over the segment; scene space, m
   double sphere_radius = 0;
-  std::shared_ptr<const EnvironmentLight> environment;  ///< nullptr: none; its Environment must outlive it
-  std::vector<AimSphere> aim;  ///< where photons of directional lights and the environment go; empty: everywhere
+  std::shared_ptr<const EnvironmentLight> environment;  ///< its Environment must outlive the table; nullptr: none
+  std::vector<AimSphere> aim;  ///< spheres to aim photons of directional lights and environment at; empty: no aiming
 };
 
-/// The triangles of table.surfaces[index] as lights of a frame, in their order.
+/// The triangles of table.surfaces[index] as lights of a frame, in the surface's order.
 std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame);
 
-/// The segment's table: made from all of its frames if something that emits moves, else from one.
+/// The segment's table. Evaluates all frames of the segment if an emitter moves, else one frame.
 EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options);
-/// The table of frames that are evaluated already, all of one segment (the same surfaces and lights in the same order);
-/// at least one. To be the segment's table they must be all frames at which an emitter's size differs.
+/// The table from frames that are evaluated already: at least one, all of one segment (the same surfaces and lights in
+/// the same order). To get the segment's table, pass all frames at which an emitter's size differs.
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
-/// Content hash of what the segment freezes beyond its static geometry: probabilities of lights, distance scales, and
-/// where photons are aimed. Photons
-/// whose tables hash alike may replace each other path by path.
+/// Hash of all that the table fixes for a segment besides its static geometry: probabilities of lights, distance scales
+/// and aim. If two tables have the same hash, a light path of one map may replace the path of that number in the other
+/// map.
 std::string emission_hash(const EmissionTable& table, const Segment& segment);
 
 struct LightSample {
   Vec3 wi{};                  ///< unit, from the point towards the light
-  Vec3 position{};            ///< on the light; for directional lights and the environment beyond the scene
-  float position_offset = 0;  ///< m: the shadow ray ends this far before position
-  Rgb radiance{
-      0.0f};  ///< L / pdf of an area light or the environment, I / d^2 or E of a delta light: multiply by f cos
-  float pdf_solid_angle = 0;  ///< [1/sr], choice included; 0 if delta
+  Vec3 position{};            ///< on the light; outside the scene for directional lights and the environment
+  float position_offset = 0;  ///< m; the shadow ray ends this far before `position`
+  /// W/m^2 on a surface that faces wi: radiance / pdf, or I / d^2 or E of a delta light. Times f cos: reflected
+  /// radiance
+  Rgb facing_irradiance{0.0f};
+  float pdf_solid_angle = 0;  ///< [1/sr], includes the choice of the light; 0 for a delta light
   bool delta = false;
-  bool distant = false;  ///< of the environment or a directional light
+  bool distant = false;  ///< true for the environment and directional lights
 };
 
 struct PhotonEmission {
   Vec3 origin{}, travel{};  ///< travel: unit direction of flight
-  float origin_offset = 0;  ///< start this far along the emitting side's normal
+  float origin_offset = 0;  ///< the photon starts this far along the emitting side's normal
   Vec3 normal{};            ///< of the emitting side; zero for punctual lights
-  Rgb flux{0.0f};           ///< W, of one photon if `photon_count` are emitted: divide by the count yourself
+  Rgb flux{0.0f};           ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
   std::uint32_t slot = 0;
 };
 
-/// Lights at one frame.
+/// All lights of one frame: draws light samples and photons.
 class Lights {
  public:
   Lights(const SceneFrame& frame, const EmissionTable& table);
   ~Lights();
   Lights(Lights&&) noexcept;
 
-  /// From now on samples are drawn by what the grid has learned of what reaches a place, where it knows the place;
-  /// nullptr: no more. The grid must outlive this. Probabilities alone change: no bias.
+  /// From now on, where the grid has a cell, samples are drawn by the cell's probabilities; nullptr: no longer. The
+  /// grid must outlive this object. The expectation does not change.
   void use(const LightGrid* grid);
-  /// From now on directions of the environment are drawn by radiance and by the cosine (SkyByNormal), where sample() is
-  /// given a normal and no grid knows the place. No bias. Some milliseconds.
+  /// From now on, directions of the environment are drawn in proportion to radiance times cosine (SkyByNormal), if
+  /// sample() gets a normal and the grid has no cell there. The expectation does not change. Takes some milliseconds.
   void weigh_sky_by_cosine();
-  /// Directional lights that shine, and the environment: is there light from far away?
+  /// True if a directional light shines or the environment is not black.
   bool has_distant() const;
-  /// Is there light from somewhere: a lamp that shines?
+  /// True if any light inside the scene shines.
   bool has_placed() const;
-  /// Irradiance of each directional light that shines, at right angles, and the direction it comes from.
+  /// A directional light that shines: irradiance of a surface that faces it, and the direction towards it.
   struct Sun {
     Vec3 wi;
     Rgb irradiance;
   };
   std::vector<Sun> suns() const;
-  /// Which lights sample() chooses from: where a sample of the suns is taken by itself, all others.
+  /// Which lights sample() chooses from. A caller that samples the directional lights separately passes not_suns.
   enum class From : std::uint8_t { all, not_suns };
   bool has_suns() const;
-  /// Chooses a directional light by its irradiance; u in [0, 1). False if none is above the surface.
+  /// Chooses a directional light in proportion to its irradiance; u in [0, 1). False if none is above the surface.
   bool sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const;
 
   bool empty() const;
   std::size_t count() const;
   const std::vector<EmissionSlot>& slots() const;
-  /// Flux of all lights [W]; directional lights and the environment by the scene sphere's disc.
+  /// Flux of all lights [W]. Directional lights and the environment count with the flux through the scene sphere's
+  /// disc.
   Rgbd total_flux() const;
 
-  /// Chooses a light for the point (u_choice; by an importance that knows distance and orientation, in
-  /// O(log n)) and a point on it (u). Returns false if no light can reach the point. `normal` is a hint to
-  /// discard lights below the surface; zero vector: none.
+  /// Chooses a light for the point with u_choice, by an importance that includes distance and orientation, in O(log n);
+  /// then a point on the light with u. False if no light can reach the point. Lights below the surface of `normal` are
+  /// left out; a zero normal leaves out none.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const;
-  /// The same from one stratified pair: u.x chooses the light and, stretched, is its first coordinate on it, so
-  /// that samples stratified over the square are stratified over every light.
+  /// The same from one stratified pair: u.x chooses the light and, stretched, is the first coordinate on it. Samples
+  /// that are stratified over the square are stratified over every light.
   bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const;
-  /// Density per solid angle with which sample() at (point, normal) would have chosen the position
-  /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
-  /// triangle's own plane decides, as in sample(); light_normal is not looked at.
+  /// Density [1/sr] with which sample() at (point, normal) chooses the position `on_light` of this emissive triangle,
+  /// seen from its front (or back, if two-sided); 0 if it emits nothing. The triangle's own plane decides which side is
+  /// seen, as in sample(); light_normal is not used.
   float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
                         Vec3 light_normal, From from = From::all) const;
-  /// Radiance that the material emits at a hit towards `wo` (unit, away from it), textures read over `width` m; zero
-  /// from the back of a one-sided emitter.
+  /// Radiance [W/m^2/sr] that the material emits at a hit towards `wo` (unit, away from the surface). Textures are
+  /// averaged over `width` m. Zero from the back of a one-sided emitter.
   Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;
 
   bool has_environment() const { return environment_ != nullptr; }
-  /// Radiance that arrives from `direction` (unit) where nothing is in the way; only with an environment.
+  /// Radiance [W/m^2/sr] of the environment in `direction` (unit). Needs an environment.
   Rgb environment(Vec3 direction) const { return environment_->radiance(direction); }
-  /// Density per solid angle with which sample() at (point, normal) would have chosen this direction of the
-  /// environment; only with one.
+  /// Density [1/sr] with which sample() at (point, normal) chooses this direction of the environment. Needs an
+  /// environment.
   float pdf_environment(Vec3 point, Vec3 normal, Vec3 direction, From from = From::all) const {
     return pdf_environment(point, normal, environment_->place_of(direction), direction, from);
   }
-  /// Both of one look-up.
+  /// The same for a place that was looked up once.
   EnvironmentLight::Place environment_place(Vec3 direction) const { return environment_->place_of(direction); }
   Rgb environment_at(const EnvironmentLight::Place& place) const { return environment_->radiance_at(place); }
   float pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction, From from) const;
 
-  /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it,
-  /// u[1] the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the
-  /// front). Point and spot lights have no place to choose and take u[0], u[1] for the direction, directional
-  /// lights for the place on the scene sphere's disc; the environment takes them for the direction and u[2], u[3]
-  /// for the place on the disc. All maps keep neighbours together. Not for an empty
-  /// table.
+  /// Emits a photon. u[0] chooses the slot and, stretched, is the first coordinate on it; u[1] is the second; u[2] and
+  /// u[3] give the direction. On a two-sided triangle u[2] below 1/2 means the front. Point and spot lights have no
+  /// extent: u[0] and u[1] give the direction. For directional lights they give the point on the scene sphere's disc;
+  /// the environment takes them for the direction, and u[2] and u[3] for the point on the disc. Neighbouring numbers
+  /// give neighbouring photons. The table must not be empty.
   ///
-  /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi
-  /// L A (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E
-  /// pi R^2, origin on the disc of radius R outside the scene; environment: the same with radiance / density of
-  /// the direction for E. With table.aim the origins of these two are spread as Aim says, and the flux is
-  /// divided by that density instead. Zero flux for what emits nothing at this
-  /// frame. InputError if flux / probability is beyond float32.
+  /// flux = (flux of the slot at this frame) / probability, so the mean over u is total_flux(). A triangle emits pi L A
+  /// (twice, if two-sided) by the cosine; a point light 4 pi I, uniformly; a spot by its intensity; a directional light
+  /// E pi R^2 from the disc of radius R outside the scene; the environment the same with radiance / density in place of
+  /// E. With table.aim the start points of the last two are drawn by Aim, and flux is divided by Aim's density. Flux is
+  /// zero if the slot emits nothing at this frame. Throws InputError if flux / probability overflows float32.
   PhotonEmission emit(const std::array<double, 4>& u) const {
     PhotonEmission photon;
     emit({&u, 1}, {&photon, 1});
     return photon;
   }
-  /// The same for as many as kMostEmitted, photons[i] of u[i]: in half the time.
+  /// The same for up to kMostEmitted photons, photons[i] from u[i]; twice as fast.
   void emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const;
   static constexpr std::size_t kMostEmitted = 64;
 
-  /// Where photons from afar are aimed; empty: everywhere.
+  /// The aim of photons from directional lights and environment; empty: none.
   const Aim& aim() const;
 
  private:

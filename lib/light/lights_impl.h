@@ -1,5 +1,5 @@
-// lib/light/lights_impl.h -- what Lights keeps: shared by lights.cpp (making it), light_sampling.cpp (light samples)
-// and photon_emission.cpp (photons).
+// lib/light/lights_impl.h -- the data behind Lights, shared by lights.cpp (building), light_sampling.cpp (light
+// samples) and photon_emission.cpp (photons).
 #pragma once
 
 #include <algorithm>
@@ -17,25 +17,26 @@
 namespace tempolux {
 
 struct Lights::Impl {
-  /// As Lights::sample; joint: u_choice is u.x.
+  /// As Lights::sample. `joint`: u_choice is u.x, so the remainder of the choice replaces u.x.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
   const SceneFrame* frame;
   Vec3 sphere_centre;
   double sphere_radius;
   std::vector<EmissionSlot> slots;
-  std::vector<TriangleLight> triangles;   // of the first slots, same order
-  std::vector<double> cumulative;         // of the probabilities; by slot its upper end
-  std::vector<Rgb> photon_flux;           // by slot: flux / probability, where all its photons carry the same
-  std::vector<std::uint32_t> first_slot;  // by surface; kNone: emits nothing
-  std::vector<std::uint32_t> tree_index;  // by slot: its light in the tree, kNone: emits nothing
+  std::vector<TriangleLight> triangles;   // of the first slots, in the same order
+  std::vector<double> cumulative;         // cumulative probability, by slot
+  std::vector<Rgb> photon_flux;           // by slot: flux / probability, if all photons of the slot carry the same flux
+  std::vector<std::uint32_t> first_slot;  // first slot of each surface; kNone: the surface emits nothing
+  std::vector<std::uint32_t> tree_index;  // by slot: number of its light in the tree; kNone: the slot emits nothing
   std::vector<std::uint32_t> tree_slot;   // and back
-  std::vector<std::uint32_t> suns;        // indices of directional lights that shine
+  std::vector<std::uint32_t> suns;        // indices of the directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
-  std::unique_ptr<SkyByNormal> sky_by_normal;  // if directions of the environment are drawn by the cosine, too
-  double environment_weight = 0;    // irradiance by the environment, the mean over all normals; 0: none or black
-  Aim aim;                          // of the photons of suns and environment
-  bool any_distant = false;         // an environment that is not black, or a sun
-  const LightGrid* grid = nullptr;  // what is known of what reaches a place
+  // Set if directions of the environment are drawn by radiance times cosine
+  std::unique_ptr<SkyByNormal> sky_by_normal;
+  double environment_weight = 0;    // irradiance from the environment, averaged over all normals; 0: none or black
+  Aim aim;                          // of photons from directional lights and environment
+  bool any_distant = false;         // true if the environment is not black or a directional light shines
+  const LightGrid* grid = nullptr;  // learned visibility of distant light; nullptr: none
   LightTree tree{{}};
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
@@ -50,7 +51,7 @@ struct Lights::Impl {
   bool take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   const LightGrid::Cell* known(Vec3 point, Vec3 normal) const { return grid ? grid->find(point, normal) : nullptr; }
-  /// Probabilities of the sky and of the directional lights; the rest: lights that are somewhere.
+  /// Probabilities of the sky and of the directional lights; the remainder goes to lights inside the scene.
   struct Shares {
     double sky, suns;
   };
@@ -68,7 +69,7 @@ struct Lights::Impl {
   double disc_area() const { return std::numbers::pi * sphere_radius * sphere_radius; }
   float distance_beyond() const { return float(sphere_radius > 0 ? 2 * sphere_radius : 1); }
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
-  /// Radiance of a point of a slot's triangle, by barycentrics.
+  /// Radiance of a point on a slot's triangle, by barycentric coordinates.
   Rgb emitted_at(std::size_t slot, double b1, double b2) const {
     return triangles[slot].emitted_at(*frame, slots[slot].surface, slots[slot].triangle, b1, b2);
   }
@@ -80,7 +81,7 @@ struct Lights::Impl {
   void emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
 };
 
-/// The double u in part [first, first + width) of [0, 1), stretched to [0, 1).
+/// Maps u from the part [first, first + width) of [0, 1) to [0, 1).
 inline double stretch(double u, double first, double width) {
   return std::clamp((u - first) / width, 0.0, 1 - 0x1p-53);
 }

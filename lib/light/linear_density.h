@@ -1,4 +1,4 @@
-// lib/light/linear_density.h -- numbers with a density that is linear over [0, 1].
+// lib/light/linear_density.h -- samples a density that is linear over [0, 1].
 #pragma once
 
 #include <algorithm>
@@ -6,13 +6,13 @@
 
 namespace tempolux {
 
-/// a at t = 0, b at t = 1.
+/// Linear interpolation: a at t = 0, b at t = 1.
 inline double lerp(double a, double b, double t) { return a + (b - a) * t; }
 
-/// x in [0, 1] with density in proportion to a (1 - x) + b x, by u in [0, 1]; uniform if both are 0.
+/// Draws x in [0, 1] with a density in proportion to a (1 - x) + b x, from u in [0, 1]; uniform if a and b are 0.
 inline double sample_linear(double a, double b, double u) {
   if (!(a + b > 0)) return u;
-  // The root of (b - a) x^2 / 2 + a x = u (a + b) / 2 in the form that does not cancel.
+  // The root of (b - a) x^2 / 2 + a x = u (a + b) / 2, in the form without cancellation.
   const double x = u * (a + b) / (a + std::sqrt(lerp(a * a, b * b, u)));
   return std::clamp(x, 0.0, 1.0);
 }

@@ -1,4 +1,4 @@
-// lib/light/photon_emission.cpp -- photons from the emission table.
+// lib/light/photon_emission.cpp -- emits photons from the emission table.
 #include <sstream>
 
 #include "formats/error.h"
@@ -19,8 +19,8 @@ namespace {
 
 }  // namespace
 
-/// The first slot whose part of [0, 1) ends beyond u; rounding may leave the sum a little below 1. Halves without a
-/// branch: which way photons go is not foretold by those before.
+/// The first slot whose part of [0, 1) ends above u; rounding may leave the sum a little below 1. The bisection has no
+/// branches, since processors cannot predict them for random u.
 std::size_t Lights::Impl::slot_at(double u) const {
   const double* first = cumulative.data();
   for (std::size_t count = cumulative.size(); count > 1;) {
@@ -33,18 +33,18 @@ std::size_t Lights::Impl::slot_at(double u) const {
   return slot;
 }
 
-/// On a two-sided triangle numbers u[2] below 1/2 leave the front, the others the back; each half is stretched to [0,
-/// 1). The floor of 2 u[2] is 1 for the back and needs no branch that would be taken at random.
+/// On a two-sided triangle u[2] below 1/2 means the front, else the back; each half is stretched to [0, 1). The floor
+/// of 2 u[2] is 1 for the back and avoids an unpredictable branch.
 Vec2 Lights::Impl::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
   const bool halves = slot < triangles.size() && triangles[slot].two_sided;
   return {to_float(halves ? 2 * u[2] - std::floor(2 * u[2]) : u[2]), to_float(u[3])};
 }
 
-/// u0: u[0] stretched; direction: about the emitting side's normal.
+/// `u0` is u[0], stretched. `direction` is relative to the emitting side's normal.
 void Lights::Impl::emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
                                  PhotonEmission& e) const {
   const TriangleLight& t = triangles[slot];
-  // Heitz' map from square to triangle, as sample_triangle, in double.
+  // Heitz' map from the square to the triangle, as in sample_triangle, in double precision.
   const double half = 0.5 * std::min(u0, u[1]), b1 = u0 - half, b2 = u[1] - half;
   const double side = t.two_sided ? 1 - 2 * std::floor(2 * u[2]) : 1;
   e.origin = t.point(b1, b2);
@@ -60,7 +60,7 @@ void Lights::Impl::emit_triangle(std::size_t slot, double u0, const std::array<d
 void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u,
                                  PhotonEmission& e) const {
   if (placed.light.kind != PunctualLight::Kind::directional) {
-    // No position to choose: its two numbers are the direction's.
+    // A point light has no extent, so the first two numbers give the direction.
     e.origin = placed.position;
     e.travel = sample_punctual_direction(placed, u0, u[1]);
     return;
@@ -78,7 +78,7 @@ void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std
   e.origin = sphere_centre + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
 }
 
-/// Flux: radiance / density x pi R^2, or what Aim puts in its place.
+/// Flux is radiance / density x pi R^2, or Aim's weight in place of pi R^2.
 void Lights::Impl::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u,
                                     PhotonEmission& e) const {
   EnvironmentLight::Sample from;

@@ -8,13 +8,15 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kInside = 4;   ///< places along either side of a part at which the cosine is looked at
-constexpr double kLeastOfMean = 0.05;  ///< of the mean share, for parts that seem to be below
-/// A bin of normals is about 1/8 wide: what is half of that below the horizon of its middle is above it for some.
+constexpr std::uint32_t kInside = 4;  ///< positions along either side of a part at which the cosine is evaluated
+/// Least share of a part, over the mean share: also parts below the horizon keep a little
+constexpr double kLeastOfMean = 0.05;
+/// A bin of normals is about 1/8 wide, so a direction up to 1/16 below the horizon of the bin's middle is above the
+/// horizon of some normals.
 constexpr double kAroundHorizon = 1.0 / 16;
 
-/// The octahedral map [Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2),
-/// 2014].
+/// Bins of the octahedral map [Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+/// JCGT 3(2), 2014].
 std::uint32_t bin_of(Vec3 n) {
   const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   float x = n.x / sum, y = n.z / sum;
@@ -78,7 +80,7 @@ SkyByNormal::SkyByNormal(const EnvironmentLight& environment) : environment_(env
   });
 }
 
-/// The part, among those given, that a number falls in.
+/// The part, among those given, that u1 falls in.
 std::uint32_t SkyByNormal::Ends::part_for(float u1, Guide<32>::Range parts) const {
   return std::uint32_t(std::upper_bound(end.begin() + parts.first, end.begin() + parts.last, u1) - end.begin());
 }

@@ -1,4 +1,4 @@
-// lib/light/sky_by_normal.h -- directions of the sky as a surface sees it: by radiance and by the cosine.
+// lib/light/sky_by_normal.h -- samples directions of the sky by radiance times the cosine at a surface.
 #pragma once
 
 #include <array>
@@ -9,16 +9,17 @@
 
 namespace tempolux {
 
-/// EnvironmentLight draws directions by radiance alone: half of them may be below a surface, most of a bright sky at
-/// its horizon. Here the square of the numbers that draw a direction is cut into kAcross x kDown parts, which have
-/// equal shares of the sky's light, and for each of kNormals directions that a surface may face a part is drawn by the
-/// mean cosine in it. Every part keeps a little: the density is above 0 wherever the map's own is.
+/// EnvironmentLight draws directions by radiance alone: half of them may lie below a surface's horizon, and the horizon
+/// is often the brightest part of a sky. This class cuts the square of the two numbers that draw a direction into
+/// kAcross x kDown parts, which have equal shares of the sky's light. For each of kNormals normals, a part is drawn in
+/// proportion to the mean cosine in it. Every part keeps a small probability, so the density is above 0 wherever the
+/// map's own density is.
 class SkyByNormal {
  public:
-  /// environment must outlive it. Memory: 1 MiB.
+  /// The environment must outlive this object. Memory: 1 MiB.
   explicit SkyByNormal(const EnvironmentLight& environment);
 
-  /// A direction for a surface of this unit normal; u1, u2 as EnvironmentLight::sample().
+  /// Draws a direction for a surface of this unit normal; u1 and u2 as in EnvironmentLight::sample().
   bool sample(Vec3 normal, double u1, double u2, EnvironmentLight::Sample& sample) const;
   /// Density [1/sr] with which sample() gives this direction.
   double pdf_solid_angle(Vec3 normal, Vec3 direction) const {
@@ -30,7 +31,7 @@ class SkyByNormal {
 
  private:
   struct Ends {
-    std::array<float, kParts> end;  ///< cumulative; the last is 1
+    std::array<float, kParts> end;  ///< cumulative probabilities of the parts; the last is 1
     Guide<32> guide;
     std::uint32_t part_for(float u1, Guide<32>::Range parts) const;
   };

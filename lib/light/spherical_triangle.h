@@ -1,4 +1,4 @@
-// lib/light/spherical_triangle.h -- a triangle as seen from a point: directions in it.
+// lib/light/spherical_triangle.h -- samples directions inside a triangle seen from a point.
 #pragma once
 
 #include <array>
@@ -10,26 +10,26 @@ namespace tempolux {
 /// Three corners on the unit sphere.
 using SphericalTriangle = std::array<Vec3d, 3>;
 
-/// The corners' directions, of unit length; a corner at the point itself gives any direction.
+/// Unit directions to the three corners. A corner that lies at the point itself may get any direction.
 SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2);
 
-/// Direction uniform in the triangle of the given solid angle [sr]; u in [0, 1)^2. u.y = 0 is corner 1, (0, 1) corner
-/// 0, (1, 1) corner 2. In double: thin triangles cancel most digits. [Arvo, "Stratified Sampling of Spherical
-/// Triangles", SIGGRAPH 1995]
+/// Draws a direction uniformly in the triangle of the given solid angle [sr]; u in [0, 1)^2. u.y = 0 gives corner 1,
+/// (0, 1) corner 0, (1, 1) corner 2. Double precision, since thin triangles cancel most digits. [Arvo, "Stratified
+/// Sampling of Spherical Triangles", SIGGRAPH 1995]
 Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec2 u);
-/// The u that gives the unit direction w; u.x is 0 at corner 1, where it does not matter.
+/// The inverse: u for the unit direction w. At corner 1 u.x is arbitrary and set to 0.
 Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec3d w);
 
-/// A map of the unit square to itself whose density is bilinear between four values at its corners, so that what goes
-/// about as these is about the same for each sample. [Hart, Pharr, Mueller, Lopes, McGuire & Shirley, "Practical
-/// Product Sampling by Fitting and Composing Warps", CGF 39(4), 2020]
+/// Maps the unit square to itself with a density that is bilinear between four corner values. If an integrand is
+/// roughly proportional to these values, all samples contribute about the same. [Hart, Pharr, Mueller, Lopes, McGuire &
+/// Shirley, "Practical Product Sampling by Fitting and Composing Warps", CGF 39(4), 2020]
 class BilinearWarp {
  public:
-  /// Values at u = (0, 0), (1, 0), (0, 1), (1, 1), not negative; each counts as at least a hundredth of the largest, as
-  /// what is 0 at all corners may not be so between them.
+  /// Values at u = (0, 0), (1, 0), (0, 1), (1, 1), not negative. Each counts as at least a hundredth of the largest,
+  /// since an integrand that is 0 at all corners may be positive between them.
   explicit BilinearWarp(std::array<double, 4> values);
   Vec2 operator()(Vec2 u) const;
-  double density(Vec2 u) const;  ///< of its result; 1 in the mean
+  double density(Vec2 u) const;  ///< of the mapped points at u; the mean is 1
 
  private:
   std::array<double, 4> w_;

@@ -12,13 +12,13 @@
 namespace tempolux {
 namespace {
 
-constexpr float kOffsetScale = 0x1p-20f;  // of the largest coordinate, as for rays that leave surfaces
+constexpr float kOffsetScale = 0x1p-20f;  // over the largest coordinate, as for rays that start on surfaces
 
 /// The triangle as seen from a point.
 struct View {
-  Vec3 v0, v1, v2;           // to the corners
+  Vec3 v0, v1, v2;           // vectors to the corners, m
   float l0, l1, l2;          // their lengths
-  float height;              // of the point above the plane, positive on an emitting side
+  float height;              // m, of the point above the triangle's plane; positive on an emitting side
   float opposite, adjacent;  // tan(solid angle / 2) = opposite / adjacent
   bool visible;
 
@@ -32,21 +32,23 @@ struct View {
     adjacent = l0 * l1 * l2 + dot(v0, v1) * l2 + dot(v1, v2) * l0 + dot(v2, v0) * l1;
     visible = height > 0 && t.area > 0;
   }
-  /// Large enough to sample by solid angle, and not so close that the directions degenerate.
+  /// True if the triangle is large enough to be sampled by solid angle and the point is not so close to its plane that
+  /// directions degenerate.
   bool large() const {
-    constexpr float kTangent = 0.01f;  // of half the solid angle's bound
+    // tangent of half the smallest solid angle, and of its distance to the half sphere
+    constexpr float kTangent = 0.01f;
     return adjacent > 0 ? opposite > kTangent * adjacent : opposite > -kTangent * adjacent;
   }
   /// Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
 
-  /// For samples by solid angle: the cosines.
+  /// Cosines at the corners, for samples by solid angle.
   BilinearWarp cosines(const SphericalTriangle& t, Vec3 normal) const {
     const Vec3d n(normal);
     const double at1 = dot(t[1], n);
     return BilinearWarp({at1, at1, dot(t[0], n), dot(t[2], n)});
   }
-  /// For samples by area, Heitz' map: cosine over distance^3, as the triangle's own cosine is height / distance.
+  /// Cosine / distance^3 at the corners, for samples by area: the triangle's own cosine is height / distance.
   BilinearWarp factors(Vec3 normal) const {
     const auto factor = [normal](Vec3 v, double l) {
       return (normal == Vec3{} ? l : double(dot(v, normal))) / (l * l * l * l);
@@ -56,10 +58,10 @@ struct View {
   }
 };
 
-/// Heitz' map from the square to barycentrics, turned round.
+/// The inverse of Heitz' map from the square to barycentric coordinates.
 Vec2 find_in_triangle(Vec2 b) { return {b.x + std::min(b.x, b.y), b.y + std::min(b.x, b.y)}; }
 
-/// Barycentrics (b1, b2) where the ray from the view's point along w meets the triangle, held inside.
+/// Barycentric coordinates (b1, b2) where the ray along w meets the triangle's plane, clamped to the triangle.
 Vec2 project(const TriangleLight& t, const View& view, Vec3d w) {
   const Vec3d edge1(t.edge1), edge2(t.edge2), s1 = cross(w, edge2), s = -Vec3d(view.v0);
   const double divisor = dot(s1, edge1);

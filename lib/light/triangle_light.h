@@ -1,4 +1,5 @@
-// lib/light/triangle_light.h -- one emissive triangle: points on it as seen from a point, and their density.
+// lib/light/triangle_light.h -- one emissive triangle: draws points on it for a shading point, and evaluates their
+// density.
 #pragma once
 
 #include <vector>
@@ -8,11 +9,11 @@
 
 namespace tempolux {
 
-/// What textures and alpha leave of the emission of a surface's material in the mean, by triangle: the same at all
-/// frames at which the material's alpha is.
+/// The mean share of a material's emission that its textures and alpha let through, by triangle. The same at all frames
+/// at which the material's alpha is the same.
 struct EmissionShares {
   float alpha = 1;
-  std::vector<Rgb> of;  ///< mean_emission_share; empty where nothing varies: all are 1
+  std::vector<Rgb> of;  ///< by triangle; empty if nothing varies: all are 1
 
   EmissionShares() = default;
   EmissionShares(const SceneFrame& frame, std::uint32_t surface);
@@ -22,43 +23,45 @@ struct EmissionShares {
 struct TriangleLight {
   Vec3 corner{}, edge1{}, edge2{};
   Vec3 normal{};       ///< unit; zero if the triangle has no area
-  float offset = 0;    ///< m: rays that leave or reach it stay this far off its plane
+  float offset = 0;    ///< m; rays that leave or reach the triangle keep this distance from its plane
   double area = 0;     ///< m^2
   Rgb radiance{0.0f};  ///< W/(m^2 sr)
   bool two_sided = false;
-  bool varies = false;  ///< radiance is the mean; that of a point is emitted_at's
+  /// if true, `radiance` is the mean over the triangle and emitted_at gives the radiance of a point
+  bool varies = false;
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
   /// A triangle of a surface of the frame. Where a texture or alpha makes its emission vary, radiance is the mean over
   /// the triangle.
   TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, const EmissionShares& shares);
-  /// Radiance of the point of barycentrics (b1, b2), times the share of rays that meet it there.
+  /// Radiance at the barycentric coordinates (b1, b2), times the share of rays that alpha lets meet the triangle there.
   Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {
     return varies ? varying_at(frame, surface, index, b1, b2) : radiance;
   }
   bool emits() const { return area > 0 && max_component(radiance) > 0; }
-  Rgbd flux() const;                       ///< pi L A, twice that if two-sided [W]
-  Vec3 point(double b1, double b2) const;  ///< by the barycentrics of corners 1 and 2
+  Rgbd flux() const;                       ///< W: pi L A, twice if two-sided
+  Vec3 point(double b1, double b2) const;  ///< from the barycentric coordinates of corners 1 and 2
 
  private:
   Rgb varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const;
 };
 
 struct TrianglePoint {
-  Vec2 barycentric{};          ///< of corners 1 and 2
-  Vec3 position{}, wi{};       ///< wi: unit, from the point that looks towards position
+  Vec2 barycentric{};          ///< coordinates of corners 1 and 2
+  Vec3 position{}, wi{};       ///< wi is unit, from the shading point towards `position`
   double pdf_solid_angle = 0;  ///< [1/sr]
 };
 
-/// A point of the triangle as seen from `from`; false if it shows no emitting side there, or lies edge-on.
+/// Draws a point of the triangle for the point `from`. False if an emitting side does not face `from`, or the triangle
+/// is seen edge-on.
 ///
-/// Where the triangle fills between 0.02 sr and all but 0.02 sr of the half sphere, in solid angle:
-/// Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995; uniform, or nearly in proportion to the cosine at
-/// a surface of this unit normal, if it is not zero. Elsewhere uniform in area, by Heitz' map. pdf_triangle takes the
-/// same decision from the same numbers.
+/// If the triangle's solid angle is between 0.02 sr and 2 pi - 0.02 sr, the direction is drawn by solid angle (Arvo,
+/// "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995): uniformly if `normal` is zero, else nearly in
+/// proportion to the cosine at a surface of this unit normal. Otherwise the point is uniform in area, by Heitz' map.
+/// pdf_triangle makes the same choice from the same numbers.
 bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample);
-/// Density per solid angle of sample_triangle at `position`; 0 where it would have returned false.
+/// Density [1/sr] with which sample_triangle draws `position`; 0 where sample_triangle returns false.
 double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position);
 
 }  // namespace tempolux

@@ -16,7 +16,7 @@ struct Piece {
   std::string bytes;
 };
 
-/// Where each path's photons are in a batch: of path i the numbers from first[i] to first[i + 1], by bounce.
+/// The photons of each path in a batch: those of path i have the numbers first[i] to first[i + 1], by bounce.
 struct ByPath {
   std::vector<std::uint32_t> first, photons;
 
@@ -31,7 +31,7 @@ struct ByPath {
   }
 };
 
-/// 0 - x, as a flux of 0 stays +0.
+/// 0 - x instead of -x, so that a flux of 0 stays +0.
 formats::Photon negative(formats::Photon photon) {
   for (float& flux : photon.flux) flux = 0 - flux;
   return photon;
@@ -39,18 +39,18 @@ formats::Photon negative(formats::Photon photon) {
 
 }  // namespace
 
-PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whole,
+PhotonBatch difference_of(const PhotonTracer& static_scene, const PhotonTracer& whole,
                           std::span<const std::uint64_t> paths) {
-  // A path that meets nothing that moves in the whole scene is the same without it.
+  // A path that no mover touches in the whole scene is the same in the static scene.
   const PhotonBatch after = whole.trace_paths(paths);
   std::vector<std::uint64_t> others;
   std::vector<std::uint32_t> number_of;  // in `paths`
   for (std::uint32_t path = 0; path < paths.size(); ++path)
     if (after.moved[path]) others.push_back(paths[path]), number_of.push_back(path);
-  const PhotonBatch before = standing.trace_paths(others);
+  const PhotonBatch before = static_scene.trace_paths(others);
   const ByPath old(before, others.size()), now(after, paths.size());
   PhotonBatch result;
-  result.block.group = std::uint32_t(paths[0] % standing.group_count());
+  result.block.group = std::uint32_t(paths[0] % static_scene.group_count());
   for (std::size_t path = 0; path < others.size(); ++path) {
     const auto a = old.of(path), b = now.of(number_of[path]);
     std::size_t common = 0;
@@ -73,12 +73,12 @@ PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whol
   return result;
 }
 
-PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTracer& whole,
+PhotonMapResult write_dynamic_map(const PhotonTracer& static_scene, const PhotonTracer& whole,
                                   std::span<const std::uint64_t> paths, const PhotonOptions& options,
                                   formats::PhotonHeader header,
                                   const std::function<void(const void*, std::size_t)>& sink,
                                   const std::function<void(double)>& progress) {
-  // Pieces of one group, of at most a batch.
+  // Borders of pieces: each piece has paths of one group, at most a batch.
   std::vector<std::size_t> borders{0};
   for (std::size_t i = 1; i < paths.size(); ++i)
     if (paths[i] % whole.group_count() != paths[i - 1] % whole.group_count() ||
@@ -97,7 +97,7 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTrac
       borders.size() - 1, std::size_t(kChunksPerThread * parallel_thread_count()),
       [&](std::size_t i) -> std::shared_ptr<void> {
         auto piece = std::make_shared<Piece>();
-        piece->batch = difference_of(standing, whole, paths.subspan(borders[i], borders[i + 1] - borders[i]));
+        piece->batch = difference_of(static_scene, whole, paths.subspan(borders[i], borders[i + 1] - borders[i]));
         if (!piece->batch.block.photons.empty())
           piece->bytes = formats::encode_block(piece->batch.block, header.columns);
         return piece;

@@ -1,5 +1,5 @@
-// lib/photon/photon_ledger.h -- what writers of photon maps have in common: the ledger, what a header says, records of
-// media.
+// lib/photon/photon_ledger.h -- shared by the writers of photon maps: the ledger of flux by group, the header, records
+// of media.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats:
   if (!batch.pilots.empty()) group.pilots = batch.pilots;
 }
 
-/// What roulette gives may leave a little less than nothing absorbed.
+/// Russian roulette may leave the absorbed flux slightly negative: 0 then.
 inline void close_ledger(formats::GroupFlux& group) {
   for (double& flux : group.absorbed) flux = std::max(flux, 0.0);
 }
@@ -40,7 +40,7 @@ inline void count(const PhotonBatch& batch, PhotonMapResult& result) {
   result.seen_count += batch.seen_count;
 }
 
-/// Counts, kinds, columns and majorants of the map that the tracer makes.
+/// Fills in counts, kinds, columns and majorants of the tracer's map.
 inline void describe_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader& header) {
   header.group_count = tracer.group_count();
   header.emitted_count = tracer.photon_count();
@@ -52,12 +52,13 @@ inline void describe_map(const PhotonTracer& tracer, const PhotonOptions& option
   if (tracer.stores_directions()) header.columns |= formats::column_direction;
 }
 
-/// A tentative photon keeps in place of a normal how likely it was real: extinction / majorant in 65534ths.
+/// A tentative photon stores in place of a normal the probability that its collision was real: extinction / majorant in
+/// 65534ths.
 inline std::array<std::uint16_t, 2> encode_likelihood(float extinction, float majorant) {
   const float share = majorant > 0 ? std::clamp(extinction / majorant, 0.0f, 1.0f) : 0;
   return {std::uint16_t(share * 65534 + 0.5f), 0};
 }
-/// Extinction at the photon when it was recorded, where the majorant is this.
+/// Extinction at the photon when it was recorded, for this majorant.
 inline float extinction_when_recorded(const formats::Photon& photon, float majorant) {
   return float(photon.normal[0]) / 65534 * majorant;
 }

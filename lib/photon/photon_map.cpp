@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBatchesPerThread = 2;  ///< in flight, 100 kB each: one is traced, one waits for its turn
+constexpr int kBatchesPerThread = 2;  ///< in flight, 100 kB each: one is traced, one waits to be written
 
 struct EncodedBatch {
   PhotonBatch batch;
@@ -51,7 +51,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
       });
   result.totals.emitted_flux = as_array(emitted);
   result.totals.escaped_flux = as_array(escaped);
-  // What lossless walls absorb is 0 in the mean, and what roulette gives and takes may leave it below.
+  // Lossless walls absorb 0 on average, and Russian roulette may leave a negative sum.
   for (double& flux : result.totals.absorbed_flux = as_array(absorbed)) flux = std::max(flux, 0.0);
   for (formats::GroupFlux& group : ledger) close_ledger(group);
   writer.finish(result.totals, ledger);

@@ -1,4 +1,4 @@
-// lib/photon/photon_media.cpp -- photons in participating media.
+// lib/photon/photon_media.cpp -- traces photons through participating media.
 #include <algorithm>
 
 #include "lib/photon/photon_ledger.h"
@@ -15,8 +15,8 @@ const MajorantGrid& PhotonTracer::majorants() const {
   return media_ ? media_->majorants() : none;
 }
 
-/// Follows photons to where they meet a surface, as the loop without media does; those that a medium scatters before
-/// are listed in `scattered`. Returns how many arrive.
+/// Follows photons to the next surface, as the loop without media does. Photons that a medium scatters before are
+/// listed in `scattered`. Returns the number that arrives.
 std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits,
                               std::uint32_t* scattered, std::size_t& scattered_count, PhotonBatch& batch) const {
   std::size_t arrived = 0;
@@ -37,7 +37,7 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
   const PathRandom& random = path.random;
   Flight flight(media_->majorants(), path.ray.origin, path.ray.direction, end);
   Tentative t;
-  // Direct light is recorded only if it was asked for: volume-compose samples the lights.
+  // Direct light is recorded only on request, since volume-compose samples the lights.
   const bool records = options_.store_volume && (options_.store_direct || path.diffuse_seen || path.specular_seen);
   for (std::uint32_t step = 0;; ++step) {
     const std::uint64_t bits = random.bits(bounce, Purpose::flight, step & 0xffffff);
@@ -50,7 +50,7 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     const float extinction = media_->extinction(position);
     if (path.pilot) [[unlikely]]
       pilot_signature::look(*path.pilot, bits & 1, flux, extinction,
-                            t.majorant);  // the last bit of the word: FlightNumbers leaves it
+                            t.majorant);  // the last bit of the word, which FlightNumbers does not use
     if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share)
       record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, extinction, t.majorant,
                        bounce, batch);

@@ -1,4 +1,4 @@
-// lib/photon/photon_path.h -- a photon on its way, for the parts of PhotonTracer.
+// lib/photon/photon_path.h -- the state of a photon on its path, for the parts of PhotonTracer.
 #pragma once
 
 #include "lib/core/random.h"
@@ -7,15 +7,14 @@
 
 namespace tempolux {
 
-inline constexpr float kLargestPhotonSurvival =
-    0.9995f;  ///< in a lossless box paths end after 2000 bounces in the mean
+inline constexpr float kLargestPhotonSurvival = 0.9995f;  ///< in a lossless box paths end after 2000 bounces on average
 
 struct PhotonTracer::Path {
   PathRandom random{0, 0};
   Ray ray;
   Rgb flux;
-  FluxBalance* balance = nullptr;         ///< of all paths, or its own
-  formats::PhotonPilot* pilot = nullptr;  ///< takes down what it meets
+  FluxBalance* balance = nullptr;         ///< of all paths, or of this one
+  formats::PhotonPilot* pilot = nullptr;  ///< records what the pilot meets
   bool diffuse_seen = false, specular_seen = false;
   Inside inside;
 };

@@ -14,7 +14,7 @@
 namespace tempolux {
 namespace {
 
-/// All of a batch times a factor.
+/// Scales all sums and photons of a batch by a factor.
 void scale(PhotonBatch& batch, double factor) {
   for (formats::Photon& photon : batch.block.photons)
     for (float& flux : photon.flux) flux = float(double(flux) * factor);
@@ -22,7 +22,7 @@ void scale(PhotonBatch& batch, double factor) {
 }
 
 struct Refined {
-  std::vector<PhotonBatch> fresh;  ///< new paths of a group
+  std::vector<PhotonBatch> fresh;  ///< new paths of one group
 };
 
 }  // namespace
@@ -35,7 +35,7 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
   std::vector<double> wanted(n);
   const bool dark = std::ranges::all_of(moments, [](double m) { return !(m > 0); });
   for (std::size_t g = 0; g < n; ++g) wanted[g] = dark ? 1 : std::sqrt(std::max(0.0, moments[g]));
-  // Groups in the order in which a growing level reaches them; the level at which `extra` paths are spent.
+  // Groups in the order in which a rising level reaches them, and the level at which `extra` paths are used up.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t(0));
   const auto begins = [&](std::size_t g) { return wanted[g] > 0 ? double(paths[g]) / wanted[g] : INFINITY; };
@@ -49,7 +49,7 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
     had += double(paths[order[count]]);
     level = (had + double(extra)) / weight;
   }
-  // Whole numbers: each what is below, the largest rests one more.
+  // Rounds to whole numbers: each is rounded down, and the largest remainders get one more.
   std::vector<std::pair<double, std::size_t>> rests;
   std::uint64_t spent = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -65,8 +65,8 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
   return result;
 }
 
-std::vector<double> beside_groups(std::span<const double> values, std::uint64_t seed) {
-  constexpr std::array<std::size_t, 4> bases{3, 5, 7, 2};  // of PhotonHalton's components
+std::vector<double> neighbour_means(std::span<const double> values, std::uint64_t seed) {
+  constexpr std::array<std::size_t, 4> bases{3, 5, 7, 2};  // bases of PhotonHalton's components
   const std::size_t count = values.size();
   std::array<std::size_t, 4> sides{1, 1, 1, 1};
   std::size_t left = count;
@@ -127,10 +127,10 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   for (const formats::GroupFlux& entry : groups.ledger) {
     const auto n = double(std::max<std::uint64_t>(1, entry.paths));
     groups.paths.push_back(entry.paths);
-    // Flux is by 1 / n: of a path alone it is n times as much.
+    // Flux is divided by n; as the only path of the group a path would have n times as much.
     groups.moments.push_back(squares[entry.group] * n);
   }
-  groups.moments = beside_groups(groups.moments, tracer.seed());
+  groups.moments = neighbour_means(groups.moments, tracer.seed());
   return groups;
 }
 
@@ -150,7 +150,7 @@ PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOption
       paths.size(), std::size_t(2 * parallel_thread_count()),
       [&](std::size_t g) -> std::shared_ptr<void> {
         auto refined = std::make_shared<Refined>();
-        // The tracer's flux is by 1 / members.
+        // The tracer divides flux by `members`.
         const double factor = double(tracer.members()) / double(std::max<std::uint64_t>(1, paths[g]));
         for (std::uint64_t q = groups.paths[g]; q < paths[g]; q += PhotonTracer::kBatch) {
           refined->fresh.push_back(

@@ -1,4 +1,4 @@
-// lib/photon/photon_refine.h -- further photons in the groups of a map where they help most, all flux balanced.
+// lib/photon/photon_refine.h -- adds photon paths to the groups of a map that need them most, and rescales all flux.
 //
 // Paper: Jimenez, Myszkowski, Pueyo 2005, section 5. Method: docs/methods/volume_photons.md.
 #pragma once
@@ -14,33 +14,36 @@
 
 namespace tempolux {
 
-/// Paths of each group so that they are `extra` more in all and the variance, sum of moment / paths, is least, none
-/// getting fewer than it has: paths in proportion to the square root of the moment where that is more than there are
-/// (Neyman 1934). Where all moments are 0: evenly. Both spans by group; whole numbers that add up exactly.
+/// Number of paths for each group, `extra` more in all, so that the variance (the sum of moment / paths) is least and
+/// no group loses paths: paths are in proportion to the square root of the moment where that is more than there are
+/// (Neyman 1934). If all moments are 0, evenly. Both spans are by group; the whole numbers add up exactly.
 std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::span<const std::uint64_t> paths,
                                         std::uint64_t extra);
 
-/// For each group the mean over the groups beside it, whose boxes of starts share a face with its own. Its own value is
-/// left out: how many paths a group gets must not depend on what its own paths found, or the lucky are corrected and
-/// the unlucky are not (docs/methods/volume_photons.md). `values` by group, of PhotonHalton(seed). Where the number of
-/// groups is not 2^a 3^b 5^c 7^d they have no boxes: all get the mean of all.
-std::vector<double> beside_groups(std::span<const double> values, std::uint64_t seed);
+/// For each group, the mean over its neighbours: the groups whose boxes of start points share a face with its own. A
+/// group's own value is left out, since its number of paths must not depend on what its own paths found: otherwise
+/// lucky groups would be corrected and unlucky ones not (docs/methods/volume_photons.md). `values` are by group of
+/// PhotonHalton(seed). If the number of groups is not 2^a 3^b 5^c 7^d there are no boxes, and all groups get the mean
+/// of all.
+std::vector<double> neighbour_means(std::span<const double> values, std::uint64_t seed);
 
-/// For each group of a map: paths, and the second moment of what one of its paths adds to the light in media, W^2: mean
-/// over its paths of the sum of squares of (flux that collides at a tentative photon, were it the only path of the
-/// group), estimated from the groups beside it.
+/// For each group of a map: its number of paths, and the second moment of one path's contribution to the light in
+/// media, W^2. The contribution is the flux that collides at tentative photons if the path were the only one of its
+/// group; the moment is the mean over paths of the sum of its squares, estimated from the neighbouring groups.
 struct GroupMoments {
   formats::PhotonHeader header;
   std::vector<formats::GroupFlux> ledger;
   std::vector<std::uint64_t> paths;
   std::vector<double> moments;
 };
-/// Reads the map to its end. `tracer`: of the map's frame and seed. InputError unless it has photons in media.
+/// Reads the whole map. `tracer` must have the map's frame and seed. Throws InputError unless the map has photons in
+/// media.
 GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer);
 
-/// Writes the map at `path` with `extra` further paths. A group's photons carry Phi / (N_g n_g) then, n_g its paths:
-/// those it has are scaled by n_g before / after, new ones continue its Halton sequence. So flux is first divided among
-/// the groups, and a group with many paths is not brighter than others. `header`: of the map to come.
+/// Writes the map at `path` with `extra` further paths. A photon of group g then has the flux Phi / (N_g n_g), with n_g
+/// the group's paths: existing photons are scaled by n_g before / after, new paths continue the group's Halton
+/// sequence. Flux is divided among the groups first, so a group with many paths is not brighter. `header` is the new
+/// map's.
 PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options,
                                   formats::PhotonHeader header, const std::string& path, const GroupMoments& groups,
                                   std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink);

@@ -19,24 +19,24 @@ namespace {
 
 using formats::PathKind;
 
-/// A light this near to a surface's plane is in it, of the offset of rays that leave the surface: a few steps of a
-/// float.
+/// A light this close to a surface's plane counts as in the plane; a multiple of the offset of rays that leave the
+/// surface, which is a few float steps.
 constexpr float kInPlane = 0.25f;
-constexpr int kMostPlanes = 8;           ///< that a light may be in, one upon the other
-constexpr float kStepsPerCrossing = 10;  ///< tentative collisions in a mean crossing of the media's box, at least
+constexpr int kMostPlanes = 8;           ///< number of coincident planes in which a light may lie
+constexpr float kStepsPerCrossing = 10;  ///< least number of tentative collisions in a mean crossing of the media's box
 
 /// Kind of a photon by the events so far (formats/conventions.md).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
   return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
 }
 
-/// A light ray arriving at a surface: normals turned to the side it comes from.
+/// A photon that arrives at a surface; normals point to the side it comes from.
 struct Arrival {
   Vec3 wi, normal_geometric, normal;
   Frame frame;
   Vec3 wi_local;
   float shading_correction;  ///< |wi.n_s| / |wi.n_g|
-  bool flat;                 ///< the two normals are one
+  bool flat;                 ///< true if the two normals are equal
 
   Arrival(const SurfacePoint& point, Vec3 travel)
       : wi(-travel),
@@ -49,35 +49,35 @@ struct Arrival {
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
   }
 
-  /// Event D towards `travel`: f_D cos / pdf, pdf that of the cosine to the geometric normal and of choosing the event,
-  /// as the eye has it that looks against `travel` (ShadingPoint in lib/render/shading.h): by the shading normal, or by
-  /// the geometric one where the shading normal looks away from it. Black behind the surface.
+  /// Event D towards `travel`: f_D cos / pdf. The pdf is that of the cosine to the geometric normal, times the
+  /// probability of the event. f_D is evaluated as for an eye that looks against `travel` (ShadingPoint in
+  /// lib/render/shading.h): by the shading normal, or by the geometric normal where the shading normal faces away from
+  /// `travel`. Black behind the surface.
   Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec3 travel) const {
     const Frame geometric(normal_geometric);
     const Vec3 out = geometric.to_local(travel), in = geometric.to_local(wi);
     if (!(out.z > 0)) return Rgb(0.0f);
     const Vec3 shaded = frame.to_local(travel);
     const bool by_shading = shaded.z > kLooksAway;
-    // Light from behind the shading normal is seen from behind it only, and then it scatters by D alone.
+    // Light from behind the shading normal is visible only from behind it, and is scattered by D only.
     if (!(wi_local.z > 0)) return by_shading ? Rgb(0.0f) : bsdf.eval_diffuse(out, in) * kPi;
     const float p = bsdf.pdf_diffuse(chosen.wi, wi_local) / pdf_hemisphere_cos(chosen.wi.z);
     return by_shading ? bsdf.eval_diffuse(shaded, wi_local) * (kPi * shading_correction / p)
                       : bsdf.eval_diffuse(out, in) * (kPi / p);
   }
 
-  /// |wi.n| / |wi.n_g| of another normal; 0 from behind it.
+  /// |wi.n| / |wi.n_g| for another normal n; 0 if the light comes from behind n.
   float correction_by(Vec3 n) const {
     const float geometric = dot(wi, normal_geometric),
                 cosine = dot(wi, n) * std::copysign(1.0f, dot(n, normal_geometric));
     return geometric > 0 ? std::max(0.0f, cosine) / geometric : 0;
   }
 
-  /// Do the normals differ by half a degree or more?
+  /// True if the normals differ by half a degree or more.
   bool bent() const { return !flat && dot(normal, normal_geometric) < 0.99996f; }
 
-  /// Event S into directions from which the eye sees the geometric normal, since the shading normal looks away from
-  /// them (SeenSide); black into others, and where D was drawn. Beside the events by the shading normal, not instead of
-  /// them.
+  /// Event S into directions in which the eye uses the geometric normal, since the shading normal faces away from them
+  /// (SeenSide). Black for other directions, and if D was drawn. Comes in addition to the events by the shading normal.
   Bsdf::Sample scatter_beyond(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
     Bsdf::Sample next = bsdf.sample(geometric.to_local(wi), u_lobe, u);
@@ -89,12 +89,12 @@ struct Arrival {
   }
 };
 
-/// What only materials with textures or alpha need; bends the point's normal.
+/// Data that only materials with textures or alpha need; the constructor bends the point's normal.
 struct Textured {
-  Vec3 smooth;  ///< the point's normal without a normal map
+  Vec3 smooth;  ///< the point's shading normal without a normal map
   SurfaceMaterial material;
   Bsdf bsdf;
-  float coverage;  ///< share of photons that meet the surface there
+  float coverage;  ///< share of photons that hit the surface there
 
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
       : smooth(point.normal),
@@ -103,7 +103,7 @@ struct Textured {
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
 
-/// Field by field into its place: a copy of 32 bytes just put together would wait for each of them.
+/// Field by field: copying a record of 32 bytes that was just assembled would stall.
 void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std::uint32_t bounce,
             std::vector<formats::Photon>& photons) {
   formats::Photon& photon = photons.emplace_back();
@@ -115,8 +115,8 @@ void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std
   photon.bounce = std::uint8_t(std::min(bounce, 255u));
 }
 
-/// May light by events S arrive where a normal map bends the normal of a Lambert lobe? Of all materials, whichever are
-/// in the frame: maps of what stands and of all have the same columns.
+/// True if caustic light can fall on a Lambert lobe with a normal map. Tests all materials, whether or not they are in
+/// the frame, so that the static map and the global map have the same columns.
 bool normal_maps_see_caustics(const std::vector<Material>& materials) {
   return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return lobes_of(m).specular; }) &&
          std::any_of(materials.begin(), materials.end(),
@@ -233,8 +233,8 @@ struct PhotonTracer::Draw {
   Vec3 direction;  ///< sample_hemisphere_cos(u)
 };
 
-/// Step by step for all photons of a wave: what one computes does not wait for another's result, so that the processor
-/// works on several at a time.
+/// Processes the photons of a wave step by step: the steps of different photons are independent, so the processor
+/// overlaps them.
 void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path,
                           PhotonBatch& batch) const {
   const std::size_t started = path_numbers.size();
@@ -246,7 +246,7 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
   std::uint32_t alive[kWave], scattered[kWave];  // indices of paths
   const float share = float(1.0 / double(photon_count()));
   std::size_t count = 0;
-  std::uint64_t touched[kWave];  // bits by interval, while movers are watched
+  std::uint64_t touched[kWave];  // by interval, if movers are watched
   for (std::size_t i = 0; i < started; ++i) {
     const PhotonEmission& e = emissions[i];
     if (watch_) touched[i] = slot_moves_[e.slot] ? watch_->all() : 0;
@@ -262,7 +262,7 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
         paths[i].pilot = &batch.pilots[member];
         pilot_signature::start(*paths[i].pilot, paths[i].ray, paths[i].flux);
       }
-    if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);  // lamps that are off send none
+    if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);  // lights that are off emit nothing
   }
   batch.path_count += started;
 
@@ -310,9 +310,9 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
       if (touched[i]) batch.touched.push_back({path_numbers[i], touched[i]});
 }
 
-/// A surface gets nothing from a point light in its plane, the cosine is 0: light sampling has it so, and rounding,
-/// which starts half of the photons behind it, must not give it half of the flux in one place. They go on as if it were
-/// not there. Returns how many still arrive.
+/// A surface receives nothing from a point light in its plane, since the cosine is 0; light samples give 0, too.
+/// Rounding starts half of the photons behind the plane, and they would put half of the light's flux into one place.
+/// Such photons pass the surface. Returns the number that still arrives.
 std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths,
                                                  std::uint32_t* alive, Hit* hits, SurfacePoint* points,
                                                  std::uint64_t* touched, std::uint8_t* moved,
@@ -343,7 +343,7 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
   return kept;
 }
 
-/// The photon arrives at a surface; false if it ends there.
+/// Lets a photon arrive at a surface; false if it ends there.
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw,
                            PhotonBatch& batch) const {
   if (varies_[point.material]) [[unlikely]] {
@@ -354,10 +354,10 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, point.normal, draw, batch);
 }
 
-/// Half of the first bounces (events D) from places outside of the spheres that cameras see lead to the spheres, and
-/// carry less: where light of far ground enters a room one photon in thousands would find the way, and carry thousands
-/// of times what others do. `travel` is replaced, or kept; returns the cosine's density over that of both ways
-/// together, at most 1 / (1 - kTowards).
+/// Aims half of the first bounces (events D) outside the spheres that cameras see at the spheres, with less flux. Where
+/// light from a distant ground enters a room, only one photon in thousands would otherwise find the way, with thousands
+/// of times the flux of others. Replaces `travel`, or leaves it; returns the density of the cosine over the density of
+/// both strategies together, at most 1 / (1 - kTowards).
 float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce,
                         Vec3& travel) const {
   const Aim& aim = lights_.aim();
@@ -384,7 +384,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
     path.balance->absorbed += Rgbd(path.flux) - Rgbd(flux);
   }
 
-  // Record.
+  // Record the photon.
   const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
   float weight = bsdf.arrival_weight(at.wi_local.z) * at.shading_correction;
   if (directions_ && kind == PathKind::caustic) [[unlikely]]
@@ -398,16 +398,17 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
       record_direction(at.wi, batch);
   }
 
-  // Scatter, or be absorbed.
+  // Scatter or absorb the photon.
   const PathRandom& random = path.random;
-  const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;  // else it chooses nothing
+  // Without specular lobes there is no choice.
+  const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;
   Bsdf::Sample next;
   Vec3 travel;
-  // Once in a path: factors of many bounces multiplied would leave the mean to paths that are hardly ever met.
+  // Only once per path: the product of many such factors would leave the expectation to very rare paths.
   const bool aims =
       !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
   float aimed = 1;
-  bool beyond = false;  // there are two events to choose from: of either as much as of both, so that each counts twice
+  bool beyond = false;  // if both sides are possible, one is chosen with probability 1/2, so each counts twice
   if (bsdf.has_specular() && at.bent()) {
     next = at.scatter_beyond(bsdf, u_lobe, draw.u, travel);
     beyond = !is_black(next.weight);
@@ -432,9 +433,8 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
-  path.flux =
-      reflected * (survives ? aimed / survival
-                            : 0);  // roulette looks at the surface alone: where photons are aimed they carry less
+  path.flux = reflected *
+              (survives ? aimed / survival : 0);  // roulette depends on the surface only: aimed photons carry less flux
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;

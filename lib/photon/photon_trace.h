@@ -1,4 +1,4 @@
-// lib/photon/photon_trace.h -- emit photons, follow them, record where they arrive.
+// lib/photon/photon_trace.h -- emits photons, traces them and records where they arrive.
 #pragma once
 
 #include <array>
@@ -22,113 +22,116 @@ namespace tempolux {
 struct PhotonOptions {
   std::uint64_t seed = 0;
   std::uint64_t photon_count = 1'000'000;  ///< paths to start; rounded up to a multiple of group_count
-  std::uint32_t group_count = 0;           ///< N_g; 0: automatic
+  std::uint32_t group_count = 0;           ///< N_g, number of groups; 0: automatic
   bool store_direct = true, store_caustic = true, store_indirect = true;
-  /// Tentative collisions in media, those of direct light only with store_direct. Of each so many are kept at random,
-  /// as much heavier: of ten to a crossing four, which is what a radiance volume can resolve
-  /// (docs/methods/volume_photons.md).
+  /// Records tentative collisions in media; those of direct light only with store_direct. A share volume_share is kept
+  /// at random, with the flux divided by the share: of ten collisions per crossing four, which is what a radiance
+  /// volume can resolve (docs/methods/volume_photons.md).
   bool store_volume = false;
   float volume_share = 0.4f;
-  std::uint32_t pilots = 0;  ///< so many of each group's first paths are pilots: what they met is taken down
+  std::uint32_t pilots = 0;  ///< number of first paths in each group that are pilots: what they meet is recorded
 
-  /// "direct,caustic,indirect,volume" or a part of it. Throws InputError.
+  /// A list of kinds from "direct,caustic,indirect,volume". Throws InputError.
   void set_kinds(const std::string& list);
   std::string kinds() const;
 };
 
-/// N_g that keeps groups at 256 photons or more: the largest of 630 = 2 3^2 5 7, 210, 30, 6, 1 that does. With media,
-/// where groups are shot again one by one, at 64 photons, a wave, or more, and from 2520 = 2^3 3^2 5 7 down.
+/// The largest N_g of 630 = 2 3^2 5 7, 210, 30, 6, 1 with at least 256 photons per group. With media, whose groups are
+/// traced again one by one, from 2520 = 2^3 3^2 5 7 on and with at least 64 photons (a wave) per group.
 std::uint32_t automatic_group_count(std::uint64_t photon_count, bool media);
 
-/// Where flux came from and went, W: emitted = escaped + absorbed up to rounding.
+/// Balance of flux, W: emitted = escaped + absorbed, up to rounding.
 struct FluxBalance {
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
 };
 
-/// What a batch of photon paths left behind.
-struct PhotonBatch : FluxBalance {  ///< of all paths; if by_path see balance_of
+/// Result of tracing a batch of photon paths.
+struct PhotonBatch : FluxBalance {  ///< sums over all paths; with by_path see balance_of
   formats::PhotonBlock block;       ///< of one group
   std::uint64_t medium_steps = 0;   ///< tentative collisions
   std::uint64_t ray_count = 0, path_count = 0;
-  std::uint64_t specular_ray_count = 0;       ///< of the rays: those that an event S sent
-  std::uint64_t seen_count = 0;               ///< photons stored in the spheres of Lights::aim()
+  std::uint64_t specular_ray_count = 0;       ///< rays after an event S
+  std::uint64_t seen_count = 0;               ///< photons stored inside the spheres of Lights::aim()
   std::vector<formats::PhotonPilot> pilots;   ///< of the group, if its first path is in the batch
-  std::vector<formats::TouchedPath> touched;  ///< if movers are watched: those that they can touch, in order
-  bool by_path = false;                       ///< fill in, by number of the path in the list given to trace_paths:
-  std::vector<std::uint32_t> path_of;         ///< of each photon
-  std::vector<FluxBalance> balance_of;        ///< of each path
-  std::vector<std::uint8_t> moved;            ///< of each path: it met something that moves, or its light does
+  std::vector<formats::TouchedPath> touched;  ///< if movers are watched: the paths they can touch, in order
+  bool by_path = false;  ///< set to fill the members below, by the path's place in the list given to trace_paths
+  std::vector<std::uint32_t> path_of;   ///< of each photon
+  std::vector<FluxBalance> balance_of;  ///< of each path
+  std::vector<std::uint8_t> moved;      ///< by path: true if it met a mover, or its light moves or changes
 };
 
-/// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all
-/// else from random numbers keyed by (seed, i, bounce): it does not depend on the number of photons (but for
-/// its flux, emission / probability / N), on the group count or on any other photon.
+/// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all else from
+/// random numbers keyed by (seed, i, bounce). So it does not depend on the number of photons (except for its flux,
+/// emission / probability / N), on the number of groups, or on other photons.
 ///
-/// A photon is recorded at every surface that has a Lambert lobe, before it is scattered, with
+/// A photon is recorded at every surface with a Lambert lobe, before it is scattered, with
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
-/// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3]
-/// (they scatter to where the eye looks from: by the geometric normal, too, where the shading normal looks away);
-/// for a matte flat surface that is the flux that arrives. n_s of a normal map is that of its finest level, by which
-/// rays of gathering see it (RayCone). But pixels look at caustic light through photons, and by a normal that is the
-/// mean over what they do not resolve: where directions are stored (stores_directions) photons of kind caustic carry
-/// flux x |wi.n_v| / |wi.n_g|, n_v: the normal without a map, and who looks applies map and coat (received_share).
-/// Inside solids of glass it is divided by the index squared (bsdf.h). What solids absorb on the way counts as
-/// absorbed. Of a surface of alpha mode BLEND only the share alpha of the photons take notice: divided by alpha they
-/// stand for all that arrive. Roulette keeps the flux of a path about constant and its expectation exact.
+/// so that  rho/pi x density  is the radiance that the Lambert lobe reflects, with shading normals [Veach 1997, 5.3].
+/// (Where the shading normal faces away from the eye, the eye uses the geometric normal, and photons are scattered
+/// accordingly.) For a matte flat surface this is the arriving flux. n_s of a normal map is the normal at its finest
+/// level, which gather rays use, too (RayCone).
+///
+/// Pixels, however, see caustic light through photons, with a normal averaged over what they do not resolve. So where
+/// directions are stored (stores_directions) caustic photons carry flux x |wi.n_v| / |wi.n_g|, n_v being the normal
+/// without the map, and the reader applies map and coat (received_share). Inside glass the flux is divided by the
+/// squared index of refraction (bsdf.h). Light that solids absorb counts as absorbed. On a surface of alpha mode BLEND
+/// only a share alpha of the photons is recorded, with the flux divided by alpha. Russian roulette keeps the flux of a
+/// path about constant without bias.
 ///
 /// In media (SceneFrame::media) a photon flies by null collisions under the media's majorants, raised to ten tentative
-/// collisions per mean crossing of their box; its numbers are keyed by (seed, i, bounce, step). At each tentative
+/// collisions per mean crossing of their box; random numbers are keyed by (seed, i, bounce, step). At each tentative
 /// collision, real or null, a photon of kind tentative may be recorded with
 ///     flux / (majorant x volume_share)     [W m]
-/// so that their sum over a region is the integral of the fluence over it, whatever the density there. A real one
-/// scatters the albedo's share by the phase function; roulette as at surfaces.
+/// so that the sum over a region is the integral of fluence over it, whatever the density there. A real collision
+/// scatters the albedo's share by the phase function, with roulette as at surfaces.
 class PhotonTracer {
  public:
   PhotonTracer(const Tracer& tracer, const Lights& lights, const PhotonOptions& options);
 
   std::uint64_t photon_count() const { return group_count_ * members_; }
   std::uint32_t group_count() const { return std::uint32_t(group_count_); }
-  /// Batches in file order: groups ascending, each cut into pieces of kBatch paths. In a batch photons lie by waves of
-  /// kWave paths, in these by bounce.
+  /// Batches are in file order: groups ascending, each cut into pieces of kBatch paths. Photons of a batch are sorted
+  /// by waves of kWave paths, in a wave by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
-  /// Batches [first, last) of a group.
+  /// The batches [first, last) of a group.
   std::pair<std::size_t, std::size_t> batches_of(std::uint32_t group) const {
     return {std::size_t(group * batches_per_group_), std::size_t((group + 1) * batches_per_group_)};
   }
-  /// The frame's media as photons fly through them, or null.
+  /// The frame's media with raised majorants, or null.
   const Media* media() const { return media_ ? &*media_ : nullptr; }
-  /// The majorants of flight, floor included; empty without media.
+  /// The majorants in use, with the lower bound; empty without media.
   const MajorantGrid& majorants() const;
-  /// Do records have their direction: is a phase function of the media not even, or may caustic light fall on normal
-  /// maps?
+  /// True if photons store their direction: if a phase function is anisotropic, or caustic light may fall on normal
+  /// maps.
   bool stores_directions() const { return directions_; }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
-  /// Traces paths first .. last - 1 of a group, also such as the map does not have (last > photon_count() /
-  /// group_count()); their flux is that of the map's own paths. Thread-safe.
+  /// Traces paths first .. last - 1 of a group, also paths that the map does not have (last > photon_count() /
+  /// group_count()), with the flux of the map's own paths. Thread-safe.
   PhotonBatch trace_members(std::uint32_t group, std::uint64_t first, std::uint64_t last) const;
-  /// Paths of each group in the map, N_e.
+  /// Number of paths of each group.
   std::uint64_t members() const { return members_; }
   std::uint64_t seed() const { return options_.seed; }
-  /// Traces these paths, all of one group. Thread-safe.
+  /// Traces these paths, which must be of one group. Thread-safe.
   PhotonBatch trace_paths(std::span<const std::uint64_t> paths) const;
 
-  /// From now on trace() finds the paths that movers can touch: those of which a way meets their boxes, and those of
-  /// lights that move or change. `watch` must outlive this; nullptr: none.
+  /// From now on trace() finds the paths that movers can touch: a ray of the path meets a box of `watch`, or its light
+  /// moves or changes. `watch` must outlive this object; nullptr: none.
   void watch(const MoverWatch* watch);
 
-  /// A block of 40 kB in the file: what is in flight stays in the processor's cache, and memory is the same for
-  /// 10^6 photons as for 10^9.
+  /// Paths of a batch, a block of 40 kB in the file: batches in flight fit into the processor's cache, and memory does
+  /// not grow with the number of photons.
   static constexpr std::uint64_t kBatch = 1024;
 
  private:
   struct Path;
   struct Draw;
-  /// Photons followed together: what is known of them stays in the first-level cache.
+  /// Photons followed together; their state fits into the first-level cache.
   static constexpr std::uint64_t kWave = 64;
   static_assert(kWave <= Lights::kMostEmitted);
 
-  /// Photons of these numbers to their ends; at most kWave. first_path: the number of the first in the caller's list.
+  /// Follows the photons of these numbers to their ends; at most kWave. first_path is the place of the first one in the
+  /// caller's list.
   void follow(std::span<const std::uint64_t> numbers, std::uint32_t first_path, PhotonBatch& batch) const;
   std::size_t leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths,
                                      std::uint32_t* alive, Hit* hits, SurfacePoint* points, std::uint64_t* touched,
@@ -152,13 +155,13 @@ class PhotonTracer {
   std::array<bool, 3> stores_{};   ///< by formats::PathKind
   bool has_point_lights_ = false;  ///< or spots
   bool directions_ = false;
-  std::optional<Media> media_;              ///< the frame's, with raised majorants
-  std::vector<char> solid_;                 ///< by material: boundary of a solid of glass
-  std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from the back, from the front
-  std::vector<std::uint8_t> varies_;        ///< by material: textures decide at each hit
+  std::optional<Media> media_;              ///< the frame's media, with raised majorants
+  std::vector<char> solid_;                 ///< by material: true for the boundary of solid glass
+  std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: for light from the back, from the front
+  std::vector<std::uint8_t> varies_;        ///< by material: true if textures vary it over the surface
   std::uint64_t group_count_, members_, batches_per_group_;
   const MoverWatch* watch_ = nullptr;
-  std::vector<char> slot_moves_;  ///< by slot of the emission table: the light moves or changes
+  std::vector<char> slot_moves_;  ///< by slot of the emission table: true if the light moves or changes
 };
 
 }  // namespace tempolux

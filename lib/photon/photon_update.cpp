@@ -21,11 +21,11 @@ std::uint64_t draw(int frame, std::uint32_t group) {
   return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group);
 }
 
-/// A stream of a file's blocks, one group after the other.
+/// Reads a file's blocks, group by group.
 class Groups {
  public:
   explicit Groups(std::function<bool(formats::PhotonBlock&)> read) : read_(std::move(read)) { more_ = read_(next_); }
-  /// take(block) for each block of the group; those of groups before it are passed over.
+  /// Calls take(block) for each block of the group; blocks of earlier groups are skipped.
   template <class Take>
   void of(std::uint32_t group, const Take& take) {
     while (more_ && next_.group < group) more_ = read_(next_);
@@ -34,7 +34,7 @@ class Groups {
       more_ = read_(next_);
     }
   }
-  /// To the end, so that it is checked.
+  /// Reads to the end, so that the file is checked.
   void finish() {
     while (more_) more_ = read_(next_);
   }
@@ -130,7 +130,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
   }
   PhotonMapResult result;
   formats::PhotonWriter writer(sink, header);
-  // What is kept: of an overlay its own groups, else all.
+  // The kept photons: in an overlay the groups that it holds itself, else all.
   std::unique_ptr<formats::photons::FileReader> file;
   std::unique_ptr<formats::PhotonReader> whole;
   if (previous.is_kept()) {
@@ -201,7 +201,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
   keep_until(header.group_count);
   from_file.finish();
   result.totals = writer.finish({}, ledger);
-  if (!overlay) previous.photons.clear();  // its digest, which an overlay upon it names, is known to who reads it
+  if (!overlay) previous.photons.clear();  // kept in memory only for overlays, whose reader needs the base
   if (previous.is_kept()) {
     for (const formats::GroupFlux& entry : ledger) previous.ledger[entry.group] = entry;
     previous.header = header;

@@ -1,5 +1,5 @@
-// lib/photon/photon_update.h -- selective photon tracing: of an earlier map some groups are shot again, the others
-// kept.
+// lib/photon/photon_update.h -- selective photon tracing: traces some groups of an earlier map again and keeps the
+// others.
 //
 // Papers: Dmitriev et al. 2002; Jimenez, Myszkowski, Pueyo 2005. Method: docs/methods/volume_photons.md.
 #pragma once
@@ -18,38 +18,39 @@ namespace tempolux {
 
 struct UpdateOptions {
   UpdateStrategy strategy = UpdateStrategy::oldest;
-  std::uint64_t most_groups = 0;  ///< shot again at most
-  int age_floor = 0;              ///< frames: groups as old as this go before all others; 0: none
-  /// Priorities of census and pilots are times age^age_power. 0: as the papers have them; then some groups are never
-  /// their turn.
+  std::uint64_t most_groups = 0;  ///< limit of groups traced again
+  int age_floor = 0;              ///< frames: groups of this age and older come before all others; 0: none
+  /// Priorities by census and pilots are multiplied by age^age_power. 0 is the papers' rule, under which some groups
+  /// may never be traced again.
   double age_power = 1;
 };
 
-/// Why the map cannot be updated to `header` (of the map to come) with these options; "" if it can: groups, paths,
-/// kinds, columns, majorants, emission table and origin must be the same.
+/// The reason why the map cannot be updated to `header` (the new map's) with these options; "" if it can: groups,
+/// paths, kinds, columns, majorants, emission table and origin must be equal.
 std::string why_not_updatable(const formats::PhotonHeader& previous, const formats::PhotonHeader& header);
 
-/// The groups to shoot again at `frame`, ascending. None if `same`: nothing that light depends on has changed (but for
-/// `all`). Ties go by a number hashed from frame and group, so that no group is favoured.
+/// The groups to trace again at `frame`, ascending. None if `same` (nothing that light depends on has changed), except
+/// for `all`. Ties are broken by a hash of frame and group, so that no group is favoured.
 std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame, bool same,
                                          const UpdateOptions& options);
 
-/// What is to be done to a map.
+/// An update of a map.
 struct MapUpdate {
   std::string path;  ///< of the earlier map
   PreviousMap&
-      previous;  ///< one that is kept becomes the new map where that is an overlay; else it is not kept any more
-  std::span<const std::uint32_t> groups;  ///< to trace again, ascending
-  bool may_overlay = false;               ///< the new map lies in the same folder
-  /// If given: the chosen groups are not just left out, but taken back by negative photons through the scene of the
-  /// frame that they were traced at, whose tracer this gives, as Dmitriev et al. do. It costs a second trace and
-  /// changes nothing: paths are drawn from the same numbers, so what is taken back must be what was there (InputError
-  /// if it is not). For comparison.
+      previous;  ///< a map kept in memory, which becomes the new map if that is an overlay; otherwise it is released
+  std::span<const std::uint32_t> groups;  ///< to be traced again, ascending
+  bool may_overlay = false;               ///< true if the new map lies in the same folder
+  /// If given, the photons of the chosen groups are not dropped but cancelled by negative photons, as Dmitriev et al.
+  /// do: traced through the scene of the frame in which they were traced, whose tracer this function returns. This
+  /// costs a second trace and changes nothing, since paths have the same random numbers: cancelled photons must equal
+  /// the stored ones (else InputError). For comparison.
   std::function<const PhotonTracer&(int frame)> corrective;
 };
 
-/// Writes the map of `header` through `sink`: the chosen groups traced, all others as the earlier map has them. If at
-/// most half of the groups differ from the base, as an overlay upon it, else whole (and with `corrective`).
+/// Writes the map of `header` through `sink`: the chosen groups are traced, all others copied from the earlier map. If
+/// at most half of the groups differ from the base the map is written as an overlay on it, otherwise whole (also with
+/// `corrective`).
 PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options,
                                   formats::PhotonHeader header, const MapUpdate& update,
                                   const std::function<void(const void*, std::size_t)>& sink);

@@ -1,5 +1,5 @@
-// lib/photon/pilot_signature.h -- what a pilot path met, as hashes: equal if and (but for 2^-64) only if it met the
-// same.
+// lib/photon/pilot_signature.h -- hashes of what a pilot path met: equal if it met the same, otherwise different (with
+// probability 1 - 2^-64).
 #pragma once
 
 #include <bit>
@@ -18,7 +18,7 @@ inline std::uint64_t bits(float a, float b) {
   return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 | std::bit_cast<std::uint32_t>(b);
 }
 
-/// Where the path begins, and with which flux [W].
+/// Adds the path's start and flux [W].
 inline void start(formats::PhotonPilot& pilot, const Ray& ray, Rgb flux) {
   for (const auto& [a, b] :
        {std::pair{ray.origin.x, ray.origin.y}, std::pair{ray.origin.z, ray.direction.x},
@@ -26,20 +26,20 @@ inline void start(formats::PhotonPilot& pilot, const Ray& ray, Rgb flux) {
     add(pilot.vertices, bits(a, b));
 }
 
-/// It looks at a place of a medium, a tentative collision: flux [W], extinction and majorant [1/m]; `positive`: a bit
-/// drawn for the place.
+/// Adds a tentative collision in a medium: flux [W], extinction and majorant [1/m]; `positive` is a random bit for the
+/// place.
 inline void look(formats::PhotonPilot& pilot, bool positive, Rgb flux, float extinction, float majorant) {
   add(pilot.extinctions, std::bit_cast<std::uint32_t>(extinction));
   const double share = double((flux.r + flux.g + flux.b) / 3) * double(extinction) / double(majorant);
   pilot.sketch += positive ? share : -share;
 }
 
-/// A medium scatters or absorbs it there.
+/// Adds a real collision at the last place.
 inline void collide(formats::PhotonPilot& pilot, std::uint32_t bounce, std::uint32_t step) {
   add(pilot.collisions, std::uint64_t(bounce) << 32 | step);
 }
 
-/// It meets a surface after `distance` [m].
+/// Adds a hit on a surface.
 inline void meet(formats::PhotonPilot& pilot, std::uint32_t bounce, const Hit& hit) {
   add(pilot.vertices, std::uint64_t(bounce) << 32 | std::bit_cast<std::uint32_t>(hit.t));
   add(pilot.vertices, std::uint64_t(hit.surface) << 32 | hit.triangle);

@@ -12,9 +12,9 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kGroupsTogether = 16;  ///< whose pilots are one piece of work
+constexpr std::size_t kGroupsTogether = 16;  ///< groups whose pilots one task traces
 
-/// How much the pilots of a group have changed, as the strategy counts it.
+/// Difference between two sets of a group's pilots, as the strategy defines it.
 double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot> then,
                   std::span<const formats::PhotonPilot> now) {
   double sum = 0;
@@ -30,7 +30,7 @@ double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot>
   return strategy == UpdateStrategy::hybrid ? sum : sum / double(std::max<std::size_t>(1, then.size()));
 }
 
-/// Sends the pilots of all groups through the scene of the tracer.
+/// Traces the pilots of all groups through the tracer's scene.
 void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMap& previous) {
   const std::uint32_t pilots = previous.header.pilots;
   previous.change.assign(previous.ledger.size(), 0.0);
@@ -42,7 +42,8 @@ void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMa
   previous.pilot_paths = std::uint64_t(pilots) * previous.ledger.size();
 }
 
-/// What has changed where photons looked. Cells of the majorants without smoke in this frame need no look-up.
+/// Measures the change of extinction at the stored photons. Cells of the majorants without smoke in this frame need no
+/// look-up.
 class Census {
  public:
   Census(const PhotonTracer& tracer, Vec3 offset) : tracer_(tracer), offset_(offset) {
@@ -50,7 +51,7 @@ class Census {
     now_ = MajorantGrid(tracer.majorants().box(), tracer.majorants().counts());
     raise_majorants(tracer.media()->all(), now_);
   }
-  /// Sum over the block's tentative photons of worth x |extinction now - then|, W.
+  /// Sum over the block's tentative photons of flux x |extinction now - then|, W.
   double of(const formats::PhotonBlock& block) const {
     double sum = 0;
     for (const formats::Photon& photon : block.photons) {

@@ -1,5 +1,4 @@
-// lib/photon/previous_map.h -- an earlier photon map as the choice of groups sees it, read from its file or kept in
-// memory.
+// lib/photon/previous_map.h -- an earlier photon map, read to choose the groups to trace again.
 #pragma once
 
 #include <cstdint>
@@ -12,48 +11,48 @@
 
 namespace tempolux {
 
-/// Which groups go first.
+/// Which groups are traced again first.
 enum class UpdateStrategy : std::uint8_t {
-  oldest,  ///< those traced longest ago
-  random,  ///< any, others at each frame
-  census,  ///< where the stored photons saw most change: sum of worth x |change of extinction|
-  fde,     ///< pilots that look at another extinction than before (first difference in the extinction)
-  dip,     ///< pilots that media scatter at other places (different interaction point)
-  hybrid,  ///< by how much the extinction differs that pilots look at, and their flux
-  path,    ///< pilots that media scatter at other places, or that meet other surfaces or start otherwise
-  all,     ///< every group, whatever has changed
+  oldest,  ///< the groups with the oldest photons
+  random,  ///< random groups, others in each frame
+  census,  ///< groups whose stored photons saw most change: sum of flux x |change of extinction|
+  fde,     ///< groups with pilots that see another extinction (first difference in the extinction)
+  dip,     ///< groups with pilots that media scatter at other places (different interaction point)
+  hybrid,  ///< by the change of extinction along pilots, and their flux
+  path,  ///< groups with pilots that media scatter at other places, that hit other surfaces, or that start differently
+  all,   ///< every group, whether or not anything has changed
 };
 
-/// Does the strategy send pilots?
+/// True if the strategy traces pilots.
 constexpr bool sends_pilots(UpdateStrategy s) {
   return s == UpdateStrategy::fde || s == UpdateStrategy::dip || s == UpdateStrategy::hybrid ||
          s == UpdateStrategy::path;
 }
 
-/// What an earlier map says that a choice needs.
+/// The data of an earlier map from which groups are chosen.
 struct PreviousMap {
   formats::PhotonHeader header;
-  std::string
-      digest;  ///< of the whole map; of one that is kept, as it was read: an overlay upon an overlay asks for none
+  /// Of the whole map; of a map kept in memory, the digest at reading: an overlay on an overlay needs none.
+  std::string digest;
   std::vector<formats::GroupFlux> ledger;  ///< every group
-  /// One number for each group, for strategies that ask for it. Census: sum over its tentative photons of worth x
-  /// |extinction now - then|, W. fde, dip, path: share of its pilots that differ. hybrid: sum over its pilots of
-  /// |difference of the sketches|, W.
+  /// One number for each group, by strategy. census: sum over its tentative photons of flux x |extinction now - then|,
+  /// W. fde, dip, path: share of its pilots that differ. hybrid: sum over its pilots of |difference of the sketches|,
+  /// W. Empty for other strategies.
   std::vector<double> change;
-  std::uint64_t pilot_paths = 0;  ///< paths traced for it
-  /// What is known of a map that is kept: the photons of each group, and the groups that an overlay holds itself.
+  std::uint64_t pilot_paths = 0;  ///< pilot paths traced
+  /// For a map kept in memory: the photons of each group, and the groups that an overlay holds itself.
   std::vector<std::vector<formats::PhotonBlock>> photons;
   std::set<std::uint32_t> own;
   bool is_kept() const { return !photons.empty(); }
 };
 
-/// Reads the map to its end and finds PreviousMap::change against the scene of the tracer's frame; `origin` is the
-/// scene's. `keep`: its photons stay in memory, and finding the change is left to find_change(). InputError if the
-/// strategy needs pilots and the map has none.
+/// Reads the whole map and computes PreviousMap::change against the tracer's scene; `origin` is the scene's. With
+/// `keep` the photons stay in memory, and the change is left to find_change(). Throws InputError if the strategy needs
+/// pilots and the map has none.
 PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin,
                           bool keep = false);
 
-/// PreviousMap::change of a map that is kept, against the scene of another frame's tracer.
+/// Computes PreviousMap::change of a map kept in memory, against the scene of another frame's tracer.
 void find_change(const std::string& path, PreviousMap& previous, const PhotonTracer& tracer, UpdateStrategy strategy,
                  Vec3d origin);
 

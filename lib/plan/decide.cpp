@@ -1,4 +1,4 @@
-// lib/plan/decide.cpp -- one place decides; lib/render's choose_*.h hold the measurements behind each choice.
+// lib/plan/decide.cpp -- makes all decisions of a segment; lib/render's choose_*.h hold the measurements behind each.
 #include "lib/plan/decide.h"
 
 #include <algorithm>
@@ -21,11 +21,10 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kMostEvents = 4, kMostViews = 16;
-/// A state of light that follows from what stands needs what stands to be computed once: less than three states do not
-/// pay for it.
+/// Fewest states of light for which computing the light of the static scene first pays: it is computed once and every
+/// state follows from it.
 constexpr std::size_t kFewestStates = 3;
-/// Frames from one key to the next that warping needs between them at least; with fewer each picture is a key or beside
-/// two.
+/// Fewest frames between two keys for which warping pays; with fewer every picture is a key or next to two keys.
 constexpr std::size_t kFewestForKeys = 4;
 
 bool shines_from_afar(const SceneFrame& frame) {
@@ -38,7 +37,7 @@ CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wis
   return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
 }
 
-/// At most kMostViews of the frames, evenly spread.
+/// At most kMostViews of the frames, evenly spaced.
 std::vector<int> spread(const std::vector<int>& frames) {
   const std::size_t count = std::min(kMostViews, frames.size());
   std::vector<int> some;
@@ -46,7 +45,7 @@ std::vector<int> spread(const std::vector<int>& frames) {
   return some;
 }
 
-/// What one looked frame asks for.
+/// The needs of one looked frame.
 struct Look {
   std::vector<Way> ways;
   std::uint64_t paths = 0;  ///< of light
@@ -80,7 +79,7 @@ class FramePilot {
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
   SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
   MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
-  /// Of what a picture of the segment shows, the share that pictures before it do not, from one to the next.
+  /// Mean share of a picture of the segment that the picture before does not show.
   double new_share(const PlannedSegment& segment) const {
     const std::vector<int> pictures = spread(segment.pictures());
     std::vector<PlacedCamera> cameras;
@@ -91,7 +90,7 @@ class FramePilot {
   }
 
  private:
-  /// Lights that aim photons where the camera looks, as those of photon-trace.
+  /// Lights whose photons are aimed where the camera looks, as in photon-trace.
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
@@ -122,7 +121,7 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
   return kinds;
 }
 
-/// Joins what the looked frames ask for; media are lit by photons, which points read, too.
+/// Joins the needs of the looked frames. Media are lit by photons, which need points, too.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
   std::vector<std::vector<Way>> of_frames;
   for (const Look& look : looks) {
@@ -137,7 +136,7 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
            (wish.indirect != "auto" && kIndirectMethods[std::size_t(way.method)] != wish.indirect);
   });
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
-  // Where no surface with a Lambert lobe is seen paths are the one way there is.
+  // Where the camera sees no Lambert lobe, the only way is paths.
   const Way way = !ways.empty()
                       ? ways.front()
                       : Way{named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather),
@@ -162,15 +161,15 @@ void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
       {"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
 }
 
-/// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are
-/// asked for, or none of them, a frame costs at most twice what it could. A power of two.
+/// Number of pictures that share records. Joint records must cost at most twice one picture's own records, so that a
+/// frame costs at most twice its minimum, however many frames are asked for. A power of two.
 int pictures_together(std::size_t pictures, const Decisions& d) {
   int together = 1;
   while (std::size_t(together) < pictures && d.records_of(2 * together) <= 2) together *= 2;
   return together;
 }
 
-/// What of a frame's light follows from that of what stands.
+/// Decides which parts of a frame's light follow from the light of the static scene.
 void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
                    Decisions& d) {
   const std::string name = "photon-trace --map dynamic";
@@ -196,7 +195,7 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
   d.reasons.push_back({name, choice.because});
 }
 
-/// Are there pictures between key frames that warping could make?
+/// Decides whether warping can make pictures between key frames.
 void decide_walk(const PlannedSegment& segment, Decisions& d) {
   const std::size_t pictures = segment.pictures().size(), states = segment.states().size();
   std::string because;
@@ -209,8 +208,8 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   d.reasons.push_back({"ibr-warp", because});
 }
 
-/// Light textures need to know how many paths bring the photons that are asked for, how wide the filter is then, and
-/// whether light from far away is learned.
+/// For light textures: the number of light paths that give the wanted photons, the width of the filter, and whether
+/// distant lights are learned.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
@@ -237,7 +236,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
     if (light(i) == light(i - 1)) continue;
     const bool stood = i >= 2 && light(i - 1) == light(i - 2),
                stays = i + 1 < segment.frames.size() && light(i) == light(i + 1);
-    if (!stood && !stays) continue;  // something moves on
+    if (!stood && !stays) continue;  // something begins or ends to move
     events += looked.insert(segment.frames[i].frame).second;
   }
   std::set<int> pictures;
@@ -248,7 +247,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
 }
 
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source) {
-  StandingTree standing;
+  StaticTree standing;
   SeenAround seen;
   double radius = 0;
   bool from_afar = false;
@@ -258,7 +257,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, standing);
     look_around(tracer, frame.camera(source.camera_node), width, height, seen);
-    // Under lamps alone photons are not aimed, and in a room points are spread everywhere: one look is enough.
+    // With lamps only, photons are not aimed, and in a room points are everywhere: one look suffices.
     if (picture == segment.first && !from_afar && spheres_around(seen.places, radius).empty()) return "";
   }
   const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);

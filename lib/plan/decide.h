@@ -13,29 +13,30 @@
 
 namespace tempolux {
 
-/// Where pilots get the scene from.
+/// Gives pilots the scene.
 struct SceneSource {
-  /// The scene at a frame inside the animation; without its media if `with_media` is false.
+  /// The scene at a frame inside the animation; without media if `with_media` is false.
   std::function<SceneFrame(int frame, bool with_media)> at;
-  std::function<EmissionTable(int frame)> emission;  ///< the frozen table of the frame's segment
+  std::function<EmissionTable(int frame)> emission;  ///< the emission table of the frame's segment
   int camera_node = 0;
 };
 
-/// Frames of a segment that pilots look at: the first, the middle and the last one, and up to four at which something
-/// comes or goes after standing still. Frames that show the same as one before them are left out. Ascending.
+/// Frames of a segment for which pilots run: the first, the middle and the last one, and up to four at which something
+/// begins or ends to move. A frame that shows the same picture as an earlier one is left out. Ascending.
 std::vector<int> looked_frames(const PlannedSegment& segment);
 
-/// Decides for one segment. Each looked frame has its own pilot. Kinds of light are the union over the looked frames;
-/// numbers are the largest; records go before gathering and gathering before paths, as a method that is good for the
-/// brightest case is right for the others. Throws InputError for a wish that the scene cannot have.
+/// Makes the decisions of one segment. Each looked frame has its own pilot. Kinds of light are the union over the
+/// looked frames, numbers the maximum. If frames need different methods, records have precedence over gathering, and
+/// gathering over paths: a method that suits the brightest case is right for the others. Throws InputError for a wish
+/// that the scene cannot fulfil.
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source);
 
-/// What a camera sees over a segment, as the content of a view file (formats/plan/view.h): up to 16 different pictures,
-/// evenly spread. "" if photons need no aim and points lie everywhere: the scene is not much larger than what is seen.
-/// `width`, `height`: of the pictures, pixels; their ratio counts.
+/// What the camera sees over a segment, as the content of a view file (formats/plan/view.h): up to 16 different
+/// pictures, evenly spaced. "" if the scene is not much larger than what is seen, so that photons need no aim and
+/// points lie everywhere. `width` and `height` of the pictures in pixels; only their ratio counts.
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source);
 
-/// Hash of what decide() depends on, so that its answer can be kept in a file.
+/// Hash of all that decide() depends on, so that its result can be kept in a file.
 std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool media);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/plan/decisions.h -- what is decided for a segment, and what the user has wished.
+// lib/plan/decisions.h -- a user's wish and the decisions for a segment.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::optional<Enum> named(const char* const (&names)[n], const std::string& name
   return found == std::end(names) ? std::nullopt : std::optional(Enum(found - std::begin(names)));
 }
 
-/// A preview's elements collect photons over this many frames at most, those before, at and after a frame.
+/// Most frames over which a preview's elements collect photons: before, at and after a frame.
 inline constexpr int kPreviewWindow = 33;
 
 /// Photons of a preview, chosen by what a viewer sees (make measure).
@@ -36,40 +36,40 @@ struct Measured {
   std::string because;        ///< what was measured, in words
 };
 
-/// What the user asks for. Words are options as on a command line, separated by blanks.
+/// The user's wish. Options are given as on a command line, separated by blanks.
 struct Wish {
-  static constexpr int kAutoFilter = -1;  ///< as the preset has it
+  static constexpr int kAutoFilter = -1;  ///< value of `filter`: from the preset
   Quality quality = Quality::final;
   FrameMethod method = FrameMethod::frames;
-  int filter = kAutoFilter;       ///< frames of the filter's window, odd; 0: no filter
-  std::string indirect = "auto";  ///< or one of kIndirectMethods
-  std::string moving = "auto";    ///< or one of kMovingMethods
+  int filter = kAutoFilter;       ///< number of frames in the filter's window, odd; 0: no filter
+  std::string indirect = "auto";  ///< "auto", or one of kIndirectMethods
+  std::string moving = "auto";    ///< "auto", or one of kMovingMethods
   std::string split = "auto";     ///< or on, off
   int width = 640, height = 360;  ///< of the frames, pixels
-  std::uint64_t photons = 0;      ///< paths of light of a map; 0: the preset's
-  int rays = 0;                   ///< of a record at most; 0: the preset's
-  double pixel_error = 0;         ///< 0: the preset's
+  std::uint64_t photons = 0;      ///< light paths per photon map; 0: from the preset
+  int rays = 0;                   ///< most gather rays per record; 0: from the preset
+  double pixel_error = 0;         ///< 0: from the preset
   std::string points, records,
-      pixels;  ///< words for irradcache-build points, records and frame-render; "": the preset's
+      pixels;  ///< options of irradcache-build points and records, and of frame-render; "": from the preset
   std::string channels = "RGBA,Z,N,id";
-  bool textures = false;  ///< SURFACES=textures: indirect light in smoke by light textures
+  bool textures = false;  ///< SURFACES=textures: light textures give the indirect light in smoke
   std::string texture_words, smoke_words;
-  std::string update;  ///< share of the photon groups that is traced anew in smoke, "10%"; "": all
-  std::string refine;  ///< further paths for what smoke shows of a map, as a share of its paths, "5%"; "": none
-  std::string strategy = "census";   ///< which groups, as photon-trace --strategy
+  std::string update;                ///< share of the photon groups that is traced again in smoke, "10%"; "": all
+  std::string refine;                ///< further light paths for smoke, as a share of a map's paths, "5%"; "": none
+  std::string strategy = "census";   ///< which groups: photon-trace --strategy
   int key_distance = 16;             ///< frames between the first keys of a walkthrough
-  std::map<int, Measured> measured;  ///< of segments, by their first frame
-  double threshold = 0.05;  ///< an interval of a walkthrough is halved if a viewer sees in a larger share of its pixels
-                            ///< that they are wrong (AQM)
-  int reference_samples = 64;  ///< of a pixel of the reference that a report compares with
-  std::vector<int> report;     ///< frames to compare with path tracing
-  std::string common;  ///< words of all stages that shape content: --fps, --volume ... (they are hashed, not used)
-  std::string camera;  ///< name of the camera, or auto (hashed, not used)
+  std::map<int, Measured> measured;  ///< photons of segments, by their first frame
+  /// An interval of a walkthrough is halved if a viewer sees errors (AQM) in a larger share of its pixels.
+  double threshold = 0.05;
+  int reference_samples = 64;  ///< samples per pixel of a report's reference
+  std::vector<int> report;     ///< frames that are compared with path tracing
+  std::string common;          ///< options of all stages that change content: --fps, --volume ... (only hashed)
+  std::string camera;          ///< name of the camera, or auto (only hashed)
 };
 
-/// How the materials of a segment reflect.
+/// The lobes of a segment's materials.
 struct MaterialFacts {
-  bool lambert = false, other = false;  ///< some reflect by a Lambert lobe; some by a mirror or glossy lobe
+  bool lambert = false, other = false;  ///< true if some material has a Lambert lobe; a specular or glossy lobe
 };
 
 /// A fact that decides whether a stage has work.
@@ -78,25 +78,25 @@ struct Reason {
   std::string because;
 };
 
-/// What a segment needs. A function of the scene, the wish and the segment.
+/// The decisions for a segment: a function of the scene, the wish and the segment.
 struct Decisions {
-  std::string kinds;  ///< of photons that later stages read: "caustic,indirect"; "": no photons
+  std::string kinds;  ///< kinds of photons that later stages read: "caustic,indirect"; "": no photons
   IndirectMethod indirect = IndirectMethod::records;
-  bool caustic_map = false;              ///< caustic light where the eye looks is read from photons; else paths find it
-  std::uint64_t photon_paths = 700'000;  ///< of a photon map
+  bool caustic_map = false;  ///< true: visible caustic light is read from photons; false: camera paths find it
+  std::uint64_t photon_paths = 700'000;  ///< light paths of a photon map
   int record_rays = 500;
-  double texture_width = 0;   ///< of a preview's light textures, m: deviation of their filter; 0: no preview
-  bool learn_lights = false;  ///< light from far away comes through openings: it is learned which way
-  bool split = false;         ///< bright points are divided from the others and sampled explicitly
+  double texture_width = 0;   ///< m, standard deviation of the filter of a preview's light textures; 0: no preview
+  bool learn_lights = false;  ///< true if light comes through openings: the distant lights are learned
+  bool split = false;         ///< true: bright points are divided from the other points and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
-  double new_share = 0;  ///< of what a picture shows, that the pictures of the segment before it do not
-  int together = 1;      ///< pictures, one after the other, whose cameras share records
+  double new_share = 0;  ///< mean share of a picture that the picture before does not show
+  int together = 1;      ///< number of consecutive pictures whose cameras share records
 
-  /// Records for the cameras of so many pictures, one after the other; in records of one.
+  /// Records for the cameras of this many consecutive pictures, as a multiple of one picture's records.
   double records_of(double pictures) const { return 1 + new_share * (pictures - 1); }
-  bool walk = false;        ///< key frames and warping pay: METHOD=auto follows it
+  bool walk = false;        ///< true: key frames and warping pay; METHOD=auto follows it
   std::string view;         ///< content of the view file by which photons are aimed and points spread; "": none
-  std::vector<int> looked;  ///< frames of the pilots
+  std::vector<int> looked;  ///< frames for which pilots ran
   std::vector<Reason> reasons;
 
   bool photons() const { return !kinds.empty(); }

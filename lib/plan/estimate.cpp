@@ -1,4 +1,4 @@
-// lib/plan/estimate.cpp
+// lib/plan/estimate.cpp -- estimates the cost of a run.
 #include "lib/plan/estimate.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// lib/plan/graph.cpp -- from decisions to files, stage by stage.
+// lib/plan/graph.cpp -- turns decisions into files, stage by stage.
 #include "lib/plan/graph.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 constexpr const char* kAudit =
-    "--audit 0.02";  ///< of the frame's rays: with what the audit looks up less than 3 % of a run
+    "--audit 0.02";  ///< share of the frame's rays; with the audit's look-ups less than 3 % of a run
 
 std::string joined(const std::vector<int>& frames) {
   std::string text;
@@ -24,7 +24,7 @@ std::string joined(const std::vector<int>& frames) {
   return text;
 }
 
-/// The words without one of them.
+/// Options without one of them.
 std::string without(const std::string& words, const std::string& word) {
   std::istringstream stream(words);
   std::string text;
@@ -41,7 +41,7 @@ bool has_channel(const std::string& channels, const std::string& name) {
   return ("," + channels + ",").find("," + name + ",") != std::string::npos;
 }
 
-/// Adds those of `more` that are not among the channels.
+/// Adds the channels of `more` that are missing.
 std::string with_channels(std::string channels, const std::string& more) {
   std::istringstream names(more);
   for (std::string name; std::getline(names, name, ',');)
@@ -49,17 +49,18 @@ std::string with_channels(std::string channels, const std::string& more) {
   return channels;
 }
 
-/// Channels of a raw frame that is filtered to these. A window of several frames is laid along their motion.
+/// Channels of a raw frame from which these filtered channels are made. A window of several frames needs the motion
+/// between them.
 std::string raw_channels(const Wish& wish, const std::string& filtered) {
   return with_channels(
       std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
 }
 
-/// Options of a command, and the files among them.
+/// The options of a command, and the files among them.
 struct Command {
   std::string words;
   Names inputs;
-  std::string content;  ///< hashes of the states of the scene that it depends on
+  std::string content;  ///< hashes of the scene's states that it depends on
 
   void option(const std::string& text) {
     if (!text.empty()) words += (words.empty() ? "" : " ") + text;
@@ -71,7 +72,7 @@ struct Command {
   }
 };
 
-/// An interval of a walkthrough: frames between two keys that have the same light throughout.
+/// An interval of a walkthrough: the frames between two keys, all with the same light.
 struct Interval {
   int first = 0, last = 0;
   int middle() const { return first + (last - first) / 2; }
@@ -94,8 +95,8 @@ class Builder {
   }
 
  private:
-  /// A raw picture is large: the command that reads it removes it. One that two commands read stays, as either may be
-  /// the first.
+  /// A raw picture is large, so the command that reads it removes it. A picture that two commands read stays, since
+  /// either may run first.
   void remove_when_read() {
     std::map<std::string, int> readers;
     for (const GraphFile& file : graph_.files)
@@ -109,7 +110,7 @@ class Builder {
   const PlannedFrame& state(int frame) const { return segment(frame).at(frame); }
   int clamped(int frame) const { return std::clamp(frame, 0, plan_.last_frame); }
 
-  /// Adds a file once; returns its name.
+  /// Adds a file unless it is there already; returns its name.
   std::string add(const StageInfo& stage, const std::string& frames, const Command& command,
                   const Names& beside_extensions = {}) {
     Hasher hasher;
@@ -151,13 +152,13 @@ class Builder {
     return "--photons " + std::to_string(d.photon_paths) + " --kinds " + d.kinds;
   }
   bool moved(int frame) const { return decided(frame).moving != MovingMethod::anew; }
-  /// Hash of what a static map, its points and records depend on.
+  /// Hash of all that a static map, its points and its records depend on.
   std::string standing_content(int frame) const {
     Hasher hasher;
     const PlannedSegment& s = segment(frame);
     for (const std::string& hash : {s.static_geometry, s.standing, s.frozen}) hasher.add(std::string_view(hash));
     for (const PlannedFrame& f : s.frames)
-      hasher.add(std::string_view(f.light));  // which paths movers can touch, in any frame
+      hasher.add(std::string_view(f.light));  // movers of any frame decide which paths are touched
     return hasher.hex();
   }
 
@@ -169,7 +170,7 @@ class Builder {
     return add(stage::stands_photons, first, c, {".paths"});
   }
 
-  /// The photon map of a state of light: whole, or what movers change of the map of what stands.
+  /// The photon map of a state of light: the global map, or the dynamic map.
   std::string photons(int lit) {
     if (moved(lit)) {
       Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, state(lit).light};
@@ -184,7 +185,7 @@ class Builder {
     if (plan_.media && !wish_.update.empty()) add_update(lit, c);
     return add(stage::photons, lit, c);
   }
-  /// In smoke: a map is the one before it in its segment, some of its groups traced anew.
+  /// In smoke, a map is the previous map of its segment with some groups traced again.
   void add_update(int lit, Command& c) {
     const std::vector<int> states = segment(lit).states();
     const auto here = std::ranges::find(states, lit);
@@ -194,8 +195,8 @@ class Builder {
     c.option("--share " + wish_.update + " --strategy " + wish_.strategy);
   }
 
-  /// The map that smoke is made from: with --refine further paths where light in the smoke is noisy. Updates go on from
-  /// the map itself.
+  /// The map from which smoke is computed: with --refine it has further paths where light in the smoke is noisy.
+  /// Updates continue from the map without them.
   std::string refined_photons(int lit) {
     if (wish_.refine.empty()) return photons(lit);
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
@@ -234,7 +235,7 @@ class Builder {
     c.file("", points(lit));
     return add(stage::split, lit, c, {".high.irradpoints"});
   }
-  /// Points as options: all, or the low and the high part.
+  /// Adds points as options: all points, or the low and the high part.
   void add_points(int lit, Command& c) {
     if (!decided(lit).split) return c.file("--points", points(lit));
     const std::string low = low_points(lit);
@@ -255,7 +256,7 @@ class Builder {
     for (const int frame : frames) hasher.add(std::string_view(state(frame).camera));
     return hasher.hex();
   }
-  /// Pictures of the segment whose cameras share records of what stands with a frame's: a block of Decisions::together.
+  /// Pictures of the segment whose cameras share static records with a frame: a block of Decisions::together.
   std::vector<int> together(int frame) const {
     const std::vector<int> pictures = segment(frame).pictures();
     const auto size = std::ptrdiff_t(decided(frame).together);
@@ -270,10 +271,10 @@ class Builder {
     c.option(record_words(frame));
     return add(stage::stands_records, pictures.front(), c);
   }
-  /// The state of light of the frame before, if its records lead to those of this state.
+  /// The state of light of the frame before, if this state's records continue that state's.
   int state_before(int lit) const { return lit > segment(lit).first ? state(lit - 1).lit_frame : lit; }
-  /// With records that are kept over time: states that one picture shows. Where a camera moves while light stands, one
-  /// cache serves all its pictures.
+  /// True if records are kept over time. Only for states that a single picture shows: if the camera moves while the
+  /// light is constant, one cache serves all its pictures.
   bool over_time(int lit) const {
     return decided(lit).moving == MovingMethod::time && segment(lit).pictures(lit).size() == 1;
   }
@@ -300,7 +301,7 @@ class Builder {
     Command c{"--frames " + joined(pictures), {}, state(lit).light + cameras(pictures)};
     c.file("--update", stands_records(pictures.front()));
     c.file("--points", points(lit));
-    // Dynamic photons of up to two states before: where they mattered, records are gathered still.
+    // Dynamic photons of up to two states before: records they affected are gathered again.
     std::vector<int> states{lit};
     for (int frame = lit; states.size() < 3 && frame > segment(lit).first;) {
       frame = state_before(frame);
@@ -312,7 +313,7 @@ class Builder {
     return add(stage::records, pictures.front(), c);
   }
   std::string kept_records(int lit) {
-    const PlannedSegment& s = segment(lit);  // whose borders samples remember
+    const PlannedSegment& s = segment(lit);  // samples store its borders
     Command c{
         "--frame " + std::to_string(lit), {}, state(lit).light + cameras(s.pictures(lit)) + joined({s.first, s.last})};
     add_points(lit, c);
@@ -331,8 +332,8 @@ class Builder {
 
   // ---- previews -------------------------------------------------------------------------------------------------
   static constexpr int kReach = kPreviewWindow / 2;
-  /// Photons of a frame: its own, whatever frames have the same light, so that windows collect different ones. In a
-  /// segment of one state of light one map has as many as a window.
+  /// Photons of a frame: a map of its own even if other frames have the same light, so that windows collect different
+  /// photons. A segment with one state of light has as many maps as a window.
   std::string preview_photons(int frame, bool still) {
     const Decisions& d = decided(frame);
     Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, state(frame).light};
@@ -351,13 +352,13 @@ class Builder {
         "--frame " + std::to_string(frame) + " --counts --kinds " + decided(frame).kinds + " " + width_words(frame),
         {},
         ""};
-    // What moves is cut by its size in these frames, and jumps are seen beside the frames around.
+    // Sizes of moving elements depend on these frames, and jumps are detected from the neighbouring frames.
     for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
       c.content += state(std::clamp(f, s.first, s.last)).light;
     c.file("--photons", preview_photons(frame, false));
     return add(stage::counts, frame, c);
   }
-  /// Light textures of a state of light.
+  /// The light textures of a state of light.
   std::string preview_light(int lit) {
     const PlannedSegment& s = segment(lit);
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
@@ -371,11 +372,11 @@ class Builder {
     return add(stage::windows, lit, c);
   }
 
-  /// What light from far away reaches what the cameras of the segment see, learned once.
+  /// Visibility of distant lights for the cameras of the segment, learned once.
   std::string lights(int frame) {
     if (!decided(frame).learn_lights || !has_word(wish_.pixels, "--learn-lights")) return "";
     const std::vector<int> all = segment(frame).pictures();
-    std::vector<int> pictures;  // first, last and two between: what cameras see changes slowly
+    std::vector<int> pictures;  // first, last and two between, since the view changes slowly
     for (std::size_t i = 0; i < 4; ++i)
       if (const int f = all[i * (all.size() - 1) / 3]; pictures.empty() || pictures.back() != f) pictures.push_back(f);
     Command c{"--frames " + joined(pictures) + " --learn-lights " + size_, {}, cameras(pictures)};
@@ -414,7 +415,7 @@ class Builder {
     if (decided(frame).photons() && !preview_) c.option(kAudit);
     return c;
   }
-  /// With the channel motion a hash of a frame and those beside it: what is where, and the cameras.
+  /// With the channel motion, a hash of the positions and cameras in a frame and its neighbours.
   std::string in_motion(int frame, const std::string& channels) const {
     if (!has_channel(channels, "motion")) return "";
     Hasher hasher;
@@ -422,8 +423,8 @@ class Builder {
       for (const std::string& hash : {state(f).light, state(f).camera}) hasher.add(std::string_view(hash));
     return hasher.hex();
   }
-  /// The first frame of the segment that looks as this one; with the channel motion as those beside it do, too. Of the
-  /// segment's ends only they themselves have neighbours in the plan, whatever is asked for.
+  /// The first frame of the segment with the same picture; with the channel motion its neighbours must be the same,
+  /// too. At the ends of the segment only the frame itself qualifies, whatever frames are asked for.
   int shown(int frame, const std::string& channels) const {
     if (!has_channel(channels, "motion")) return state(frame).picture;
     for (int f = segment(frame).first + 1; f < frame; ++f)
@@ -431,7 +432,7 @@ class Builder {
     return frame;
   }
 
-  /// The picture that a frame shows, smoke included.
+  /// The picture that a frame shows, with smoke.
   std::string picture(int frame) {
     frame = shown(frame, wish_.channels);
     const std::string clear = clear_picture(frame);
@@ -453,10 +454,10 @@ class Builder {
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
-  /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's
+  /// A frame with the halves of its samples, filtered alone or with its neighbours. The window ends at the animation's
   /// ends.
   std::string filtered_picture(int frame, const std::string& channels) {
-    // Frames around it must have noise of their own.
+    // The frames of a window need independent noise.
     const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
     const std::string raw_names = raw_channels(wish_, channels);
     Command c;
@@ -487,8 +488,8 @@ class Builder {
     if (wish_.filter > 0) return filtered_picture(frame, channels);
     return add(stage::keys, frame, frame_command(frame, pixels_, channels));
   }
-  /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a
-  /// key. Intervals lie at fixed multiples; one whose light changes is halved until it does not.
+  /// The interval of equal light between first keys that strictly holds a frame; false: the frame is a key. Intervals
+  /// start at fixed multiples; an interval whose light changes is halved until it does not.
   bool interval_around(int frame, Interval& interval) const {
     const int first = frame - frame % wish_.key_distance;
     interval = {first, clamped(first + wish_.key_distance)};
@@ -500,7 +501,7 @@ class Builder {
   }
   std::string interval_name(const Interval& i) const { return frame_digits(i.first) + "+" + frame_digits(i.last); }
 
-  /// What decides an interval: its keys, and those of its halves.
+  /// The file that decides an interval, from its keys and from the files of its halves.
   std::string interval_file(const Interval& i) {
     if (i.last - i.first < 2) return "";
     if (const auto found = intervals_.find(i.first * 1'000'000LL + i.last); found != intervals_.end())

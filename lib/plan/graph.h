@@ -1,9 +1,8 @@
-// lib/plan/graph.h -- the files that a plan needs, and what each is made from.
+// lib/plan/graph.h -- the files that a plan needs, and the inputs of each.
 //
-// A file's name ends in a key: a hash of everything that it is made from, namely the program, its options, the states
-// of the scene that it depends on, and the names of its inputs, which have keys of their own. So a file that exists
-// under the name asked for is right, whatever was made before in the same folder and whatever the clocks of machines
-// say.
+// A file's name ends in a key: a hash of the program, its options, the scene's states that the file depends on, and the
+// names of its inputs, which end in keys themselves. So an existing file of the wanted name is right, whatever else the
+// folder holds and whatever machines' clocks say.
 #pragma once
 
 #include <functional>
@@ -19,53 +18,53 @@ namespace tempolux {
 /// A file that a rule of pipelines/stages.mk makes.
 struct GraphFile {
   std::string name;                 ///< relative to OUT: "photons/0012-3fa94c21d0.photons"
-  std::vector<std::string> beside;  ///< further files that the same command writes
+  std::vector<std::string> beside;  ///< further files of the same command
   std::string stage;                ///< StageInfo::name
   std::string words;                ///< options of the command, inputs included
-  bool passing = false;             ///< read once and large: removed by the command that reads it
-  std::vector<std::string> inputs;  ///< names of files that must exist before
+  bool passing = false;             ///< large and read once: removed by the command that reads it
+  std::vector<std::string> inputs;  ///< names of files that must exist first
 };
 
-/// A small file that scene-plan writes itself: name relative to OUT, and its bytes.
+/// A small file that scene-plan writes itself: its name relative to OUT, and its bytes.
 struct PlanFile {
   std::string name;
   std::string content;
 };
 
 struct Graph {
-  std::vector<GraphFile> files;                ///< inputs before what is made from them
-  std::map<std::string, std::size_t> by_name;  ///< of all files, those beside others included, the place in `files`
+  std::vector<GraphFile> files;                ///< inputs come before the files made from them
+  std::map<std::string, std::size_t> by_name;  ///< index into `files` of every file, including those in `beside`
   std::vector<PlanFile> states;                ///< view files, majorants
-  std::map<int, std::string> pictures;         ///< of each frame asked for, the file that it shows
-  std::vector<std::string> intervals;          ///< of a walkthrough, in the order of frames
-  std::map<int, std::string> errors;           ///< of each frame of the report: what aqm-compare finds
+  std::map<int, std::string> pictures;         ///< the picture that each frame asked for shows
+  std::vector<std::string> intervals;          ///< of a walkthrough, in frame order
+  std::map<int, std::string> errors;           ///< result of aqm-compare for each frame of the report
   std::map<std::string, std::vector<std::string>>
-      spent;  ///< of each file of the report: stats of all stages that lead to it
+      spent;  ///< for each file of the report: stats of all stages before it
 
   void add(const GraphFile& file);
-  const GraphFile* find(const std::string& name)
-      const;  ///< the file that the command makes which makes this one; nullptr: no command makes it
+  const GraphFile* find(
+      const std::string& name) const;  ///< the GraphFile whose command writes this file; nullptr: no command does
 };
 
-/// Hash of a program and of all that it loads.
+/// Hash of a program and of the modules and child programs it uses.
 using ToolHash = std::function<std::string(const std::string& tool)>;
-/// Content of a majorants file for the segment that starts at `first` (formats/majorants); called only where there are
+/// Content of a majorants file for the segment of frames first to last (formats/majorants); called only if there are
 /// media.
 using MajorantsText = std::function<std::string(int first, int last)>;
 
 /// `wish` is complete (with_preset). Throws InputError for wishes that exclude each other.
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants);
 
-/// Frames beside those asked for whose segments the graph needs: windows of the filter, keys of a walkthrough, and
-/// those beside them where pictures say how things move.
+/// Further frames whose segments the graph needs: windows of the filter, keys of a walkthrough, and their neighbours if
+/// pictures hold motion.
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish);
 
-/// "photons/0012-3fa94c21d0" of "photons/0012-3fa94c21d0.photons"; with another extension; the digits of a key, 40
-/// bits: two of 10 000 files agree by chance once in 20 000 plans.
+/// "photons/0012-3fa94c21d0" for "photons/0012-3fa94c21d0.photons"; the same with another extension; the digits of a
+/// key, 40 bits: among 10 000 files two keys are equal by chance once in 20 000 plans.
 std::string stem_of(const std::string& name);
 std::string beside(const std::string& name, const std::string& extension);
 std::string key_of(const std::string& hash);
-/// A frame number as it stands in names: at least four digits.
+/// A frame number as in file names: at least four digits.
 std::string frame_digits(int frame);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/plan/inputs.cpp
+// lib/plan/inputs.cpp -- reads and writes stamps of input files.
 #include "lib/plan/inputs.h"
 
 #include <sys/stat.h>
@@ -54,7 +54,7 @@ Inputs::Inputs(const std::string& file) {
   if (!std::getline(stream, line) || line != kFirstLine || !std::getline(stream, wish_)) return;
   InputStamp stamp;
   std::size_t length = 0;
-  // Names may hold any byte but NUL, so each comes with its length.
+  // Names may hold any byte except NUL, so each has its length in front.
   while (stream >> stamp.size >> stamp.inode >> stamp.modified_ns >> stamp.changed_ns >> stamp.hash >> length &&
          length < 1 << 16) {
     std::string path(length, '\0');

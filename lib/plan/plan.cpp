@@ -1,4 +1,4 @@
-// lib/plan/plan.cpp -- compare the frames of each segment by content.
+// lib/plan/plan.cpp -- compares the frames of each segment by content.
 #include "lib/plan/plan.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 #include "lib/light/lights.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/animate.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux {
 namespace {
@@ -48,13 +48,13 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   try {
     frame.view = state.camera(camera_node);
     frame.camera = camera_hash(*frame.view);
-  } catch (const InputError&) {  // a camera without direction: the tools say so if this frame is asked for
+  } catch (const InputError&) {  // a camera without direction; the tools report it if this frame is asked for
   }
   if (media) frame.media = media(number);
   return frame;
 }
 
-/// All frames of the segment. If nothing moves, the first frame is evaluated for all.
+/// All frames of the segment. If nothing moves, only the first frame is evaluated.
 std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, int camera_node, bool anything_moves,
                                          const MediaHash& media) {
   std::vector<PlannedFrame> frames;
@@ -86,14 +86,14 @@ void share_in_segment(PlannedSegment& segment) {
 }
 
 std::string standing_hash(const SceneFrame& frame) {
-  const SceneHashes hashes = standing_scene(frame).hashes;
+  const SceneHashes hashes = static_scene_of(frame).hashes;
   Hasher hasher;
   for (const std::string& hash : {hashes.static_geometry, hashes.materials, hashes.lights})
     hasher.add(std::string_view(hash));
   return hasher.hex();
 }
 
-/// Materials that some triangle of the scene has.
+/// Materials of the scene's triangles.
 std::set<std::uint32_t> used_materials(const Scene& scene) {
   std::set<std::uint32_t> used;
   for (const Node& node : scene.nodes)
@@ -103,7 +103,7 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
   return used;
 }
 
-/// Numbers in the order given, those that follow each other as a range: "-2, 48 to 60".
+/// Numbers in the given order; consecutive ones as a range: "-2, 48 to 60".
 std::string in_words(std::span<const int> frames) {
   std::string words;
   for (std::size_t i = 0; i < frames.size();) {
@@ -116,7 +116,7 @@ std::string in_words(std::span<const int> frames) {
   return words;
 }
 
-/// First and last frame of the animation: "0 to 47"; of a scene that stands still "0 and later".
+/// First and last frame of the animation: "0 to 47"; "0 and later" without animation.
 std::string extent_in_words(const Scene& scene, const TimeOptions& options) {
   const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), options);
   return last == std::numeric_limits<int>::max() ? "0 and later" : "0 to " + std::to_string(last);
@@ -161,14 +161,14 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int came
   return planned;
 }
 
-/// The frame from which on no track changes anything: the last one at which a value differs from the one that the track
-/// ends with, or the next frame if that lies between two. 0 if nothing changes.
+/// The frame from which on no track changes: the time of the last value that differs from its track's final value,
+/// rounded up. 0 if nothing changes.
 int last_change(const Scene& scene, const TimeOptions& options) {
   double last_s = 0;
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
       const std::size_t n = track.times_s.size(), per_key = n == 0 ? 0 : track.values.size() / n;
-      for (std::size_t key = n; key-- > 1;)  // splines: tangents count as well
+      for (std::size_t key = n; key-- > 1;)  // for splines tangents count as well
         if (!std::equal(track.values.begin() + std::ptrdiff_t(key * per_key),
                         track.values.begin() + std::ptrdiff_t((key + 1) * per_key),
                         track.values.begin() + std::ptrdiff_t((key - 1) * per_key))) {

@@ -1,4 +1,4 @@
-// lib/plan/plan_files.cpp -- formats/plan/plan.md, written.
+// lib/plan/plan_files.cpp -- writes the files of formats/plan/plan.md.
 #include "lib/plan/plan_files.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ Json segment_json(const PlannedSegment& segment) {
   return json;
 }
 
-/// The stages, whether any file is made by each, and by what the first segment decides it.
+/// The stages: whether each makes any file, and the first segment's reason.
 Json stages_json(const Plan& plan, const Graph& graph) {
   std::map<std::string, std::size_t> files;
   for (const GraphFile& file : graph.files) ++files[file.stage];
@@ -83,7 +83,7 @@ std::string shown_lines(const std::string& name, const std::string& marker, cons
   return "shown/" + marker + ": | " + inputs + "\n" + name + ": | shown/" + marker + " " + inputs + "\n";
 }
 
-/// Frames, their previews, the sheet, the log of a walkthrough.
+/// Rules for frames, their previews, the contact sheet, and the log of a walkthrough.
 std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
   const std::string exposure = "shown/exposure-" + key_of_text(first + viewer);
@@ -168,7 +168,7 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   std::string text = "# Written by scene-plan; formats/plan/plan.md says what stands here.\n";
   std::string passing;
-  std::string kept;  // stats of records over time, for the report
+  std::string kept;  // stats of records kept over time, for the report
   for (const GraphFile& file : graph.files) {
     if (file.stage == stage::kept.name) kept += " " + beside(file.name, ".json");
     const std::string made = file.name + words_of(file.beside);

@@ -1,4 +1,5 @@
-// lib/plan/plan_files.h -- a plan as files: plan.json for people and scripts, plan.mk for make (formats/plan/plan.md).
+// lib/plan/plan_files.h -- writes a plan as files: plan.json for people and scripts, plan.mk for make
+// (formats/plan/plan.md).
 #pragma once
 
 #include <string>
@@ -9,10 +10,10 @@ namespace tempolux {
 
 std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history);
 
-/// Names of our own files only: nothing in it comes from the scene, or from file names of the user.
+/// The makefile. It holds names of generated files only: nothing from the scene, and no file names of the user.
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash);
 
-/// Decisions as JSON, and back. InputError for text that is not that.
+/// Decisions as JSON text, and the inverse, which throws InputError for invalid text.
 std::string decisions_text(const Decisions& decisions);
 Decisions read_decisions(const std::string& text);
 

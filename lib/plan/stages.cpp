@@ -9,13 +9,13 @@ namespace {
 struct Preset {
   std::uint64_t photons;
   const char* points;
-  int rays;             ///< of a record at most
+  int rays;             ///< most rays per record
   const char* records;  ///< further words
   double pixel_error;
   int first_samples;  ///< of a pixel
 };
 constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2};
-constexpr std::uint64_t kPreviewPhotons = 25'000;  ///< of a frame, as in the paper
+constexpr std::uint64_t kPreviewPhotons = 25'000;  ///< per frame, as in the paper
 constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4};
 
 }  // namespace
@@ -27,8 +27,8 @@ Wish with_preset(Wish wish) {
   if (wish.pixel_error == 0) wish.pixel_error = preset.pixel_error;
   if (wish.points.empty()) wish.points = preset.points;
   if (wish.records.empty()) wish.records = preset.records;
-  // Options of pixels that the user gives replace the preset's, its filter among them. Halves of all
-  // layers take 1 kB a pixel: 2 GB at 1920x1080, which is the largest picture that is filtered unasked.
+  // Pixel options of the user replace the preset's, including its filter. Halves of all layers take 1 kB per pixel, 2
+  // GB at 1920x1080: larger pictures are not filtered by default.
   if (wish.filter == Wish::kAutoFilter)
     wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
   if (wish.pixels.empty()) {

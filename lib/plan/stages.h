@@ -1,4 +1,4 @@
-// lib/plan/stages.h -- the stages of the pipeline: one table that the plan, its forecast and the manuals read.
+// lib/plan/stages.h -- the table of the pipeline's stages, which the plan, its cost estimate and the manuals read.
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 
 namespace tempolux {
 
-/// A stage makes one kind of file. pipelines/stages.mk has a rule for each folder.
+/// A stage makes one kind of file; pipelines/stages.mk has a rule for each.
 struct StageInfo {
   std::string_view name;       ///< as in plan.json
-  std::string_view folder;     ///< of OUT, where its files lie
-  std::string_view extension;  ///< of the file that later stages read
-  std::string_view tool;       ///< the program that makes it
-  std::string_view work;       ///< the phases of its stats whose time grows with the work
+  std::string_view folder;     ///< in OUT, holds its files
+  std::string_view extension;  ///< extension of the file that later stages read
+  std::string_view tool;       ///< the program that runs
+  std::string_view work;       ///< phases of its stats whose time grows with the work
 };
 
 namespace stage {
@@ -58,8 +58,8 @@ inline constexpr std::array kStages{stage::stands_photons, stage::photons,   sta
                                     stage::walked,         stage::raw,       stage::filtered,       stage::pictures,
                                     stage::smoke,          stage::reference, stage::error};
 
-/// The wish with what it leaves open filled in: the presets stand here and nowhere else.
-/// draft is rougher, in less than half of the time of final.
+/// Fills in what the wish leaves open; all presets are defined here. draft is coarser and takes less than half of the
+/// time of final.
 Wish with_preset(Wish wish);
 
 }  // namespace tempolux

@@ -6,7 +6,7 @@
 #include "lib/render/camera_view.h"
 #include "lib/render/known_light.h"
 #include "lib/scene/moving_objects.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux {
 namespace {

@@ -10,7 +10,7 @@
 #include "lib/gather/localised.h"
 #include "lib/photon/dynamic_map.h"
 #include "lib/render/places_seen.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux {
 namespace {
@@ -82,7 +82,7 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const 
 
 MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                          std::uint64_t seed) {
-  const SceneFrame standing = standing_scene(frame);
+  const SceneFrame standing = static_scene_of(frame);
   const PilotMaps maps = trace_maps(frame, standing, emission, seed);
   const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}),
       dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});

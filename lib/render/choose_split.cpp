@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lib/core/parallel.h"
-#include "lib/density/energy_cells.h"
+#include "lib/density/flux_cells.h"
 #include "lib/density/irradiance_estimate.h"
 #include "lib/density/split_light.h"
 #include "lib/material/bsdf.h"
@@ -40,7 +40,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
       pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed).photons;
   CellEdge edge;
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
-  EnergyCells cells(edge.edge(), 0);
+  FluxCells cells(edge.edge(), 0);
   for (const formats::Photon& photon : photons) cells.add(place_of(photon), photon.flux);
   cells.close({});
   if (cells.bright_count() == 0) return {};

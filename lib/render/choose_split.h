@@ -17,7 +17,7 @@ struct SplitPilot {
   double high_share = 0;  ///< of the radiance that the rays meet: what is taken out
 };
 
-/// 2^16 photon paths of all kinds in cells (EnergyCells, the default limit), 2048 places seen and a ray from each: a
+/// 2^16 photon paths of all kinds in cells (FluxCells, the default limit), 2048 places seen and a ray from each: a
 /// tenth of a second. Same result for any number of threads.
 SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                        std::uint64_t seed);

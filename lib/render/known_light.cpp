@@ -23,8 +23,8 @@ std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 g
                                                  float u) const {
   if (!points) return std::nullopt;
   const PointLookup::Light* light = points->find(hit.position, geometric);
-  if (!light || !points->is_even_indirect(*light) || PointLookup::is_near(*light, distance, u)) return std::nullopt;
-  if (points->is_even(*light)) return Told{light->all};
+  if (!light || !points->is_uniform_indirect(*light) || PointLookup::is_near(*light, distance, u)) return std::nullopt;
+  if (points->is_uniform(*light)) return Told{light->all};
   const IrradiancePoint& point = points->point(*light);
   return Told{point.indirect + point.caustic, false};
 }

@@ -139,7 +139,7 @@ class Learner {
         light.distant)
       return;
     note(
-        place, light.wi, double(channel_mean(light.radiance)),
+        place, light.wi, double(channel_mean(light.facing_irradiance)),
         [&] { return scene_.tracer.occluded(spawn_shadow_ray(place.surface, light.position, light.position_offset)); },
         found.lamps);
   }

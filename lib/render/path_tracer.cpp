@@ -93,7 +93,7 @@ void LightAdder::add(const LightSample& light, bool beyond, float share, Layers&
   const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
   const float left = transmittance(scene.tracer, shadow, {random.hashed(), bounce, way_shadow});
   if (!(left > 0)) return;
-  Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share) * left;
+  Rgb arriving = throughput * light.facing_irradiance * (std::abs(wi.z) / share) * left;
   if (inside.any())
     arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;

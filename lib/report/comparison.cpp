@@ -1,4 +1,4 @@
-// lib/report/comparison.cpp -- frames collected into a comparison.
+// lib/report/comparison.cpp -- collects frames into a comparison.
 #include "lib/report/comparison.h"
 
 #include <utility>

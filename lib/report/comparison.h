@@ -12,19 +12,19 @@
 
 namespace tempolux {
 
-/// What the reference of a comparison is.
+/// Kind of the reference.
 enum class ComparisonMode {
-  one_reference,     ///< its noise is part of every square
-  reference_halves,  ///< two independent halves: no noise floor
+  one_reference,     ///< one picture, whose noise is part of every squared error
+  reference_halves,  ///< two independent halves, whose noise cancels
   own_halves         ///< test and reference are two halves of one image: their difference is its noise
 };
 
-/// A frame or a sequence against its reference: what formats/comparison/comparison.md describes.
+/// A comparison of a frame or a sequence with its reference, as in formats/comparison/comparison.md.
 struct Comparison {
   std::string command;                  ///< the tool's line of history
-  std::string test;                     ///< file or pattern, as given
+  std::string test;                     ///< file or pattern, as on the command line
   std::vector<std::string> references;  ///< one or two
-  std::string relative_to;              ///< file or pattern in relMSE's denominator; "": reference
+  std::string relative_to;              ///< file or pattern of the picture in relMSE's denominator; "": the reference
   ComparisonMode mode = ComparisonMode::one_reference;
   std::string layer;  ///< "" is RGB
   std::vector<std::string> channels;
@@ -32,30 +32,30 @@ struct Comparison {
   struct Frame {
     int frame = 0;
     FrameError error;
-    std::optional<AnimationQuality> quality;  ///< AQM, where it was asked for
+    std::optional<AnimationQuality> quality;  ///< AQM, if requested
   };
   std::vector<Frame> frames;
   FrameError total;                         ///< over all frames
-  std::optional<SquaredFigure> flicker;     ///< absent for one frame
+  std::optional<SquaredFigure> flicker;     ///< empty for a single frame
   std::optional<AnimationQuality> quality;  ///< AQM over all frames
-  std::optional<VisionOptions> viewing;     ///< who looked, where there is AQM
-  std::string flow;                         ///< file or pattern; "": everything stood still
-  ObjectNames object_names;                 ///< as the frames that were judged have them
+  std::optional<VisionOptions> viewing;     ///< assumptions about the viewer, if there is AQM
+  std::string flow;                         ///< file or pattern; "": no flow, nothing moves
+  ObjectNames object_names;                 ///< names in the judged frames
 };
 
 /// Collects the frames of a comparison, one in memory at a time.
 class ComparisonBuilder {
  public:
-  /// `comparison` brings what is known before: command, names, mode, layer. Objects of fewer than
-  /// min_object_pixels pixels are flagged.
+  /// `comparison` holds what is given in advance: command, names, mode, layer. Objects of fewer than min_object_pixels
+  /// pixels are marked.
   ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels);
-  /// Adds a frame. Throws InputError if its size or channels differ from those of the frames before.
+  /// Adds a frame. Throws InputError if its size or channels differ from the earlier frames'.
   void add(const Compared& pair, int frame, const std::string& name);
-  /// What objects of a frame are called.
+  /// Adds the names of objects of a frame.
   void add(const ObjectNames& names) { comparison_.object_names.insert(names.begin(), names.end()); }
-  /// AQM of the frame added last, and under which options, the same for all frames.
+  /// AQM of the frame added last, with its options, which must be the same for all frames.
   void add(const AnimationQuality& quality, const VisionOptions& options);
-  /// Totals over the frames added, of which there must be one.
+  /// Totals over the added frames; at least one must have been added.
   Comparison finish();
 
  private:
@@ -65,10 +65,10 @@ class ComparisonBuilder {
   FlickerMeter flicker_;
 };
 
-/// The document of comparison.md. Equal comparisons give equal text.
+/// The document of comparison.md. Equal comparisons give the same text.
 std::string comparison_json(const Comparison& comparison);
 
-/// A table with one line per frame, then the total, flicker, the worst objects, and what to keep in mind.
+/// A table with one line per frame, then the total, flicker, the worst objects, and notes on the figures.
 std::string comparison_text(const Comparison& comparison);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/report/comparison_json.cpp -- comparison.md, written.
+// lib/report/comparison_json.cpp -- writes comparison.md's JSON.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,13 +14,13 @@ Json number(std::optional<double> value) {
   return *value;
 }
 
-/// NAME and NAME_standard_error; null where the figure does not exist.
+/// Writes NAME and NAME_standard_error; null if the figure does not exist.
 void put_estimate(Json& to, const std::string& name, const std::optional<Estimate>& estimate) {
   to[name] = estimate ? number(estimate->value) : Json(nullptr);
   to[name + "_standard_error"] = estimate ? number(estimate->standard_error) : Json(nullptr);
 }
 
-/// ROOT, its standard error, the mean square behind it, and whether that is settled.
+/// Writes ROOT, its standard error, the mean square it comes from, and whether the mean square is significant.
 void put_squared(Json& to, const std::string& root, const std::string& squared, const SquaredFigure& figure) {
   to[root] = number(figure.root());
   to[root + "_standard_error"] = number(figure.root_standard_error());

@@ -1,4 +1,4 @@
-// lib/report/comparison_text.cpp -- a comparison as a table to read.
+// lib/report/comparison_text.cpp -- formats a comparison as a table.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,7 @@ std::string format(const char* pattern, Values... values) {
   return line;
 }
 
-/// A figure in 10 columns, "-" where it does not exist.
+/// A figure in 10 columns; "-" if it does not exist.
 std::string cell(std::optional<double> value, const char* pattern = "%10.4g") {
   return value ? format(pattern, *value) : "         -";
 }
@@ -35,7 +35,7 @@ std::string error_line(const std::string& name, const FrameError& error) {
          cell(error.psnr_db, "%10.2f") + "\n";
 }
 
-/// What a reader must know before quoting a root mean square.
+/// A note for readers who quote a root mean square.
 std::string caveat(const std::string& name, const SquaredFigure& figure) {
   if (figure.resolved()) return "";
   const std::string standard_error =
@@ -68,7 +68,7 @@ std::string worst_objects(const std::vector<ObjectError>& objects, const ObjectN
   return text;
 }
 
-/// AQM by frame and object, and who looked.
+/// AQM by frame and object, and the assumptions about the viewer.
 std::string quality_text(const Comparison& comparison) {
   const AnimationQuality& total = *comparison.quality;
   const VisionOptions& viewing = *comparison.viewing;

@@ -1,4 +1,4 @@
-// lib/report/curves.cpp -- curves made of runs, and what they say.
+// lib/report/curves.cpp -- builds curves from runs and fits them.
 #include "lib/report/curves.h"
 
 #include <algorithm>
@@ -21,8 +21,7 @@ struct Setting {
   std::vector<double> times, squares;
   std::vector<std::optional<double>> standard_errors;
 
-  /// The mean error of the repetitions is positive and, where standard errors are known, above three of its
-  /// own.
+  /// True if the mean error of the repetitions is positive and above three of its standard errors, if these are known.
   bool usable() const {
     double sum = 0, variance = 0;
     bool known = true;
@@ -59,7 +58,7 @@ std::optional<Line> log_log_line(const std::vector<CurvePoint>& points) {
     tt += t * t;
     te += t * (0.5 * std::log(p.mse) - mean_e);
   }
-  if (points.size() < 2 || tt <= 1e-12) return std::nullopt;  // all at one time: no slope
+  if (points.size() < 2 || tt <= 1e-12) return std::nullopt;  // all points at one time have no slope
   Line line{te / tt, mean_e - te / tt * mean_t, std::nullopt};
   double residuals = 0;
   for (const CurvePoint& p : points) {
@@ -102,7 +101,7 @@ FloorModel fit_floor(const std::vector<CurvePoint>& points) {
   return model;
 }
 
-/// Sum of squared relative deviations of e^2 from a power law, to be held against FloorModel::residuals.
+/// Sum of the squared relative deviations of e^2 from a power law, to compare with FloorModel::residuals.
 double power_law_residuals(const std::vector<CurvePoint>& points, const Line& line) {
   double sum = 0;
   for (const CurvePoint& p : points) {
@@ -172,7 +171,7 @@ CurveFit fit_curve(const std::vector<CurvePoint>& points) {
 std::optional<double> time_at_error(const std::vector<CurvePoint>& points, double rmse) {
   const double wanted = std::log(rmse);
   const auto error = [&](std::size_t i) { return 0.5 * std::log(points[i].mse); };
-  constexpr double kEqual = 1e-9;  // an end of the range, after root and square
+  constexpr double kEqual = 1e-9;  // relative rounding of an end of the range, after root and square
   if (points.empty() || error(0) < wanted - kEqual) return std::nullopt;
   if (error(0) <= wanted + kEqual) return points[0].time_s;
   for (std::size_t i = 1; i < points.size(); ++i) {

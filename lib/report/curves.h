@@ -20,39 +20,37 @@ struct CurvePoint {
   std::size_t repetitions = 1;
 };
 
-/// The usable points of a scene's runs that share a curve, by rising time. Runs of equal x and label
-/// parameters are repetitions of one point.
+/// The usable points of one curve of a scene, by ascending time. Runs with equal x and label are repetitions of one
+/// point.
 struct Curve {
   std::string scene, name;
   std::vector<CurvePoint> points;
-  std::size_t left_out = 0;  ///< runs without a comparison, or whose error the reference does not resolve
+  std::size_t left_out = 0;  ///< runs without a comparison, or with an error that the reference's noise hides
 };
 
-/// Curves in order of first appearance; times and errors that are not positive are left out and counted.
+/// Curves in order of first appearance. Times and errors that are not positive are left out and counted.
 std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs, TimeKind kind);
 
-/// How a curve falls.
+/// Slope and floor of a curve.
 struct CurveFit {
-  /// Least-squares slope of log error over log time (-1/2 for Monte Carlo) over the points before the floor:
-  /// those whose squared error is above ten times the floor's (there a/t + b has a slope of -0.45 or
-  /// steeper).
+  /// Least-squares slope of log error over log time (-1/2 for Monte Carlo), over the points whose squared error is
+  /// above ten times the floor's (there a/t + b has a slope of -0.45 or steeper).
   std::optional<double> slope;
   std::optional<double> slope_standard_error;  ///< from the scatter around the line; needs three points
   std::size_t slope_points = 0;
   /// e^2 = a/t + b, least squares of relative deviations, a and b not negative. Needs three points.
   double noise = 0;          ///< a [error^2 s]
   double floor_squared = 0;  ///< b
-  /// sqrt(b) where a floor is seen: b is above two of its standard errors and above 1 % of the least e^2, and
-  /// the model fits better than a straight line in log-log. Otherwise absent, which does not prove that there
-  /// is none.
+  /// sqrt(b), if a floor is significant: b is above two of its standard errors and above 1 % of the smallest e^2, and
+  /// the model fits better than a straight line in log-log. A missing floor does not prove that there is none.
   std::optional<double> floor;
 };
 
-/// Fits the points of a curve; with fewer than two there is no slope, with fewer than three no floor.
+/// Fits the points of a curve. A slope needs two points, a floor three.
 CurveFit fit_curve(const std::vector<CurvePoint>& points);
 
-/// Time at which a curve first reaches an error [same unit as its points' root], interpolated log-log between
-/// neighbouring points. Nothing if the curve starts below the error or never reaches it: never extrapolated.
+/// Time at which a curve first reaches an error [in the unit of the root of its points], interpolated log-log between
+/// neighbouring points. Empty if the curve starts below the error or never reaches it: times are never extrapolated.
 std::optional<double> time_at_error(const std::vector<CurvePoint>& points, double rmse);
 
 /// Equal-error speed-up of one curve over another at one error inside both.
@@ -61,7 +59,7 @@ struct SpeedUp {
   double ratio() const { return baseline_time_s / time_s; }
 };
 
-/// At both ends and the geometric middle of the errors that both curves reach; empty if they share none.
+/// At both ends and at the geometric mean of the range of errors that both curves reach; empty if they share none.
 std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points, const std::vector<CurvePoint>& baseline);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/report/gnuplot.cpp -- one child process, its three streams in unnamed temporary files.
+// lib/report/gnuplot.cpp -- runs gnuplot as a child process, with its three streams in unnamed temporary files.
 #include "lib/report/gnuplot.h"
 
 #include <fcntl.h>
@@ -42,7 +42,7 @@ pid_t start(const char* program, std::FILE* in, std::FILE* out, std::FILE* error
   posix_spawn_file_actions_adddup2(&streams, fileno(in), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&streams, fileno(out), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&streams, fileno(errors), STDERR_FILENO);
-  // -d: no settings of the user, so that equal input gives equal plots.
+  // -d ignores the user's settings, so that equal input gives equal plots.
   char name[] = "gnuplot", plain[] = "-d", stream[] = "-";
   char* arguments[] = {name, plain, stream, nullptr};
   pid_t child = 0;
@@ -54,7 +54,7 @@ pid_t start(const char* program, std::FILE* in, std::FILE* out, std::FILE* error
   return child;
 }
 
-/// Waits for the child; returns its status, or kills it at the deadline and throws.
+/// Waits for the child and returns its status; kills it at the deadline and throws.
 int wait_for(pid_t child, double timeout_s) {
   using namespace std::chrono_literals;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);

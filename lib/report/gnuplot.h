@@ -1,13 +1,12 @@
-// lib/report/gnuplot.h -- plots drawn by gnuplot as a child process.
+// lib/report/gnuplot.h -- draws plots with gnuplot as a child process.
 #pragma once
 
 #include <string>
 
 namespace tempolux {
 
-/// What gnuplot writes to its standard output when given `script` as input. The child is killed after
-/// timeout_s seconds. Throws ResourceError if gnuplot is missing, fails (with its own words), takes too long
-/// or draws nothing.
+/// Runs gnuplot with `script` as input and returns its standard output. The child is killed after timeout_s seconds.
+/// Throws ResourceError if gnuplot is missing, fails (with its own message), takes too long or draws nothing.
 std::string run_gnuplot(const std::string& script, double timeout_s);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/report/plot_script.cpp -- a scene's curves as a gnuplot script.
+// lib/report/plot_script.cpp -- writes a scene's curves as a gnuplot script.
 #include <cmath>
 
 #include "lib/report/scene_report.h"
@@ -7,7 +7,8 @@
 namespace tempolux {
 namespace {
 
-/// In single quotes, where gnuplot interprets nothing but a doubled quote; control characters become spaces.
+/// Quotes text in single quotes, where gnuplot interprets nothing but a doubled quote; control characters become
+/// spaces.
 std::string quoted(const std::string& text) {
   std::string safe = "'";
   for (const char c : text) {
@@ -24,7 +25,7 @@ std::string key_text(const Curve& curve, const CurveFit& fit) {
   return text;
 }
 
-/// Range of an axis over values above 0, with a margin of a fifth of a decade.
+/// Range of an axis over the positive values, with a margin of a fifth of a decade.
 struct Range {
   double low = INFINITY, high = 0;
   void include(double value) {

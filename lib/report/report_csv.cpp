@@ -1,4 +1,4 @@
-// lib/report/report_csv.cpp -- every run as a line of comma-separated values.
+// lib/report/report_csv.cpp -- writes every run as a line of comma-separated values.
 #include <algorithm>
 
 #include "lib/report/scene_report.h"
@@ -7,7 +7,7 @@
 namespace tempolux {
 namespace {
 
-/// RFC 4180: quoted where needed, quotes doubled.
+/// RFC 4180: quotes the text if needed, and doubles quotes.
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -21,7 +21,7 @@ std::string csv_line(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-/// Named numbers of a run in order of appearance: seconds by phase, then counts; equal names add up.
+/// Named numbers of a run in order of appearance: seconds by phase, then counts. Equal names are added up.
 using Columns = std::vector<std::pair<std::string, double>>;
 
 void add_to(Columns& columns, const std::string& name, double value) {

@@ -1,4 +1,4 @@
-// lib/report/report_input.cpp -- stats, comparisons and manifests, read with every type checked.
+// lib/report/report_input.cpp -- reads and checks stats, comparisons and manifests.
 #include "lib/report/report_input.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A value in a document and the words that say where: "run.json: runs[2].x".
+/// A value in a document, with its place for messages, such as "run.json: runs[2].x".
 struct Place {
   const Json& json;
   std::string name;
@@ -71,7 +71,7 @@ std::string string_of(const Place& place, const std::string& key, const std::str
   return found ? found->string() : otherwise;
 }
 
-/// The document in a file whose schema and major version are as wanted. `keep` holds it.
+/// Opens a document and checks its schema and major version. `keep` owns it.
 Place open_document(const std::string& path, const std::string& schema, Json& keep) {
   constexpr std::uintmax_t kLargest = 256u << 20;
   std::error_code error;
@@ -130,7 +130,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-/// Names of the manifest's files, seen from where the program runs.
+/// Resolves the names in a manifest relative to the manifest's folder.
 struct Folder {
   std::filesystem::path folder;
   std::vector<std::string>& files;

@@ -1,4 +1,4 @@
-// lib/report/report_input.h -- what a report is made of: measured runs and given points, read from JSON.
+// lib/report/report_input.h -- reads the input of a report from JSON: measured runs and given points.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tempolux {
 
-/// A stats file (formats/stats/stats.md): what one program run cost.
+/// A stats file (formats/stats/stats.md): the cost of one program run.
 struct StatsRecord {
   struct Phase {
     std::string name;
@@ -30,7 +30,7 @@ struct WorstObject {
   double bias = 0;   ///< relative
 };
 
-/// The totals of a comparison file (formats/comparison/comparison.md): how wrong the outcome was.
+/// The totals of a comparison file (formats/comparison/comparison.md): the error of a result.
 struct ErrorRecord {
   std::string layer;
   double pixels = 0;
@@ -41,27 +41,27 @@ struct ErrorRecord {
   bool halves = false;                      ///< the reference's noise is not in mse
   std::optional<WorstObject> worst_object;  ///< objects of few pixels apart
 
-  /// Root of mse, 0 where that is not positive.
+  /// Square root of mse; 0 if mse is not positive.
   double rmse() const;
-  /// mse is positive and, if its standard error is known, above three of them: a point of a curve.
+  /// True if mse is positive and above three of its standard errors, if these are known: it is then a point of a curve.
   bool usable() const;
 };
 
-/// One measured run of a chain of tools: one line of the report, one point of a curve.
+/// One measured run of a chain of tools: a line of the report and a point of a curve.
 struct MeasuredRun {
   std::string scene, curve, label;
   std::optional<double> x;  ///< the swept parameter
   std::map<std::string, std::string> parameters;
-  std::vector<StatsRecord> stages;  ///< every process counted
+  std::vector<StatsRecord> stages;  ///< one for each process
   std::optional<ErrorRecord> error;
   std::string image, difference;  ///< PNG files, or empty
 
   double cpu_s() const;  ///< sum over the stages
   double wall_s() const;
-  double peak_memory_bytes() const;  ///< of the largest process
+  double peak_memory_bytes() const;  ///< of the process with the largest peak
 };
 
-/// A point measured elsewhere (a peer): given, never fitted.
+/// A point that was measured elsewhere (by another renderer): drawn, never fitted.
 struct GivenPoint {
   std::string scene, label, note;
   double cpu_s = 0, rmse = 0;
@@ -69,11 +69,11 @@ struct GivenPoint {
 
 struct ReportInput {
   std::string title = "Error against time";
-  std::string baseline;  ///< curve that speed-ups are over; empty: each scene's first
+  std::string baseline;  ///< name of the curve that speed-ups refer to; empty: each scene's first
   std::vector<MeasuredRun> runs;
   std::vector<GivenPoint> points;
   std::map<std::string, std::string> references;  ///< scene -> PNG of its reference
-  std::vector<std::string> files;                 ///< everything read
+  std::vector<std::string> files;                 ///< all files that were read
 };
 
 /// Read one file. Throw InputError "FILE: PLACE: WHAT; REMEDY".
@@ -84,8 +84,8 @@ ErrorRecord read_comparison(const std::string& path);
 /// InputError.
 ReportInput read_manifest(const std::string& path);
 
-/// Adds a run given on the command line: `what` is KEY=VALUE{,KEY=VALUE} with the keys scene, curve, label, x
-/// (others are parameters); `stats` is FILE{+FILE}; `comparison` is a file. Throws InputError.
+/// Adds a run from the command line. `what` is KEY=VALUE{,KEY=VALUE} with the keys scene, curve, label, x (other keys
+/// are parameters); `stats` is FILE{+FILE}; `comparison` is a file. Throws InputError.
 void add_run(ReportInput& input, const std::string& what, const std::string& stats, const std::string& comparison);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/report/report_page.cpp -- the same report in two notations.
+// lib/report/report_page.cpp -- writes the report as Markdown and as HTML.
 #include "lib/report/report_page.h"
 
 #include <cstdint>
@@ -58,7 +58,7 @@ std::string html_table(const Table& table) {
   return text + "</table>\n" + (table.note.empty() ? "" : "<p>" + html_text(table.note) + "</p>\n");
 }
 
-/// RFC 4648.
+/// Encodes bytes as in RFC 4648.
 std::string base64(const std::string& bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

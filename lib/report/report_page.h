@@ -9,14 +9,14 @@
 
 namespace tempolux {
 
-/// The drawn plots by file name ("error-S2.svg"), their bytes.
+/// Bytes of the drawn plots by file name ("error-S2.svg").
 using Plots = std::map<std::string, std::string>;
 
-/// Tables and links to the plots that are there.
+/// Tables, and links to the plots that exist.
 std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
-/// The same in one file that needs no other: plots, frames, references and difference images as data URIs.
-/// Throws InputError if an image named by a run cannot be read or is no PNG.
+/// The same as one self-contained file: plots, frames, references and difference images are data URIs. Throws
+/// InputError if an image that a run names cannot be read or is not a PNG.
 std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/report/scene_report.cpp -- tables of a scene, and the names of its files.
+// lib/report/scene_report.cpp -- builds the tables of a scene and the names of its files.
 #include "lib/report/scene_report.h"
 
 #include <algorithm>

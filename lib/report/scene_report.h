@@ -1,4 +1,4 @@
-// lib/report/scene_report.h -- what a report says about one scene: tables and the script of its plot.
+// lib/report/scene_report.h -- the report of one scene: tables and the script of its plot.
 #pragma once
 
 #include <string>
@@ -25,18 +25,18 @@ struct SceneReport {
   std::vector<Table> tables;  ///< runs, curves, speed-ups, given points; none is empty
 };
 
-/// One per scene, in order of first appearance.
+/// One report per scene, in order of first appearance.
 std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind);
 
-/// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages,
-/// seconds by phase, counts (rays, bytes ...), peak memory, errors. Phases and counts are columns
-/// "TOOL.PHASE cpu_s" and "TOOL.COUNT" over all runs; what a run does not have is empty.
+/// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages, seconds
+/// by phase, counts (rays, bytes ...), peak memory, errors. Phases and counts of all runs are columns "TOOL.PHASE
+/// cpu_s" and "TOOL.COUNT"; a cell is empty if a run has no such number.
 std::string report_csv(const ReportInput& input);
 
 enum class PlotFormat { svg, png };
 
-/// gnuplot script that draws error against time, log-log, to its standard output: points, the fitted curve
-/// sqrt(a/t + b), slope and floor in the key, given points. Empty if there is nothing to draw.
+/// gnuplot script that draws error against time, log-log, to its standard output: points, the fitted curve sqrt(a/t +
+/// b), slope and floor in the key, given points. Empty without any point.
 std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat format);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/report/text.h -- numbers as the report's cells.
+// lib/report/text.h -- formats numbers as cells of a table.
 #pragma once
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 namespace tempolux {
 
-/// A number in printf's notation; empty where there is none.
+/// A number in printf's notation; empty if there is none.
 inline std::string number_text(std::optional<double> value, const char* pattern = "%.4g") {
   if (!value) return "";
   char text[64];

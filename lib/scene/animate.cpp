@@ -1,4 +1,4 @@
-// lib/scene/animate.cpp
+// lib/scene/animate.cpp -- evaluates tracks, transforms and poses at a time.
 #include "lib/scene/animate.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using Interpolation = AnimationTrack::Interpolation;
 
 Value unit(Value q) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(length > 0)) return {0, 0, 0, 1};  // a spline through zero has no direction there
+  if (!(length > 0)) return {0, 0, 0, 1};  // a spline that passes through zero has no direction there
   for (double& c : q) c /= length;
   return q;
 }
@@ -24,7 +24,7 @@ Value lerp(const Value& a, const Value& b, double s) {
   return v;
 }
 
-/// Along the shorter arc.
+/// Interpolates along the shorter arc.
 Value slerp(const Value& a, Value b, double s) {
   double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
   if (cosine < 0) {
@@ -32,7 +32,7 @@ Value slerp(const Value& a, Value b, double s) {
     for (double& c : b) c = -c;
   }
   if (a == b) return a;
-  if (cosine > 1 - 1e-9) return unit(lerp(a, b, s));  // the sine below would lose its digits
+  if (cosine > 1 - 1e-9) return unit(lerp(a, b, s));  // for smaller angles the sine below loses its digits
   const double angle = std::acos(cosine), sine = std::sin(angle);
   const double wa = std::sin((1 - s) * angle) / sine, wb = std::sin(s * angle) / sine;
   Value v;
@@ -40,7 +40,7 @@ Value slerp(const Value& a, Value b, double s) {
   return unit(v);
 }
 
-/// Cubic Hermite spline of glTF appendix C, written so that equal values without tangents stay exact.
+/// Cubic Hermite spline of glTF appendix C, in a form in which equal values without tangents stay exact.
 void spline(const AnimationTrack& track, std::size_t key, double s, double dt_s, std::span<double> out) {
   const std::size_t n = track.components;
   const double* v0 = &track.values[(3 * key + 1) * n];
@@ -54,7 +54,7 @@ void set_rotation(std::span<double> out, const Value& q) { std::copy(q.begin(), 
 
 bool same_time(double a, double b) { return float(a) == float(b); }
 
-/// For each joint of the node's skin: does a vertex of its mesh follow it?
+/// For each joint of the node's skin: true if a vertex of the mesh follows the joint.
 std::vector<std::uint8_t> joints_used(const Scene& scene, const Node& node) {
   std::vector<std::uint8_t> used(scene.skins[std::size_t(node.skin)].joints.size(), 0);
   for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)

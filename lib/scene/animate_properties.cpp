@@ -1,4 +1,4 @@
-// lib/scene/animate_properties.cpp -- materials, lights and cameras at a time (KHR_animation_pointer).
+// lib/scene/animate_properties.cpp -- evaluates materials, lights and cameras at a time (KHR_animation_pointer).
 #include <algorithm>
 #include <numbers>
 
@@ -10,7 +10,7 @@ namespace {
 
 using Path = AnimationTrack::Path;
 
-/// Narrowest soft edge of a spot, as of a file that has none (gltf_material.cpp).
+/// Narrowest soft edge of a spot, the same as for a file with a hard edge (gltf_material.cpp).
 constexpr double kSharpestCone = 0.9999;
 
 float limited(double value, double lower, double upper = 3e38) { return float(std::clamp(value, lower, upper)); }
@@ -59,7 +59,7 @@ std::vector<Material> Animator::materials(double time_s) const {
     if (track->path > Path::transmission) continue;
     Material& material = materials[std::size_t(track->target)];
     ColorFactors emission = scene_->emission_factors[std::size_t(track->target)];
-    // The other factor of a product may have a track of its own: all that change the emission are looked at.
+    // The emission is a product of factors that may have separate tracks, so all of these tracks are evaluated.
     const bool emits = track->path == Path::emissive_factor || track->path == Path::emissive_strength;
     for (const AnimationTrack* other : property_tracks_)
       if (other == track || (emits && other->target == track->target &&

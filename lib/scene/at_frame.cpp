@@ -1,4 +1,4 @@
-// lib/scene/at_frame.cpp
+// lib/scene/at_frame.cpp -- evaluates the scene at a frame.
 #include "lib/scene/at_frame.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::vector<PlacedLight> place_lights(const Scene& scene, const Animator& animat
   return lights;
 }
 
-/// Right, up and backward of the node, made orthonormal about the direction of view.
+/// Right, up and backward axes of the node, made orthonormal; the view direction keeps its direction.
 PlacedCamera place_camera(const Scene& scene, const Camera& camera, std::size_t n, Vec3d origin, const Affine& world) {
   PlacedCamera placed{camera, {}};
   const Vec3d backward = normalize(world.direction({0, 0, 1}));

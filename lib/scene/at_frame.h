@@ -1,4 +1,4 @@
-// lib/scene/at_frame.h -- the scene at one frame: transforms evaluated, triangles in scene space.
+// lib/scene/at_frame.h -- the scene at one frame: evaluated transforms, and triangles in scene space.
 #pragma once
 
 #include <cstddef>
@@ -17,44 +17,43 @@ class Animator;
 class Sharing;
 class Media;  // lib/volume/medium.h
 
-/// A material, light or camera that an animation changes in a segment (KHR_animation_pointer).
+/// A material, light or camera that an animation changes within a segment (KHR_animation_pointer).
 struct PropertyChange {
-  std::string name, why;  ///< "Glass", "roughness of Glass"
-  std::string carries;    ///< "material", "light" or "camera"
+  std::string name, why;  ///< such as "Glass" and "roughness of Glass"
+  std::string carries;    ///< kind of the changed object: "material", "light" or "camera"
 };
 
-/// An interval of frames over which "static" means static (docs/methods/formulas.md). Both ends belong to it.
+/// An interval of frames within which static objects do not change (docs/methods/formulas.md). Both ends belong to it.
 struct Segment {
   int first = 0, last = 0;
-  std::vector<std::uint8_t> node_moves;  ///< per node: its evaluated state differs between two frames: its
-                                         ///< world transform, the morph weights and joints of its mesh, its
-                                         ///< materials or its light
-  std::vector<std::string> why_moves;    ///< per node: "" or what differs, e.g. "translation of MovingBox"
-  std::vector<PropertyChange> changes;   ///< materials, lights and cameras that differ between two frames
-  Vec3d origin{};                        ///< world position of scene space's origin: 0 unless the scene
-                                         ///< is far from the world's origin for its size
-  Box3d world_bounds;                    ///< of all geometry over the whole segment, world space, m
+  /// Per node: 1 if its state differs between two frames: its world transform, the morph weights and joints of its
+  /// mesh, its materials or its light.
+  std::vector<std::uint8_t> node_moves;
+  std::vector<std::string> why_moves;   ///< per node: "" or what differs, e.g. "translation of MovingBox"
+  std::vector<PropertyChange> changes;  ///< materials, lights and cameras that differ between two frames
+  /// World position of scene space's origin: 0 unless the scene is far from the world's origin for its size.
+  Vec3d origin{};
+  Box3d world_bounds;  ///< of all geometry over the whole segment, world space, m
 };
 
 struct TimeOptions {
-  double fps = 24;                  ///< frame f is at time f / fps
-  int segment_length = 24;          ///< frames; borders at multiples of it
-  std::string light_units = "raw";  ///< raw, or spec: punctual lights divided by 683
+  double fps = 24;                  ///< frame f is at time f / fps seconds
+  int segment_length = 24;          ///< frames; segments begin at multiples of it
+  std::string light_units = "raw";  ///< "raw", or "spec": punctual lights are divided by 683
 };
 
-/// `frame`, or the animation's nearest end if it lies outside: 0, or the frame of the last key (the next if
-/// that lies between frames). Without animation every frame from 0 on is inside. What tools evaluate.
+/// The frame that tools evaluate for `frame`: clamped to the animation's frames, which run from 0 to the frame of the
+/// last key (rounded up). Without animation every frame from 0 on is valid.
 int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options);
 
-/// The segment that holds `frame`: [k length, (k+1) length - 1] cut to the frames of the animation
-/// (cut at frame 0 and at the last frame of the scene's animation; one frame if nothing is animated is
-/// still a segment of the full length).
+/// The segment that holds `frame`: [k length, (k+1) length - 1], clamped to the animation's frames. Without animation
+/// the segment has the full length.
 Segment segment_of(const Scene& scene, int frame, const TimeOptions& options);
 
-/// World transforms of all nodes at a frame. Frames outside the animation hold its first or last state.
+/// World transforms of all nodes at a frame. Frames outside the animation have its first or last state.
 std::vector<Affine> world_from_node(const Scene& scene, int frame, const TimeOptions& options);
 
-/// An array that never changes, shared by its copies: static surfaces are the same memory in every frame.
+/// A constant array that its copies share: static surfaces use the same memory in every frame.
 template <class T>
 class SharedArray {
  public:
@@ -74,36 +73,34 @@ class SharedArray {
   std::shared_ptr<const std::vector<T>> values_;
 };
 
-/// Triangles of one primitive of one node, in scene space (world - Segment::origin). Cheap to copy.
-///
-/// A transform may flatten or shrink triangles to zero area at some frames: their normal is then zero, not
-/// NaN, and they can neither be hit nor emit.
-///
-/// Where many nodes or instances share a large primitive, the surface is `instanced`: it keeps no vertices of
-/// its own, position() and normal() transform the primitive's. They give the same numbers either way.
+/// The triangles of one primitive of one node, in scene space (world - Segment::origin). Cheap to copy.
+/// A transform may shrink triangles to zero area at some frames: their normal is then zero, not NaN, and they can
+/// neither be hit nor emit.
+/// If many nodes or instances share a large primitive, the surface is `instanced`: it stores no vertices, and
+/// position() and normal() transform the primitive's. The numbers are the same either way.
 struct Surface {
   std::uint32_t object = 0;  ///< id.object
   std::uint32_t node = 0;
   std::uint32_t material = 0;
-  bool flipped = false;                  ///< transform mirrors: the front is on the other winding
-  const Primitive* primitive = nullptr;  ///< triangles and uvs; owned by the Scene
-  SharedArray<Vec3> positions;           ///< scene space, m; double transform, rounded once; empty: instanced
-  SharedArray<Vec3> normals;             ///< unit, or empty: flat shading, or instanced
-  SharedArray<Vec3> tangents;            ///< only of a shape that deforms and has them; not unit
-  Affine scene_from_node;                ///< of an instance: its own transform included
+  bool flipped = false;                  ///< the transform mirrors: the front has the opposite winding
+  const Primitive* primitive = nullptr;  ///< has triangles and uvs; the Scene owns it
+  SharedArray<Vec3> positions;           ///< scene space, m; computed in double, rounded once; empty: instanced
+  SharedArray<Vec3> normals;             ///< unit; empty: flat shading, or instanced
+  SharedArray<Vec3> tangents;            ///< of a deforming shape with tangents; not unit
+  Affine scene_from_node;                ///< of an instance; includes the instance's own transform
 
   bool instanced() const { return positions.empty(); }
   /// Scene space, m.
   Vec3 position(std::uint32_t vertex) const {
     return instanced() ? Vec3(scene_from_node.point(Vec3d(primitive->positions[vertex]))) : positions[vertex];
   }
-  /// Has shading normals; else flat.
+  /// True if the surface has shading normals.
   bool smooth() const { return instanced() ? !primitive->normals.empty() : !normals.empty(); }
-  /// Unit, scene space; only of a smooth surface.
+  /// Unit, scene space; only for a smooth surface.
   Vec3 normal(std::uint32_t vertex) const {
     return instanced() ? Vec3(normalize(scene_from_node.normal(Vec3d(primitive->normals[vertex])))) : normals[vertex];
   }
-  /// Scene space, not unit; only of a primitive with tangents.
+  /// Scene space, not unit; only for a primitive with tangents.
   Vec3 tangent(std::uint32_t vertex) const {
     return tangents.empty() ? Vec3(scene_from_node.direction(Vec3d(primitive->tangents[vertex]))) : tangents[vertex];
   }
@@ -112,66 +109,66 @@ struct Surface {
 struct PlacedLight {
   PunctualLight light;
   Vec3 position;   ///< scene space
-  Vec3 direction;  ///< unit, the way it shines
+  Vec3 direction;  ///< unit, direction in which the light travels
   std::uint32_t node = 0;
 };
 
 struct PlacedCamera {
   Camera camera;
-  Affine scene_from_camera;  ///< rigid: right, up, -forward in its columns; scale removed
+  Affine scene_from_camera;  ///< rigid; columns: right, up, backward; scale removed
 };
 
-/// What a stage depends on, hashed by concern; 32 hexadecimal digits each (formats/plan/plan.md).
+/// Hashes of all that a stage may depend on, by concern; 32 hexadecimal digits each (formats/plan/plan.md).
 struct SceneHashes {
-  std::string camera;           ///< never part of an identity
+  std::string camera;           ///< the only hash that is not part of any identity
   std::string static_geometry;  ///< of the segment
   std::string moving_geometry;  ///< at this frame
-  std::string lights;           ///< punctual lights, which triangles emit what at this frame, environment
+  std::string lights;           ///< punctual lights, emissive triangles with their emission at this frame, environment
   std::string materials;
   std::string media;
 };
 
-/// The scene evaluated at a frame. Owns its surfaces; points into the Scene, which must outlive it.
+/// The scene evaluated at a frame. Owns its surfaces and points into the Scene, which must outlive it.
 struct SceneFrame {
   const Scene* scene = nullptr;
   int frame = 0;
   double time_s = 0;
   Segment segment;
-  std::vector<Surface> surfaces;  ///< first the static ones, then those that move
+  std::vector<Surface> surfaces;  ///< static surfaces first, then moving ones
   std::size_t static_count = 0;
   std::vector<Material> materials;              ///< evaluated
-  std::shared_ptr<const TextureImages> images;  ///< of the materials' textures; null: there are none
+  std::shared_ptr<const TextureImages> images;  ///< images of the materials' textures; nullptr: none
   std::vector<PlacedLight> lights;
   const Environment* environment = nullptr;  ///< the scene's; nullptr: none
-  std::shared_ptr<const Media> media;        ///< nullptr: none. at() leaves that; who reads the volumes sets it
-  Vec3d origin{};                            ///< world = origin + scene space
-  Box3 bounds;                               ///< of the whole segment, scene space
+  std::shared_ptr<const Media> media;        ///< nullptr: none. at() sets nullptr; the reader of the volumes sets it
+  Vec3d origin{};                            ///< world position = origin + scene space position
+  Box3 bounds;                               ///< of all geometry over the segment; scene space
   std::vector<Affine> world_from_node;       ///< per node, at this frame
   std::vector<Camera> cameras;               ///< evaluated
   SceneHashes hashes;
 
-  /// The camera of a node (an index into Scene::nodes, as Scene::camera_node returns it) at this frame.
-  /// Throws InputError if the node's transform leaves it without a direction.
+  /// The camera of a node at this frame; camera_node is an index into Scene::nodes, as Scene::camera_node returns it.
+  /// Throws InputError if the node's transform leaves the camera without a direction.
   PlacedCamera camera(int camera_node) const;
 };
 
-/// Content hash of one camera where it stands; SceneHashes::camera is over all cameras of the scene.
+/// Hash of one placed camera; SceneHashes::camera covers all cameras of the scene.
 std::string camera_hash(const PlacedCamera& placed);
 
-/// A scene over one segment: what is static in it is placed and hashed once, and shared by all its frames.
+/// A scene over one segment. Static objects are placed and hashed once and shared by all frames.
 ///
 ///     const SegmentScene stage(scene, segment_of(scene, 0, options), options);
 ///     for (int f = stage.segment().first; f <= stage.segment().last; ++f) use(stage.at(f));
 ///
-/// at() is linear in what moves, not in what stands; safe to call from several threads. The Scene must
-/// outlive it.
+/// The cost of at() is linear in the moving objects and independent of the static ones; it may be called by several
+/// threads. The Scene must outlive this object.
 class SegmentScene {
  public:
   SegmentScene(const Scene& scene, Segment segment, const TimeOptions& options);
 
   const Segment& segment() const { return segment_; }
-  /// Everything at `frame`, which the segment must hold (std::invalid_argument).
-  /// Throws InputError if a transform takes geometry or a light beyond what can be computed with.
+  /// The scene at `frame`, which must be in the segment (else std::invalid_argument). Throws InputError if a transform
+  /// moves geometry or a light out of the range of coordinates.
   SceneFrame at(int frame) const;
 
  private:

@@ -1,4 +1,4 @@
-// lib/scene/base64.h -- the payload of data URIs.
+// lib/scene/base64.h -- decodes the payload of data URIs.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,7 @@
 
 namespace tempolux::gltf {
 
-/// The bytes that base64 text stands for (RFC 4648), padding allowed and not needed; nothing if it holds other
-/// characters.
+/// The bytes that base64 text encodes (RFC 4648); padding is optional. Nothing if the text has other characters.
 std::optional<std::vector<unsigned char>> base64_bytes(std::string_view text);
 
 }  // namespace tempolux::gltf

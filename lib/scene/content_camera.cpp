@@ -14,20 +14,21 @@ namespace tempolux {
 namespace {
 
 // docs/methods/content-camera.md has the reason of each.
-constexpr int kTimes = 8;  ///< of an animation, evenly spread, that are looked at
+constexpr int kTimes = 8;  ///< times of an animation, evenly spaced, that are evaluated
 constexpr std::size_t kMostTriangles = 400'000;
-constexpr double kGap = 2;         ///< a ground's triangle is longer than so many diagonals of the rest
-constexpr double kDetail = 0.75;   ///< the rest is at least this share of all triangles
-constexpr double kStrays = 0.005;  ///< share of the lengths that may be left out at each end of an axis ...
-constexpr double kShrink = 0.5;    ///< ... if the axis shrinks below this share
+/// A triangle belongs to a ground if it is longer than this many diagonals of all smaller triangles.
+constexpr double kGap = 2;
+constexpr double kDetail = 0.75;   ///< least share of all triangles that must be smaller
+constexpr double kStrays = 0.005;  ///< share of the total length that may be left out at each end of an axis ...
+constexpr double kShrink = 0.5;    ///< ... if this shortens the axis to less than this share
 constexpr double kYfov_rad = 0.7, kAspect = 4.0 / 3.0, kMargin = 1.06;
-const Vec3d kTowardsEye =
-    normalize(Vec3d{0.5, 0.4, 1});  ///< glTF's front is +z: from the front, a little right and above
+/// glTF's front is +z: the view comes from the front, a little from the right and from above.
+const Vec3d kTowardsEye = normalize(Vec3d{0.5, 0.4, 1});
 
 struct Piece {
-  std::array<Vec3, 3> corners;  ///< of a triangle, scene space
-  float length = 0;             ///< diagonal of its box
-  float count = 1;              ///< triangles that this one stands for
+  std::array<Vec3, 3> corners;  ///< scene space, m
+  float length = 0;             ///< diagonal of the triangle's box, m
+  float count = 1;              ///< number of triangles that this one represents
   Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) * (1 / 3.0f); }
 };
 
@@ -47,7 +48,7 @@ void add_surfaces(const std::vector<Surface>& surfaces, std::vector<Piece>& piec
   }
 }
 
-/// All triangles at the first time, and those that move at the others.
+/// All triangles at the first time, and the moving ones at the other times.
 std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   const Animator animator(scene);
   const Sharing sharing(scene);
@@ -65,8 +66,8 @@ std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   return pieces;
 }
 
-/// Leaves out triangles that are far larger than all the smaller ones together: a ground, a backdrop, a sky. What is
-/// left must be most of the triangles: it is the detail.
+/// Leaves out triangles that are far larger than all smaller ones together: a ground, a backdrop, a sky. The smaller
+/// ones must be most of the triangles.
 void leave_out_grounds(std::vector<Piece>& pieces) {
   std::ranges::stable_sort(pieces, {}, &Piece::length);
   double count = 0, whole = 0;
@@ -83,7 +84,7 @@ void leave_out_grounds(std::vector<Piece>& pieces) {
 
 double coordinate(Vec3d p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-/// Where the coordinate `axis` of centres leaves out a share of all weight at its lower and its upper end.
+/// The range of the coordinate `axis` of centres that leaves out a share of all weight at either end.
 std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
   std::vector<std::pair<double, double>> centres;
   double whole = 0;
@@ -102,7 +103,7 @@ std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
   return {at_share(kStrays), at_share(1 - kStrays)};
 }
 
-/// Leaves out the little that makes an axis more than twice as long as the rest needs.
+/// Leaves out a few stray triangles if an axis would otherwise be more than twice as long.
 void leave_out_strays(std::vector<Piece>& pieces) {
   for (int axis = 0; axis < 3; ++axis) {
     Box3d all, inner;
@@ -127,8 +128,9 @@ std::array<Vec3d, 3> axes_of(Vec3d backward) {
   return {right, cross(backward, right), backward};
 }
 
-/// Nearest point from which a picture of kAspect holds all corners. Each corner asks for |y - ey| <= t (ez - z) in the
-/// camera's axes, t the tangent of half the view's angle; so ey + t ez and t ez - ey have lower limits, and so for x.
+/// The nearest point from which a picture of aspect kAspect contains all corners. Each corner requires |y - ey| <= t
+/// (ez - z) in the camera's axes, where t is the tangent of half the view angle. So ey + t ez and t ez - ey have lower
+/// limits; x likewise.
 Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes) {
   const double ty = std::tan(kYfov_rad / 2) / kMargin, tx = ty * kAspect;
   constexpr double kNone = -1e300;
@@ -144,8 +146,8 @@ Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes
   return axes[0] * ((right - left) / 2) + axes[1] * ((up - down) / 2) + axes[2] * distance;
 }
 
-/// The rotation that takes x, y, z to these axes, as a quaternion x y z w. The largest of its four parts is found
-/// first, so that nothing is divided by a small number.
+/// The rotation that takes x, y, z to these axes, as a quaternion x y z w. The largest component is computed first, so
+/// that no division by a small number occurs.
 std::array<double, 4> quaternion_of(const std::array<Vec3d, 3>& a) {
   const double m00 = a[0].x, m11 = a[1].y, m22 = a[2].z;
   const std::array<double, 4> squares{1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22,

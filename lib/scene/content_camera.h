@@ -1,4 +1,4 @@
-// lib/scene/content_camera.h -- a camera for scenes that have none.
+// lib/scene/content_camera.h -- creates a camera for scenes without one.
 #pragma once
 
 #include <string>
@@ -7,12 +7,11 @@
 
 namespace tempolux {
 
-/// Adds a camera that shows what the scene holds; it stands still. Scene::camera_node("auto") then finds it. Returns a
-/// line that says where it stands, for people. Depends on the scene alone: not on frames, picture size or what a tool
-/// is for, so that all tools see the same. Method, and what it does with large grounds, strays and rooms:
+/// Adds a static camera that shows the scene's content; Scene::camera_node("auto") then finds it. Returns a line for
+/// people that describes its position. The camera depends on the scene alone, not on frames, picture size or tool, so
+/// all tools use the same one. Method, and how large grounds, stray triangles and rooms are treated:
 /// docs/methods/content-camera.md.
-///
-/// Throws InputError if geometry lies beyond what numbers can hold.
+/// Throws InputError if geometry is out of the range of coordinates.
 std::string add_content_camera(Scene& scene);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/scene/deform.cpp
+// lib/scene/deform.cpp -- computes vertices of morphed and skinned meshes.
 #include "lib/scene/deform.h"
 
 #include <algorithm>
@@ -86,14 +86,15 @@ PoseBounds::PoseBounds(const Scene& scene, const Node& node) {
     }
     displacement_.resize(primitive.targets.size());
     for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
-      displacement_[t].add(Vec3d{});  // other primitives' vertices, or targets without positions, stay
+      // Vertices of other primitives, or targets without positions, have no displacement.
+      displacement_[t].add(Vec3d{});
       for (const Vec3& d : primitive.targets[t].positions) displacement_[t].add(Vec3d(d));
     }
   }
 }
 
 void PoseBounds::add_to(Box3d& bounds, const Pose& pose, const Affine& world_from_node) const {
-  Vec3d lower{}, upper{};  // how far the morph targets may take any vertex
+  Vec3d lower{}, upper{};  // bounds of the displacement by morph targets over all vertices
   for (std::size_t t = 0; t < displacement_.size(); ++t) {
     const Vec3d a = displacement_[t].lower * pose.weights[t], b = displacement_[t].upper * pose.weights[t];
     lower = lower + min(a, b);

@@ -1,4 +1,4 @@
-// lib/scene/environment.cpp
+// lib/scene/environment.cpp -- reads environment maps.
 #include "lib/scene/environment.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace tempolux {
 namespace {
 
-/// Sums over the sphere, areas and probabilities must stay below float32's 3.4e38.
+/// Keeps sums over the sphere, areas and probabilities below float32's largest number, 3.4e38.
 constexpr double kMostRadiance = 1e30;
 
 std::string pixel_place(std::size_t pixel, int width) {
@@ -32,7 +32,7 @@ std::string content_hash(const Environment& environment) {
   return hasher.hex();
 }
 
-/// Value times strength, negative ones counted and set to 0.
+/// Multiplies values by the strength; counts negative values and sets them to 0.
 class Scale {
  public:
   Scale(const Environment& environment, double strength) : environment_(environment), strength_(strength) {}
@@ -70,7 +70,7 @@ Environment load_environment(const std::string& path, const EnvironmentOptions& 
   environment.path = path;
   environment.width = image.width;
   environment.height = image.height;
-  // Turns whole circles off: equal light has an equal hash.
+  // Removes full turns from the rotation, so that equal light has an equal hash.
   environment.rotation_rad = std::remainder(options.rotation_deg, 360.0) * std::numbers::pi / 180;
   environment.radiance.resize(image.pixels.size());
   Scale scale(environment, options.strength);

@@ -1,4 +1,4 @@
-// lib/scene/gltf_animation.cpp -- animations as tracks: translation, rotation, scale and morph weights of nodes.
+// lib/scene/gltf_animation.cpp -- reads animations as tracks: translation, rotation, scale and morph weights of nodes.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -24,14 +24,14 @@ bool is_known(const std::string& interpolation) {
   return std::ranges::any_of(kInterpolations, [&](const auto& known) { return interpolation == known.first; });
 }
 
-/// LINEAR, glTF's own default, for a name that glTF does not have: keys are where they are.
+/// An unknown name means LINEAR, glTF's default: the keys themselves stay valid.
 Interpolation interpolation_of(const std::string& name) {
   for (const auto& [known, interpolation] : kInterpolations)
     if (name == known) return interpolation;
   return Interpolation::linear;
 }
 
-/// True and the path if the channel is of a node of the scene.
+/// True if the channel's target is a node of the scene; returns its path.
 bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, const std::string& place, Path& path) {
   static const std::map<std::string, Path> paths{{"translation", Path::translation},
                                                  {"rotation", Path::rotation},
@@ -45,10 +45,11 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
   if (channel.target_node == -1) return false;
   if (channel.target_node < 0 || std::size_t(channel.target_node) >= import.model.nodes.size())
     import.fail(place + ".target.node", "node " + std::to_string(channel.target_node) + " does not exist");
-  return import.node_from_source[std::size_t(channel.target_node)] != -1;  // else in another scene of the file
+  // False: the node belongs to another scene of the file.
+  return import.node_from_source[std::size_t(channel.target_node)] != -1;
 }
 
-/// Numbers per value: one per morph target of the node's mesh for weights.
+/// Numbers per value; for weights the number of morph targets of the node's mesh.
 std::size_t components_of(const Import& import, Path path, int target, const std::string& place) {
   switch (path) {
     case Path::weights: break;
@@ -77,7 +78,8 @@ void read_values(Import& import, const tinygltf::AnimationSampler& sampler, cons
                                        " keys" + (spline ? " (a spline needs three each)" : "") +
                                        (weights ? " of " + std::to_string(n) + " morph targets" : ""));
   if (track.path != Path::rotation) return;
-  for (std::size_t i = spline ? 1 : 0; i < keys * per_key; i += per_key) {  // tangents are no rotations
+  // The tangents of a spline are not rotations.
+  for (std::size_t i = spline ? 1 : 0; i < keys * per_key; i += per_key) {
     std::array<double, 4> rotation;
     std::copy_n(&track.values[i * 4], 4, rotation.begin());
     if (!normalize_rotation(rotation))
@@ -116,7 +118,7 @@ std::string name_of(const tinygltf::Animation& source, std::size_t index) {
   return source.name.empty() ? "animation " + std::to_string(index) : source.name;
 }
 
-/// Throws if a name was asked for and no animation has it.
+/// Throws if the user asked for an animation that no animation of the file has as name.
 void check_name(const Import& import, const std::string& asked) {
   std::string names;
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
@@ -136,8 +138,8 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
 
 namespace {
 
-/// The tracks of one animation. A channel with which something is wrong is left out with a warning, or with `strict`
-/// refused by InputError.
+/// Reads the tracks of one animation. An invalid channel is left out with a warning; with `strict` it throws
+/// InputError.
 std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool strict) {
   const tinygltf::Animation& source = import.model.animations[index];
   std::vector<AnimationTrack> tracks;

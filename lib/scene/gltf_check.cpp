@@ -1,4 +1,4 @@
-// lib/scene/gltf_check.cpp
+// lib/scene/gltf_check.cpp -- checks and reads accessors.
 #include "lib/scene/gltf_check.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ void check_view(const Import& import, std::size_t index) {
                            " bytes");
 }
 
-/// `count` elements of `size` bytes at `stride` from `offset` of a view.
+/// Checks that `count` elements of `size` bytes, `stride` apart from `offset` on, lie inside a view.
 void check_inside_view(const Import& import, const std::string& place, int view_index, std::uint64_t offset,
                        std::uint64_t stride, std::uint64_t count, std::uint64_t size) {
   if (view_index < 0 || std::size_t(view_index) >= import.model.bufferViews.size())
@@ -117,7 +117,7 @@ struct Elements {
   std::uint64_t count = 0, stride = 0;
   int component_type = 0, components = 0;
   bool normalized = false;
-  std::vector<unsigned char> own{};  ///< of a sparse accessor, or one without a view (zeros)
+  std::vector<unsigned char> own{};  ///< owned bytes of a sparse accessor, or of one without a view (zeros)
 };
 
 std::uint64_t read_index(const unsigned char* bytes, int component_type) {
@@ -137,7 +137,7 @@ const unsigned char* view_bytes(const tinygltf::Model& model, int view_index, st
   return model.buffers[std::size_t(view.buffer)].data.data() + view.byteOffset + offset;
 }
 
-/// A tight copy of a sparse accessor with its replacements put in.
+/// Copies a sparse accessor densely and applies its replacements.
 void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::string& place, Elements& elements) {
   const std::uint64_t size = std::uint64_t(component_size(accessor.componentType) * elements.components);
   std::uint64_t bytes = 0;
@@ -176,7 +176,7 @@ Elements open_accessor(Import& import, int index, int components, const std::str
   elements.components = component_count(accessor.type);
   elements.normalized = accessor.normalized;
   const int type = components == 1 ? TINYGLTF_TYPE_SCALAR : components == 16 ? TINYGLTF_TYPE_MAT4 : components;
-  if (accessor.type != type)  // VEC2 .. VEC4 are 2 .. 4
+  if (accessor.type != type)  // VEC2 .. VEC4 have the values 2 .. 4
     import.fail(place, "accessor " + std::to_string(index) + " has another type than is needed here (" +
                            std::to_string(components) + " numbers per element)");
   if (accessor.bufferView != -1) {
@@ -201,8 +201,8 @@ void convert(const Elements& elements, double scale, Put put) {
   }
 }
 
-/// Any component type but 32-bit integers (which glTF keeps for indices) as numbers, put(element, component, value).
-/// Elements with NaN or infinity are listed once each; what was put of them is to be overwritten.
+/// Reads components of any type except 32-bit integers (which glTF keeps for indices) as numbers: calls put(element,
+/// component, value). Elements with NaN or infinity are listed once each; the caller must overwrite them.
 template <class Put>
 std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, const std::string& place, int index,
                                     Put put_value) {

@@ -1,4 +1,4 @@
-// lib/scene/gltf_deform.cpp -- morph targets, skins, instances.
+// lib/scene/gltf_deform.cpp -- reads morph targets, skins and instances.
 #include "lib/scene/gltf_deform.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::vector<Vec3> read_displacements(Import& import, const std::map<std::string,
   return values;
 }
 
-/// Weights to a sum of 1. A vertex without any follows its first joint.
+/// Normalises the weights to a sum of 1. A vertex without weights follows its first joint.
 void normalize_weights(Import& import, Primitive& primitive) {
   const std::size_t n = primitive.influences_per_vertex;
   for (std::size_t v = 0; v < primitive.positions.size(); ++v) {
@@ -69,7 +69,7 @@ Skin read_skin(Import& import, std::size_t index) {
   return skin;
 }
 
-/// The node's skin, read at its first use; -1 if its mesh does not follow joints.
+/// Index of the node's skin, which is read at its first use; -1 if the mesh does not follow joints.
 int skin_of(Import& import, const Node& node, int source, std::vector<int>& skin_from_source) {
   const std::string place = place_of("nodes", node.source_index, node.name);
   if (source < 0 || std::size_t(source) >= import.model.skins.size())
@@ -113,8 +113,8 @@ std::vector<double> weights_of(const Import& import, const Node& node) {
   return given.empty() ? std::vector<double>(count, 0) : given;
 }
 
-/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if it is not there. `usable`: a mark for each instance,
-/// cleared where one of its numbers is not finite.
+/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if the attribute is missing. `usable` has a mark for each
+/// instance, which is cleared if one of its numbers is not finite.
 std::vector<double> instance_numbers(Import& import, const tinygltf::Value& attributes, const char* name,
                                      std::size_t components, std::vector<bool>& usable, const std::string& place) {
   if (!attributes.Has(name)) return {};
@@ -147,7 +147,7 @@ std::vector<Affine> instances_of(Import& import, const Node& node) {
   const auto t = instance_numbers(import, attributes, "TRANSLATION", 3, usable, place);
   const auto r = instance_numbers(import, attributes, "ROTATION", 4, usable, place);
   const auto s = instance_numbers(import, attributes, "SCALE", 3, usable, place);
-  import.take_memory(usable.size() * 320, place);  // with its surface
+  import.take_memory(usable.size() * 320, place);  // memory of an instance with its surface
   std::vector<Affine> instances;
   for (std::size_t i = 0; i < usable.size(); ++i) {
     std::array<double, 4> rotation{0, 0, 0, 1};

@@ -1,4 +1,4 @@
-// lib/scene/gltf_deform.h -- what lets a mesh change its shape, as glTF stores it.
+// lib/scene/gltf_deform.h -- reads what changes a mesh's shape: morph targets and skins.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace tempolux::gltf {
 
-/// Displacements of POSITION and NORMAL; those of other attributes are not used. Throws InputError if there are not
-/// as many as the primitive has vertices.
+/// Reads displacements of POSITION and NORMAL; other attributes are ignored. Throws InputError if the number of
+/// displacements is not the number of vertices.
 void read_targets(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
-/// JOINTS_n and WEIGHTS_n for all n there are; weights of a vertex are brought to a sum of 1.
+/// Reads all JOINTS_n and WEIGHTS_n; the weights of a vertex are normalised to a sum of 1.
 void read_influences(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
 
 }  // namespace tempolux::gltf

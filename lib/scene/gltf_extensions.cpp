@@ -1,4 +1,4 @@
-// lib/scene/gltf_extensions.cpp
+// lib/scene/gltf_extensions.cpp -- refuses packed data that this program cannot unpack.
 #include "lib/scene/gltf_extensions.h"
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace {
 struct Extension {
   const char* name;
   const char* remedy;
-  bool is_of_textures = false;  ///< stores images in a form of its own, which is not unpacked here
+  bool is_of_textures = false;  ///< stores images in its own format, which this program does not decode
 };
 
-// `gltf-transform cp` writes geometry unpacked. `gltf-transform png` leaves WebP as it is unless told otherwise;
-// `ktxdecompress` calls the program ktx. gltfpack reads packed files from version 0.22 on.
+// Commands that unpack: `gltf-transform cp` writes unpacked geometry. `gltf-transform png` converts WebP only if asked
+// to; `ktxdecompress` calls the program ktx. gltfpack reads packed files from version 0.22 on.
 constexpr const char* kToPng = "convert its textures with `gltf-transform png IN.glb OUT.glb --formats '*'`";
 constexpr std::array kExtensions{
     Extension{"KHR_draco_mesh_compression",
@@ -41,10 +41,10 @@ std::string numbered(const char* array, std::size_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
 }
 
-/// Where the file uses an extension, and where it has nothing but that.
+/// Places where the file uses an extension.
 struct Use {
   bool used = false;
-  std::string only;  ///< place of the first data without a fallback; empty: all have one
+  std::string only;  ///< place of the first data without a fallback; empty: all data has one
 };
 
 Use use_by_textures(const Json& document, const char* name) {
@@ -97,7 +97,7 @@ bool primitive_is_packed_only(const Json& document, const Json& primitive, const
   const Json& accessors = array_of(document, "accessors");
   const auto has_bytes = [&](const Json& index) {
     const std::size_t i = index.get<std::size_t>();
-    return i >= accessors.size() || accessors[i].contains("bufferView");  // beyond: said later
+    return i >= accessors.size() || accessors[i].contains("bufferView");  // indices out of range are reported later
   };
   const Json& attributes = primitive["attributes"];
   return !std::all_of(attributes.begin(), attributes.end(), has_bytes) ||

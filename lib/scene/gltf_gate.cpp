@@ -1,4 +1,4 @@
-// lib/scene/gltf_gate.cpp
+// lib/scene/gltf_gate.cpp -- checks a glTF file before tinygltf reads it.
 #include "lib/scene/gltf_gate.h"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
-// Read in full, or read as far as this version renders it (gltf_material.cpp says what is left out).
+// Extensions that are read, in full or as far as this version renders them (gltf_material.cpp names what is left out).
 const std::set<std::string> kKnown{"KHR_lights_punctual",     "KHR_materials_emissive_strength",
                                    "KHR_materials_specular",  "KHR_materials_ior",
                                    "KHR_mesh_quantization",   "KHR_materials_transmission",
@@ -77,7 +77,7 @@ class File {
   std::uint64_t size_ = 0;
 };
 
-/// The JSON text, and where the binary chunk lies (length 0: none).
+/// The JSON text, and the position of the binary chunk (length 0: none).
 struct Container {
   std::string json;
   ByteRange bin;
@@ -161,7 +161,7 @@ void check_extensions(Json& document, const std::string& path, Gated& gated) {
   if (!ignored.empty()) gated.warnings.push_back(path + ": ignored extensions: " + ignored);
 }
 
-/// What exporters write of an object's own properties; tinygltf would make values of 200 bytes each of them.
+/// Keeps the `extras` of nodes as text; tinygltf would make values of 200 bytes each of them.
 void keep_node_extras(const Json& document, Gated& gated) {
   const auto nodes = document.find("nodes");
   if (nodes == document.end()) return;
@@ -170,7 +170,7 @@ void keep_node_extras(const Json& document, Gated& gated) {
       gated.node_extras.emplace(i, extras->dump());
 }
 
-/// tinygltf would drop these without a word: kept beside.
+/// Keeps these channels separately, since tinygltf drops them silently.
 void keep_pointer_channels(Json& document, Gated& gated) {
   if (!document.contains("animations")) return;
   for (std::size_t a = 0; a < document["animations"].size(); ++a) {
@@ -220,7 +220,8 @@ bool has_scheme(const std::string& uri) {
   return end != std::string::npos && end > 0 && uri[end] == ':';
 }
 
-/// The file a relative URI names. Symbolic links and `..` are resolved before asking whether it is inside.
+/// The file that a relative URI names. Symbolic links and `..` are resolved before the check that the file is inside
+/// the folder.
 std::string resolved(const std::string& uri, const std::string& path, const std::string& place,
                      const GltfOptions& options) {
   const std::string shown = "\"" + uri.substr(0, 80) + "\"";
@@ -240,7 +241,7 @@ std::string resolved(const std::string& uri, const std::string& path, const std:
   return (folder / relative).string();
 }
 
-/// Checks a data URI and brings it into the one form tinygltf takes for any media type.
+/// Checks a data URI and rewrites it in the one form that tinygltf accepts for any media type.
 std::string checked_data_uri(const std::string& uri, std::uint64_t length, const std::string& path,
                              const std::string& place) {
   const std::size_t comma = uri.find(',');
@@ -324,7 +325,7 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
   return approved;
 }
 
-/// Buffers that name one file many times would make a small file large.
+/// Checks the total size: many buffers that name one file could make a small file large.
 void check_total(const std::string& path, const GltfOptions& options, const Gated& gated) {
   std::uint64_t on_disk = 0, wanted = 0;
   for (const std::string& file : gated.files) on_disk += File(file).size();

@@ -1,4 +1,4 @@
-// lib/scene/gltf_geometry.cpp -- meshes as indexed triangles, each primitive with just the vertices it uses.
+// lib/scene/gltf_geometry.cpp -- reads meshes as indexed triangles; each primitive gets only the vertices it uses.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -32,13 +32,13 @@ std::vector<Triangle> triangles_from(const std::vector<std::uint32_t>& indices, 
   return triangles;
 }
 
-/// Differences of floats are exact enough in double that only truly collinear corners give zero.
+/// Differences of floats are so exact in double that only collinear corners give zero.
 bool has_area(const std::vector<Vec3>& positions, const Triangle& t) {
   const Vec3d a(positions[t[0]]), b(positions[t[1]]), c(positions[t[2]]);
   return length2(cross(b - a, c - a)) > 0;
 }
 
-/// Exporters may put many primitives on one shared vertex accessor: keep the vertices that are used.
+/// Keeps the vertices that are used: exporters may put many primitives on one shared vertex accessor.
 void drop_unused_vertices(Primitive& primitive) {
   std::vector<std::uint32_t> new_index(primitive.positions.size(), 0), used;
   for (const Triangle& t : primitive.triangles)
@@ -72,7 +72,7 @@ std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitiv
 
 void read_normals(Import& import, int accessor, const std::string& place, Primitive& primitive) {
   std::vector<std::uint32_t> unusable;
-  primitive.normals = read_vec3(import, accessor, place, unusable);  // those become 0, too
+  primitive.normals = read_vec3(import, accessor, place, unusable);  // unusable normals are set to 0
   if (primitive.normals.size() != primitive.positions.size())
     import.fail(place, "there are not as many normals as positions");
   unusable.clear();
@@ -84,15 +84,15 @@ void read_normals(Import& import, int accessor, const std::string& place, Primit
   mend_normals(import, place, unusable, primitive);
 }
 
-/// Tangents follow the coordinates as the file has them. A texture transform that turns or mirrors the map leaves them
-/// wrong: then they are made as where there are none.
+/// True if the texture transform neither turns nor mirrors the map. Otherwise the file's tangents, which follow its
+/// untransformed coordinates, are wrong and are computed anew.
 bool keeps_axes(const Texture& texture) {
   const auto& m = texture.transform;
   return m[0] > 0 && m[4] > 0 && m[1] == 0 && m[3] == 0;
 }
 
-/// glTF 2.0, 3.7.2.1: a unit vector and the side of the third axis. Only where a normal map reads them; without normals
-/// they do not count. Where they are left out make_tangents has the word.
+/// glTF 2.0, 3.7.2.1: a unit vector and the sign of the third axis. Read only if a normal map and normals exist. Where
+/// no tangents are read make_tangents computes them.
 void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("TANGENT");
   const Material& material = import.scene.materials[primitive.material];
@@ -131,7 +131,7 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   return uvs;
 }
 
-/// glTF 2.0, 3.7.2.1: RGB or RGBA, linear. Exporters write them white, too: those are left out. Marks the material.
+/// glTF 2.0, 3.7.2.1: RGB or RGBA, linear. Colours that are all white are left out. Marks the material.
 void read_colors(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("COLOR_0");
   if (found == source.attributes.end()) return;
@@ -175,7 +175,7 @@ void note_ignored(Import& import, const tinygltf::Primitive& source) {
   }
 }
 
-/// Empty triangles if there is nothing to draw in it.
+/// Reads a primitive; its triangles are empty if it draws nothing.
 Primitive read_primitive(Import& import, const tinygltf::Primitive& source, const std::string& place) {
   Primitive primitive;
   if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
@@ -196,7 +196,8 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   import.take_memory(order.size() * sizeof(Triangle), place);
   primitive.triangles = triangles_from(order, source.mode);
   const std::size_t before = primitive.triangles.size();
-  const bool opens = !source.targets.empty() || source.attributes.contains("JOINTS_0");  // in another pose
+  // The primitive may have an area in another pose.
+  const bool opens = !source.targets.empty() || source.attributes.contains("JOINTS_0");
   if (!opens) std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
   if (before > primitive.triangles.size()) import.ignore("triangles of zero area", before - primitive.triangles.size());
   if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
@@ -222,7 +223,7 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   return primitive;
 }
 
-/// Index of the mesh in the scene, reading it at its first use; -1 if it has no triangles.
+/// Index of the mesh in the scene; the mesh is read at its first use. -1 if it has no triangles.
 int mesh_of(Import& import, std::size_t source_index, std::vector<bool>& seen) {
   if (seen[source_index]) return import.mesh_from_source[source_index];
   seen[source_index] = true;

@@ -1,4 +1,4 @@
-// lib/scene/gltf_json.cpp
+// lib/scene/gltf_json.cpp -- parses and checks the JSON of a glTF file.
 #include "lib/scene/gltf_json.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr std::size_t kMaxValues = 8'000'000;
   throw InputError(file + ": " + place + ": " + what);
 }
 
-/// Counts, builds nothing.
+/// Counts values without storing them.
 class Counter final : public nlohmann::json_sax<Json> {
  public:
   std::string trouble;
@@ -44,8 +44,8 @@ class Counter final : public nlohmann::json_sax<Json> {
  private:
   std::size_t depth_ = 0, values_ = 0;
 
-  /// "[json...101] parse error at line 1, column 2: WHAT - DETAIL; last read: ..." without what is for programmers and
-  /// without bytes of the file.
+  /// Shortens the parser's message "[json...101] parse error at line 1, column 2: WHAT - DETAIL; last read: ...":
+  /// without parts for programmers and without bytes of the file.
   static std::string what_is_wrong(std::string text) {
     text = text.substr(0, text.find("; last read"));
     if (const std::size_t at = text.find("column "); at != std::string::npos) text = text.substr(at);
@@ -77,7 +77,7 @@ struct Rule {
   std::string_view key;
   Type type;
   bool required = false;
-  const std::vector<Rule>* inside = nullptr;  ///< rules of the object or of each of the objects
+  const std::vector<Rule>* inside = nullptr;  ///< rules for the object, or for each object of the array
 };
 
 constexpr bool kRequired = true;
@@ -256,7 +256,7 @@ void check_property(Json& value, const Rule& rule, const std::string& place, con
       check_object(value[i], *rule.inside, place + "[" + std::to_string(i) + "]", file);
 }
 
-/// Depth is that of the rules, not of the file.
+/// The recursion is as deep as the rules, not as the file.
 void check_object(Json& object, const Rules& rules, const std::string& place, const std::string& file) {
   const auto inside = [&](std::string_view key) { return (place.empty() ? "" : place + ".") + std::string(key); };
   for (const Rule& rule : rules) {

@@ -1,4 +1,4 @@
-// lib/scene/gltf_load.cpp
+// lib/scene/gltf_load.cpp -- loads a glTF file with tinygltf.
 #include "lib/scene/gltf_load.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string place_of(const char* array, std::size_t index, const std::string& na
 
 namespace {
 
-// tinygltf's file callbacks: the only names it can ask for are those of buffers that passed the gate.
+// File callbacks for tinygltf. It can only ask for names of buffers that passed the gate.
 
 const ByteRange* range_named(const std::string& name, void* gated) {
   const std::vector<ByteRange>& buffers = static_cast<const Gated*>(gated)->buffers;
@@ -52,7 +52,7 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
 
 bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
-/// Images never reach tinygltf; should one, its pixels are not decoded.
+/// Never decodes: images do not reach tinygltf.
 bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
                     void*) {
   return true;
@@ -69,8 +69,7 @@ tinygltf::Model parse(const std::string& path, Gated& gated) {
   return model;
 }
 
-/// Geometry may be this much larger than the bytes it comes from: 8-bit indices and positions grow
-/// twelvefold.
+/// Largest ratio of geometry to file size: 8-bit indices and positions grow twelvefold.
 constexpr std::uint64_t kGrowth = 32, kSmallScene = 64u << 20;
 
 Scene import_scene(const std::string& path, const GltfOptions& options) {

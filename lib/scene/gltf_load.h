@@ -1,4 +1,4 @@
-// lib/scene/gltf_load.h -- load a glTF 2.0 file, .gltf or .glb; the only user of tinygltf.
+// lib/scene/gltf_load.h -- loads a glTF 2.0 file, .gltf or .glb; the only user of tinygltf.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@ namespace tempolux {
 
 struct GltfOptions {
   bool allow_outside = false;                 ///< URIs may leave the scene's folder
-  std::string animation{};                    ///< play only the animation of this name; empty: all together
+  std::string animation{};                    ///< plays only the animation of this name; empty: all together
   std::uint64_t max_file_bytes = 4ull << 30;  ///< of the scene file, of each buffer and of each image
   TextureLimits textures{};
 };
 
-/// Reads and checks a scene. Everything the file says is checked before it is used to size, index or
-/// recurse: nesting depth, required extensions and URIs before tinygltf sees the file; accessors, indices,
-/// numbers and the node graph after. Images are not decoded.
+/// Reads and checks a scene. All values of the file are checked before they are used as a size, an index or a depth of
+/// recursion: nesting depth, required extensions and URIs before tinygltf reads the file; accessors, indices, numbers
+/// and the node graph afterwards. Images are not decoded.
 ///
-/// Throws InputError "FILE: PLACE: WHAT; REMEDY" for anything unusable; what is merely ignored goes to
-/// Scene::warnings. Never allocates more than a few times the size of the files.
+/// Throws InputError "FILE: PLACE: WHAT; REMEDY" for unusable input; ignored features are listed in Scene::warnings.
+/// Never allocates more than a few times the size of the files.
 Scene load_gltf(const std::string& path, const GltfOptions& options = {});
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/scene/gltf_material.cpp -- materials, punctual lights and cameras.
+// lib/scene/gltf_material.cpp -- reads materials, punctual lights and cameras.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,12 +15,12 @@ using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
 
-/// Blender writes inner = outer for a spot without a soft edge, which glTF forbids: the edge gets a width.
+/// Blender writes inner = outer for a spot without a soft edge, which glTF forbids: the edge gets this width.
 constexpr double kSharpestCone = 0.9999;
 
-constexpr double kLeastDistance = 1e-12;  ///< m, for an attenuationDistance of 0, which glTF forbids
+constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
 
-/// A number brought into [lower, upper], with a warning if it was outside; fails if it is not finite.
+/// Clamps a number to [lower, upper], with a warning if it was outside; fails if it is not finite.
 float limited(Import& import, double value, double lower, double upper, const std::string& place) {
   if (!std::isfinite(value)) import.fail(place, "is not finite");
   if (value < lower || value > upper) {
@@ -40,7 +40,7 @@ Rgb limited_colour(Import& import, const std::vector<double>& values, Rgb fallba
   return colour;
 }
 
-/// Numbers inside the JSON of an extension.
+/// Reads numbers inside the JSON of an extension.
 struct ExtensionReader {
   Import& import;
   const Value& object;
@@ -140,7 +140,7 @@ Material read_material(Import& import, std::size_t index) {
   material.emission = limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
   material.emission *= float(strength);
   if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
-  if (material.unlit) material.emission = Rgb(0.0f);  // base_color is all it shows
+  if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
   textures.base_color = read_texture(import, pbr.baseColorTexture, place + ".baseColorTexture");
   textures.metallic_roughness = read_texture(import, pbr.metallicRoughnessTexture, place + ".metallicRoughnessTexture");
   textures.normal = read_texture(import, source.normalTexture, place + ".normalTexture");
@@ -205,7 +205,7 @@ Camera read_camera(Import& import, std::size_t index) {
 void import_materials(Import& import) {
   for (std::size_t i = 0; i < import.model.materials.size(); ++i)
     import.scene.materials.push_back(read_material(import, i));
-  import.scene.materials.emplace_back();  // glTF's default, for primitives without one
+  import.scene.materials.emplace_back();  // glTF's default material, for primitives without one
 }
 
 void import_lights(Import& import) {

@@ -1,4 +1,4 @@
-// lib/scene/gltf_model.h -- what the gltf_*.cpp files share; the one place that includes tinygltf.
+// lib/scene/gltf_model.h -- declarations that the gltf_*.cpp files share; the only place that includes tinygltf.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -25,7 +25,7 @@ std::string place_of(const char* array, std::size_t index, const std::string& na
 
 struct Gated;
 
-/// One scene on its way from tinygltf's model to ours.
+/// State of importing one scene from tinygltf's model.
 struct Import {
   const tinygltf::Model& model;
   Scene& scene;
@@ -46,8 +46,8 @@ struct Import {
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     gltf::fail(scene.path, place, what);
   }
-  /// Takes `bytes` from the budget before they are allocated; fails when a file asks for far more memory
-  /// than its own size can mean.
+  /// Takes `bytes` from the budget before they are allocated; fails if a file asks for far more memory than its size
+  /// can explain.
   void take_memory(std::uint64_t bytes, const std::string& place);
   /// `place`: where the user finds it, as 'materials[3] "Oak"'; "": that would not help.
   void ignore(const std::string& what, std::size_t count = 1, const std::string& place = "") {
@@ -59,31 +59,31 @@ struct Import {
   void mend(const std::string& place, const std::string& what, std::size_t count);
 };
 
-/// Makes a quaternion x y z w unit; false if it is zero or not finite.
+/// Normalises a quaternion x y z w; false if it is zero or not finite.
 bool normalize_rotation(std::array<double, 4>& rotation);
 
-/// How a material names a texture: index -1 for none.
+/// A material's reference to a texture; index -1 for none.
 struct TextureUse {
   int index = -1, uv_set = 0;
   const tinygltf::Value* transform = nullptr;  ///< KHR_texture_transform
 };
-/// gltf_texture.cpp. Reads the image's bytes and size at its first use, refuses what cannot be decoded.
+/// gltf_texture.cpp. Reads the image's bytes and size at its first use; refuses images that cannot be decoded.
 Texture read_texture(Import& import, const TextureUse& use, const std::string& place);
 /// The same from a textureInfo inside an extension.
 Texture read_texture(Import& import, const tinygltf::Value& info, const std::string& place);
 
-/// Morph targets of a mesh: glTF demands the same number of all its primitives.
+/// Number of morph targets of a mesh; glTF requires the same number for all its primitives.
 std::size_t target_count(const tinygltf::Mesh& mesh);
 
 // The steps of load_gltf, in this order.
-void import_nodes(Import& import);        ///< gltf_nodes.cpp: default scene's nodes, parents first
+void import_nodes(Import& import);        ///< gltf_nodes.cpp: the default scene's nodes, parents first
 void import_materials(Import& import);    ///< gltf_material.cpp
 void import_lights(Import& import);       ///< gltf_material.cpp: KHR_lights_punctual
 void import_cameras(Import& import);      ///< gltf_material.cpp
-void import_meshes(Import& import);       ///< gltf_geometry.cpp: those that nodes use
+void import_meshes(Import& import);       ///< gltf_geometry.cpp: the meshes that nodes use
 void import_deformation(Import& import);  ///< gltf_deform.cpp: skins, morph weights, instances of nodes
-/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all, but for
-/// channels with which something is wrong: a warning names what, and the scene is still without them.
+/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all animations.
+/// Invalid channels are left out with a warning: the property then stays at rest.
 void import_animations(Import& import, const std::string& only);
 
 }  // namespace tempolux::gltf

@@ -1,4 +1,4 @@
-// lib/scene/gltf_nodes.cpp -- the node graph of the default scene, parents first.
+// lib/scene/gltf_nodes.cpp -- reads the node graph of the default scene, parents first.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -87,7 +87,7 @@ bool normalize_rotation(std::array<double, 4>& q) {
   return true;
 }
 
-/// Depth first, children in their order; a stack of our own, so depth is bounded by memory only.
+/// Visits nodes depth first, children in order, with an explicit stack, so that depth is bounded by memory only.
 void import_nodes(Import& import) {
   struct Pending {
     int source, parent;

@@ -1,4 +1,4 @@
-// lib/scene/gltf_pointer.cpp
+// lib/scene/gltf_pointer.cpp -- resolves JSON pointers of KHR_animation_pointer.
 #include "lib/scene/gltf_pointer.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 using Path = AnimationTrack::Path;
 
-/// Array of the document, property of its elements.
+/// A property of the elements of an array of the document.
 struct Property {
   std::string_view array, rest;
   Path path;
@@ -78,7 +78,7 @@ bool resolve_pointer(Import& import, const std::string& pointer, PointedAt& at) 
       import.fail("animations", "pointer " + one_line(pointer, 100) + ": there is no such object");
     at = {property.path, int(index)};
     if (property.array == kNodes) at.target = import.node_from_source[index];
-    return at.target >= 0;  // else a node in another scene of the file
+    return at.target >= 0;  // false: the node belongs to another scene of the file
   }
   import.ignore("animation of " + (pointer.empty() ? "a pointer that is not said" : one_line(pointer, 100)));
   return false;

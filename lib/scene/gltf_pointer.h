@@ -1,4 +1,4 @@
-// lib/scene/gltf_pointer.h -- KHR_animation_pointer: which property a JSON pointer means.
+// lib/scene/gltf_pointer.h -- KHR_animation_pointer: finds the property that a JSON pointer names.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace tempolux::gltf {
 
 struct PointedAt {
   AnimationTrack::Path path = AnimationTrack::Path::translation;
-  int target = 0;  ///< index of the scene
+  int target = 0;  ///< index in the scene
 };
 
-/// True if the property is one that is played; otherwise it is noted as ignored, with the pointer. Throws
-/// InputError if the object pointed at does not exist.
+/// True if the property can be animated; otherwise the pointer is listed as ignored. Throws InputError if the object
+/// does not exist.
 bool resolve_pointer(Import& import, const std::string& pointer, PointedAt& at);
 
 /// Fills Scene::emission_factors and light_factors if a track needs them.

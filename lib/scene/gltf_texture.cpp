@@ -1,4 +1,4 @@
-// lib/scene/gltf_texture.cpp -- what textures refer to: images, samplers, transforms of texture coordinates.
+// lib/scene/gltf_texture.cpp -- reads images, samplers and transforms of texture coordinates.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,13 +15,13 @@ namespace {
 
 using tinygltf::Value;
 
-/// Bytes of an image; a file of its own joins Scene::files.
+/// Bytes of an image. If the image is a file of its own, the file is added to Scene::files.
 std::vector<unsigned char> image_bytes(Import& import, const GatedImage& image, const std::string& place) {
   if (!image.refused.empty()) import.fail(place, image.refused);
   if (image.buffer_view >= 0) {
     if (std::size_t(image.buffer_view) >= import.model.bufferViews.size())
       import.fail(place, "bufferView " + std::to_string(image.buffer_view) + " does not exist");
-    // check_accessors has looked whether views lie inside their buffers.
+    // check_accessors has checked that views lie inside their buffers.
     const tinygltf::BufferView& view = import.model.bufferViews[std::size_t(image.buffer_view)];
     const auto first = import.model.buffers[std::size_t(view.buffer)].data.begin() + std::ptrdiff_t(view.byteOffset);
     return {first, first + std::ptrdiff_t(view.byteLength)};
@@ -38,7 +38,7 @@ std::vector<unsigned char> image_bytes(Import& import, const GatedImage& image, 
   return bytes;
 }
 
-/// Index in the scene of an image of the file, read at its first use.
+/// Index in the scene of an image of the file; the image is read at its first use.
 std::uint32_t image_of(Import& import, std::size_t source) {
   const std::vector<GatedImage>& images = import.gated->images;
   import.image_from_source.resize(images.size(), kNone);
@@ -89,9 +89,9 @@ std::array<double, 2> pair(Import& import, const Value& object, const std::strin
   return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
 }
 
-/// KHR_texture_transform as a matrix: offset + R scale uv. The specification's words and all renderers agree that
-/// the coordinates turn counter-clockwise as seen with v downwards, (1, 0) towards (0, -1); its example listing has
-/// the other sign (Khronos' issue 1563).
+/// KHR_texture_transform as a matrix: offset + R scale uv. By the specification's text and in all renderers the
+/// coordinates turn counter-clockwise as seen with v downwards: (1, 0) turns towards (0, -1). The specification's
+/// example code has the other sign (Khronos' issue 1563).
 void read_transform(Import& import, const Value& value, const std::string& place, Texture& texture) {
   if (!value.IsObject()) import.fail(place, "is not an object");
   const auto offset = pair(import, value, "offset", 0, place), scale = pair(import, value, "scale", 1, place);

@@ -13,21 +13,21 @@
 namespace tempolux::gltf {
 namespace {
 
-/// Draco needs less than a bit for a triangle of a regular grid, which unpacked are 12 bytes and more; meshopt shrinks
-/// 64 times at most.
+/// Largest ratio of unpacked to packed size: Draco may need less than a bit for a triangle of a regular grid, which
+/// takes at least 12 bytes unpacked; meshopt shrinks at most 64 times.
 constexpr std::uint64_t kMostGrowth = 1000, kSmall = 64u << 20;
 
 std::string numbered(const char* array, std::size_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
 }
 
-/// The packed pieces of a document and where their unpacked bytes will lie.
+/// The packed pieces of a document and the places of their unpacked bytes.
 class Unpacking {
  public:
   Unpacking(Json& document, const std::string& path, const GltfOptions& options, Gated& gated)
       : document_(document), path_(path), options_(options), gated_(gated) {}
 
-  /// A bufferView whose bytes are elements that meshopt packed.
+  /// Adds a bufferView that meshopt packed.
   void add_view(std::size_t index, const char* name) {
     Json& view = document_["bufferViews"][index];
     const std::string place = numbered("bufferViews", index) + ".extensions." + name;
@@ -47,8 +47,8 @@ class Unpacking {
     add(std::move(piece));
   }
 
-  /// A primitive whose accessors have their values in Draco's data. Those of an earlier primitive have
-  /// their bytes by now: a primitive that shares all of them is not packed any more.
+  /// Adds a primitive whose accessors are packed by Draco. Accessors shared with an earlier primitive are unpacked
+  /// already: a primitive that shares all of them is no longer packed.
   void add_primitive(std::size_t mesh, std::size_t number) {
     Json& primitive = document_["meshes"][mesh]["primitives"][number];
     const std::string place =
@@ -67,7 +67,7 @@ class Unpacking {
     add_parts(source, parts, place);
   }
 
-  /// Unpacks everything and appends it as a buffer.
+  /// Unpacks all pieces and appends them as one buffer.
   void finish() {
     if (pieces_.empty()) return;
     const std::uint64_t limit = std::min(options_.max_file_bytes, kMostGrowth * packed_bytes_ + kSmall);
@@ -84,7 +84,7 @@ class Unpacking {
   static constexpr const char* kDraco = "KHR_draco_mesh_compression";
   static constexpr std::int64_t kIndices = -1;
 
-  /// An accessor and the attribute of the Draco data that it gets.
+  /// An accessor and the attribute of the Draco data that it receives.
   struct Part {
     std::size_t accessor;
     std::int64_t id;
@@ -110,7 +110,7 @@ class Unpacking {
     pieces_.push_back(std::move(piece));
   }
 
-  /// Makes a bufferView of the next `bytes` unpacked ones, which start so far behind those of all pieces there are.
+  /// Points a bufferView to the next `bytes` unpacked bytes, which start `behind` bytes after the pieces added so far.
   void place_view(Json& view, std::uint64_t bytes, std::uint64_t behind = 0) const {
     view["buffer"] = gated_.buffers.size();
     view["byteOffset"] = unpacked_bytes_ + behind;
@@ -138,7 +138,7 @@ class Unpacking {
     add(std::move(piece));
   }
 
-  /// Settings and size of one accessor; the indices come first.
+  /// Adds settings and size of one accessor to the piece; the indices come first.
   void add_part(const Part& part, PackedPiece& piece, const std::string& place) const {
     const Json& accessors = array_of(document_, "accessors");
     if (part.accessor >= accessors.size()) fail(place, "accessor " + std::to_string(part.accessor) + " does not exist");
@@ -200,7 +200,7 @@ class Unpacking {
                     view["byteLength"].get<std::uint64_t>(), place);
   }
 
-  /// A part of a buffer of the file.
+  /// Bytes of a part of a buffer of the file.
   std::vector<unsigned char> bytes_of(std::size_t buffer, std::uint64_t offset, std::uint64_t length,
                                       const std::string& place) const {
     if (buffer >= gated_.buffers.size()) fail(place, "buffer " + std::to_string(buffer) + " does not exist");
@@ -212,7 +212,7 @@ class Unpacking {
     if (is_stand_in(document_["buffers"][buffer])) fail(place, "buffer " + std::to_string(buffer) + " has no bytes");
     if (range.length > 0) return read_range({range.path, range.offset + offset, length});
     const std::string uri = document_["buffers"][buffer]["uri"].get<std::string>();
-    const auto bytes = base64_bytes(std::string_view(uri).substr(uri.find(',') + 1));  // looked through by the gate
+    const auto bytes = base64_bytes(std::string_view(uri).substr(uri.find(',') + 1));  // the gate has checked the text
     return {bytes->begin() + std::ptrdiff_t(offset), bytes->begin() + std::ptrdiff_t(offset + length)};
   }
 
@@ -257,7 +257,7 @@ void unpack_packed(Json& document, const std::string& path, const GltfOptions& o
     }
   use_webp_images(document, path);
   unpacking.finish();
-  if (document.contains("buffers"))  // nothing is to be read from buffers without bytes
+  if (document.contains("buffers"))  // packing leaves buffers without bytes, which must not be read
     for (Json& buffer : document["buffers"])
       if (is_stand_in(buffer)) buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
 }

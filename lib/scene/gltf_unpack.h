@@ -1,4 +1,4 @@
-// lib/scene/gltf_unpack.h -- geometry that a glTF file packs with Draco or meshopt; private to the gate.
+// lib/scene/gltf_unpack.h -- unpacks geometry that a glTF file packs with Draco or meshopt; private to the gate.
 #pragma once
 
 #include <string>
@@ -8,19 +8,15 @@
 
 namespace tempolux::gltf {
 
-/// Unpacks what the file has in no other form (lib/core/unpack.h: a helper process does it; none is started where
-/// nothing is packed) and rewrites the document, so that nothing after the gate knows of it:
-///
-/// - KHR_draco_mesh_compression: accessors of the primitive get a bufferView with their plain values;
-/// - EXT_meshopt_compression, KHR_meshopt_compression: the bufferView lies in the unpacked bytes;
-/// - EXT_texture_webp: the texture's source is the WebP image, which is decoded when it is first looked at, like any
-/// other.
-///
-/// The unpacked bytes are one more buffer at the end, Gated::unpacked. They may be wrong like those of any file:
-/// accessors are checked later. What a file claims is limited: a thousand times its packed bytes and 64 MB, and
+/// Unpacks data that the file has in no other form and rewrites the document, so that later readers need not know the
+/// extensions. A child process unpacks (lib/core/unpack.h); it is started only if something is packed.
+/// - KHR_draco_mesh_compression: accessors of the primitive get a bufferView with plain values.
+/// - EXT_meshopt_compression, KHR_meshopt_compression: the bufferView points to unpacked bytes.
+/// - EXT_texture_webp: the texture's source is the WebP image, which is decoded at its first use like any other image.
+/// The unpacked bytes are one more buffer at the end, Gated::unpacked. They may be invalid like the bytes of any file;
+/// accessors are checked later. The unpacked size is limited to a thousand times the packed bytes plus 64 MB, and to
 /// max_file_bytes.
-///
-/// Call after check_types, check_packing and the approval of buffers. Throws InputError that names primitive or
+/// Call after check_types, check_packing and the approval of buffers. Throws InputError that names the primitive or
 /// bufferView, the extension, and the command that unpacks the file.
 void unpack_packed(Json& document, const std::string& path, const GltfOptions& options, Gated& gated);
 

@@ -6,8 +6,9 @@
 namespace tempolux {
 namespace {
 
-constexpr float kDoubtful =
-    500;  ///< cd or lux; multiplied: a lamp of 9.2 W, a sun of .73 W/m^2. Not: one of 6.3 kW, a sun of 500
+/// cd or lux. Multiplied by 683 this is a lamp of 9.2 W or a sun of .73 W/m^2; else a lamp of 6.3 kW or a sun of
+/// 500.
+constexpr float kDoubtful = 500;
 
 bool is_from_blender(const std::string& generator) {
   return generator.find("Blender") != std::string::npos && generator.find("tempolux_export") == std::string::npos;

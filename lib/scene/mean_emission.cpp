@@ -1,4 +1,4 @@
-// lib/scene/mean_emission.cpp -- what a triangle of a textured emitter sends out in the mean.
+// lib/scene/mean_emission.cpp -- averages the emission of a textured triangle.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// A texture over a triangle.
+/// The part of a texture that lies on a triangle.
 class Spread {
  public:
   Spread(const SceneFrame& frame, const Surface& surface, std::uint32_t triangle, const Texture& texture,
@@ -21,11 +21,11 @@ class Spread {
         upper_{std::max({at_[0].x, at_[1].x, at_[2].x}), std::max({at_[0].y, at_[1].y, at_[2].y})} {}
 
   bool any_colour() const { return pyramid_.any_colour(lower_, upper_, texture_.wrap_u, texture_.wrap_v); }
-  /// Texels along the longer side of the rectangle around it.
+  /// Texels along the longer side of the bounding rectangle.
   float extent() const {
     return std::max((upper_.x - lower_.x) * float(pyramid_.width()), (upper_.y - lower_.y) * float(pyramid_.height()));
   }
-  /// The level at which a texel is as large as one of cuts^2 equal parts of the triangle.
+  /// The texture level at which a texel is as large as one of cuts^2 equal parts of the triangle.
   float level(int cuts) const {
     const Vec2 a{at_[1].x - at_[0].x, at_[1].y - at_[0].y}, b{at_[2].x - at_[0].x, at_[2].y - at_[0].y};
     const float texels = 0.5f * std::abs(a.x * b.y - a.y * b.x) * float(pyramid_.width()) * float(pyramid_.height());

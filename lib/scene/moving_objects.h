@@ -1,4 +1,4 @@
-// lib/scene/moving_objects.h -- which objects move in the segment.
+// lib/scene/moving_objects.h -- lists the objects that move in the segment.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tempolux {
 
-/// Objects that have a surface among those that move in the segment.
+/// The objects that have a moving surface in the segment.
 class MovingObjects {
  public:
   explicit MovingObjects(std::vector<bool> moves = {}) : moves_(std::move(moves)) {}

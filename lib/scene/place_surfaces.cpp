@@ -1,4 +1,4 @@
-// lib/scene/place_surfaces.cpp
+// lib/scene/place_surfaces.cpp -- places the surfaces of nodes in scene space.
 #include "lib/scene/place_surfaces.h"
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 namespace tempolux {
 namespace {
 
-/// A copy costs 36 bytes and a share of the search tree (100) per triangle, an instance about 1 kB and a transform
+/// A copy costs 36 bytes and about 100 bytes of search tree per triangle; an instance costs about 1 kB, and a transform
 /// for every ray that enters its box.
 constexpr std::size_t kFewestTriangles = 4096;
 
-/// A ray's place in the instance's space is right to some ulp times how unevenly the transform scales (the norm of
-/// the matrix times that of its inverse: 3 for a rotation): beyond this the surface is copied.
+/// The rounding error of a ray in the instance's space is some ulp times the condition number of the transform (the
+/// norm of the matrix times the norm of its inverse: 3 for a rotation). Above this number the surface is copied.
 constexpr double kLargestCondition = 30;
 
 double norm(const Affine& m) { return std::sqrt(length2(m.row[0]) + length2(m.row[1]) + length2(m.row[2])); }
@@ -23,7 +23,7 @@ bool well_conditioned(const Affine& m) {
   return m.determinant() != 0 && norm(m) * norm(inverse(m)) <= kLargestCondition;
 }
 
-/// Further than this many times its size from the origin, what is rounded there would show in the instance.
+/// Farther from the origin than this many times its size, an instance would show the rounding of its coordinates.
 constexpr double kFarthest = 256;
 
 bool near_enough(const Box3d& box, const Affine& m) {
@@ -42,7 +42,7 @@ bool may_emit(const Scene& scene, std::uint32_t material) {
   return false;
 }
 
-/// Each point transformed in double, made relative to the origin, then rounded once.
+/// Transforms each point in double, subtracts the origin, then rounds once.
 std::vector<Vec3> place_points(const std::vector<Vec3>& points, const Affine& scene_from_node) {
   std::vector<Vec3> placed;
   placed.reserve(points.size());
@@ -50,7 +50,7 @@ std::vector<Vec3> place_points(const std::vector<Vec3>& points, const Affine& sc
   return placed;
 }
 
-/// Empty (flat shading) if there are none or the transform is flat, which leaves normals no direction.
+/// Transformed normals; empty (flat shading) if there are none, or if a flat transform leaves them no direction.
 std::vector<Vec3> place_normals(const std::vector<Vec3>& normals, const Affine& scene_from_node) {
   std::vector<Vec3> placed;
   if (scene_from_node.determinant() == 0) return placed;
@@ -95,7 +95,8 @@ Sharing::Sharing(const Scene& scene) {
     if (uses[m] < 2) continue;
     for (const Primitive& primitive : scene.meshes[m].primitives) {
       if (primitive.triangles.size() < kFewestTriangles || may_emit(scene, primitive.material)) continue;
-      if (scene.materials[primitive.material].alpha_mode != Material::Alpha::opaque) continue;  // rays ask its copy
+      // Rays test the copy's alpha.
+      if (scene.materials[primitive.material].alpha_mode != Material::Alpha::opaque) continue;
       Box3d& box = box_[&primitive];
       for (const Vec3& p : primitive.positions) box.add(Vec3d(p));
     }

@@ -1,4 +1,4 @@
-// lib/scene/scene.cpp
+// lib/scene/scene.cpp -- cameras and lights of a scene.
 #include "lib/scene/scene.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ int Scene::camera_node(const std::string& name) const {
 void require_lights(const Scene& scene) {
   if (scene.environment && scene.environment->emits()) return;
   const auto emits = [&](const Primitive& primitive) { return scene.materials[primitive.material].emissive(); };
-  for (const Animation& animation : scene.animations)  // dark at rest, lit at some time
+  for (const Animation& animation : scene.animations)  // a light may be dark at rest and shine at some time
     for (const AnimationTrack& track : animation.tracks)
       if (track.path == AnimationTrack::Path::emissive_factor ||
           track.path == AnimationTrack::Path::emissive_strength || track.path == AnimationTrack::Path::light_color ||

@@ -1,4 +1,4 @@
-// lib/scene/scene_hash.cpp
+// lib/scene/scene_hash.cpp -- computes the content hashes.
 #include "lib/scene/scene_hash.h"
 
 #include <map>
@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// Material index of the scene -> its number by first use in node order; kNone: not used.
+/// Number of each material by first use in node order; kNone: not used.
 std::vector<std::uint32_t> material_numbers(const Scene& scene, LeftOut left_out) {
   std::vector<std::uint32_t> numbers(scene.materials.size(), kNone);
   std::uint32_t next = 0;
@@ -35,7 +35,7 @@ void add_shape(Hasher& hasher, const Surface& surface) {
   add_values(hasher, surface.primitive->triangles);
 }
 
-/// Nothing for most primitives, whose hash stays what it was before colours and tangents were read.
+/// Adds nothing for a primitive without colours and tangents.
 void add_colors_and_tangents(Hasher& hasher, const Primitive& primitive) {
   if (!primitive.colors.empty()) {
     hasher.add(std::string_view("vertex colours"));
@@ -46,7 +46,7 @@ void add_colors_and_tangents(Hasher& hasher, const Primitive& primitive) {
   add_values(hasher, primitive.tangent_sides);
 }
 
-/// Digest of what instances of a primitive share.
+/// Digest of the data that the instances of a primitive share.
 std::string shared_digest(const Primitive& primitive) {
   Hasher hasher;
   add_values(hasher, primitive.positions);
@@ -58,7 +58,7 @@ std::string shared_digest(const Primitive& primitive) {
   return hasher.hex();
 }
 
-/// An instance is its transform and the digest of its primitive, made once for all of them.
+/// Adds an instance: its transform and its primitive's digest, which is computed once.
 void add_instance(Hasher& hasher, const Surface& surface, std::map<const Primitive*, std::string>& digests) {
   std::string& digest = digests[surface.primitive];
   if (digest.empty()) digest = shared_digest(*surface.primitive);
@@ -67,7 +67,7 @@ void add_instance(Hasher& hasher, const Surface& surface, std::map<const Primiti
   hasher.add(std::string_view(digest));
 }
 
-/// A texture by its image's bytes and how they are laid on; nothing for a material without.
+/// Adds a texture: its image's bytes and its transform. Adds nothing for a material without the texture.
 void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Texture& texture) {
   if (!texture) return;
   hasher.add(std::string_view(name));
@@ -78,7 +78,7 @@ void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Tex
     hasher.add(number);
 }
 
-/// What only some materials have: the hash of the others stays what it was before there was such a thing.
+/// Adds properties that only some materials have; adds nothing for the others.
 void add_optional_parts(Hasher& hasher, const Scene& scene, const Material& material) {
   if (material.unlit) hasher.add(std::string_view("unlit"));
   if (material.alpha_mode != Material::Alpha::opaque) {

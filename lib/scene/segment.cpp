@@ -1,4 +1,4 @@
-// lib/scene/segment.cpp -- intervals of frames, what moves in them, and where scene space lies.
+// lib/scene/segment.cpp -- computes segments: their frames, what moves in them, and the origin of scene space.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using Path = AnimationTrack::Path;
 
-/// Scene space leaves the world's origin when its numbers would lose 6 of float32's 24 bits.
+/// Scene space gets its own origin if coordinates relative to the world's origin lose 6 of float32's 24 bits.
 constexpr double kFarRatio = 64;
 
 int floor_to_multiple(int value, int step) {
@@ -23,7 +23,7 @@ int floor_to_multiple(int value, int step) {
   return value - (remainder < 0 ? remainder + step : remainder);
 }
 
-/// The frame from which on everything rests: that of the last key, or the next if it lies between frames.
+/// The frame from which on nothing moves: that of the last key, rounded up.
 int last_frame(const Scene& scene, const TimeOptions& options) {
   const double frame = std::ceil(scene.duration_s * options.fps - 1e-3);
   return frame < 1e9 ? int(frame) : 1'000'000'000;
@@ -60,7 +60,7 @@ std::string name_of(const Node& node) {
   return node.name.empty() ? "node " + std::to_string(node.source_index) : node.name;
 }
 
-/// Which of the node's own properties differ between two frames, else that its parent or a joint moves.
+/// Why a node moves: which of its own properties differ between two frames, or that its parent or a joint moves.
 std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n, double fps) {
   std::string properties;
   const Node& node = scene.nodes[n];
@@ -74,8 +74,8 @@ std::string reason(const Scene& scene, const Animator& animator, const Segment& 
   return node.parent < 0 ? "its shape" : "parent " + name_of(scene.nodes[std::size_t(node.parent)]);
 }
 
-/// Nodes whose state differs between two frames. A mesh that a skin moves has the state of its joints: where
-/// its own node stands does not count.
+/// Marks the nodes whose state differs between two frames. A skinned mesh has the state of its joints; the transform of
+/// its own node does not count.
 void set_moves(const Scene& scene, const Animator& animator, const std::vector<Affine>& first_world, double fps,
                Segment& segment) {
   const std::size_t count = scene.nodes.size();
@@ -115,7 +115,7 @@ void set_changes(const Scene& scene, const Animator& animator, double fps, Segme
   }
 }
 
-/// A node moves, too, whose material or light an animation changes: its light is another then, though it stays.
+/// A node also counts as moving if an animation changes its material or light, since its light then differs.
 void add_changed_nodes(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
   for (const AnimationTrack* track : animator.property_tracks()) {
     const std::string_view kind = kind_of(track->path);
@@ -148,7 +148,7 @@ void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
                             corner & 4 ? local.upper.z : local.lower.z}));
 }
 
-/// Every vertex of what stands; of instances and of what has a pose the boxes.
+/// Adds every vertex of static surfaces; for instances and posed meshes their boxes.
 void add_static_bounds(const Scene& scene, const Animator& animator, const std::vector<Affine>& world, double time_s,
                        Segment& segment) {
   const Sharing sharing(scene);
@@ -169,7 +169,7 @@ void add_static_bounds(const Scene& scene, const Animator& animator, const std::
   }
 }
 
-/// A moving mesh is bounded by its box at every frame, a deforming one by those of its pose.
+/// Adds a moving mesh's box at every frame; for a deforming mesh the boxes of its poses.
 void add_moving_bounds(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
   std::vector<std::pair<std::size_t, Box3d>> rigid;
   std::vector<std::pair<std::size_t, PoseBounds>> deforming;
@@ -190,7 +190,7 @@ void add_moving_bounds(const Scene& scene, const Animator& animator, double fps,
   }
 }
 
-/// Rounded to multiples of a power of two near four diagonals, so that small edits leave it where it is.
+/// Multiples of a power of two, about four diagonals, so that small edits do not move the origin.
 Vec3d scene_origin(const Box3d& bounds) {
   const Vec3d centre = bounds.centre();
   const double diagonal = bounds.diagonal();

@@ -8,13 +8,13 @@
 
 namespace tempolux {
 
-/// What a shading routine needs to know of a hit; all in scene space.
+/// What shading needs at a hit; all in scene space.
 struct SurfacePoint {
-  Vec3 position;          ///< from the triangle's corners, not from t: exact to a few ulp
-  Vec3 normal_geometric;  ///< unit, towards the front of the triangle
-  Vec3 normal;            ///< shading normal: unit, on the front's side
+  Vec3 position;          ///< interpolated from the triangle's corners, not from t: exact to a few ulp
+  Vec3 normal_geometric;  ///< unit, towards the triangle's front
+  Vec3 normal;            ///< shading normal: unit, on the front side
   Vec2 uv;
-  float offset = 0;  ///< m: rays leaving start this far above the side they leave from
+  float offset = 0;  ///< m: rays that leave start this far above their side
   std::uint32_t surface = kNone, triangle = 0, object = 0, material = 0;
   float u = 0, v = 0;
 };

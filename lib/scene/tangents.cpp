@@ -12,14 +12,14 @@
 namespace tempolux {
 namespace {
 
-using Corner = std::uint32_t;  // 3 x triangle + 0, 1 or 2
+using Corner = std::uint32_t;  // 3 x triangle + number of the corner (0, 1, 2)
 
 Corner next(Corner c) { return c % 3 == 2 ? c - 2 : c + 1; }
 Corner previous(Corner c) { return c % 3 == 0 ? c + 2 : c - 1; }
 
-/// What of a corner must be equal for it to be the same vertex as another.
+/// Attributes that must be equal for two corners to be one vertex.
 struct VertexKey {
-  std::array<float, 8> values;  // + 0.0f: -0 is 0
+  std::array<float, 8> values;  // + 0.0f turns -0 into 0
   VertexKey(Vec3 p, Vec3 n, Vec2 uv)
       : values{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f, n.x + 0.0f, n.y + 0.0f, n.z + 0.0f, uv.x + 0.0f, uv.y + 0.0f} {}
   bool operator==(const VertexKey&) const = default;
@@ -35,20 +35,20 @@ struct KeyHash {
   }
 };
 
-/// The part of v across the unit vector n, unit; zero if there is none.
+/// Unit vector along the component of v perpendicular to the unit vector n; zero if there is none.
 Vec3d across(Vec3d v, Vec3d n) { return normalize(v - n * dot(n, v)); }
 
-/// Differences of coordinates from corner 0 to 1 and 2.
+/// Differences of texture coordinates from corner 0 to corners 1 and 2.
 struct Gradient {
-  double v1, v2, area;  // area: twice, positive if u and v turn as the corners do
+  double v1, v2, area;  // twice the signed area: positive if u and v have the corners' orientation
   explicit Gradient(const std::array<Vec2, 3>& at) : v1(double(at[1].y) - at[0].y), v2(double(at[2].y) - at[0].y) {
     area = (double(at[1].x) - at[0].x) * v2 - (double(at[2].x) - at[0].x) * v1;
   }
-  /// The direction in which u grows, times |area|; edges: to corners 1 and 2.
+  /// The direction in which u grows, times |area|. The edges go to corners 1 and 2.
   Vec3d along_u(Vec3d edge1, Vec3d edge2) const { return (edge1 * v2 - edge2 * v1) * (area < 0 ? -1.0 : 1.0); }
 };
 
-/// Which corners share a tangent. Depends on the shape at rest alone.
+/// Groups corners that share a tangent. Depends on the shape at rest only.
 class TangentGroups {
  public:
   TangentGroups(const Primitive& primitive, const Texture& normal_map)
@@ -64,7 +64,7 @@ class TangentGroups {
   std::size_t count() const { return side_.size(); }
   std::uint32_t group(Corner c) const { return group_[c]; }
   float side(std::uint32_t group) const { return side_[group]; }
-  /// Unit tangents by group of the same triangles in another shape: with these positions and normals by vertex.
+  /// Unit tangents by group for the same triangles in another shape, with these positions and normals by vertex.
   std::vector<Vec3> tangents(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const;
 
  private:
@@ -80,10 +80,11 @@ class TangentGroups {
 
   const Primitive& primitive_;
   const Texture& normal_map_;
-  std::vector<std::uint32_t> joined_;  // by vertex: the first that is equal to it
-  std::vector<bool> speaks_;           // by triangle: has corners and coordinates that are apart
-  std::vector<std::int8_t> turns_;     // by triangle: +1 (-1) u and v turn as (against) the corners; 0: not known
-  std::vector<std::uint32_t> across_;  // by corner: of the edge to the next the corner beyond it, or kNone
+  std::vector<std::uint32_t> joined_;  // by vertex: the first vertex that is equal
+  std::vector<bool> speaks_;           // by triangle: true if the triangle has area and its coordinates have area
+  // By triangle: +1 (-1) if u and v have the corners' (the opposite) orientation; 0: unknown.
+  std::vector<std::int8_t> turns_;
+  std::vector<std::uint32_t> across_;  // by corner: the corner across the edge from it to the next corner, or kNone
   std::vector<std::uint32_t> group_;   // by corner
   std::vector<float> side_;            // by group
 };
@@ -107,7 +108,7 @@ void TangentGroups::measure() {
   }
 }
 
-/// Two triangles share an edge if they run along it in opposite directions.
+/// Joins triangles along edges that they traverse in opposite directions.
 void TangentGroups::join_edges() {
   struct Edge {
     std::uint32_t low, high;
@@ -135,7 +136,7 @@ void TangentGroups::join_edges() {
   }
 }
 
-/// A new group from a corner over all edges at its vertex.
+/// Starts a group at a corner and grows it over all edges at the corner's vertex.
 void TangentGroups::grow(Corner first) {
   const auto group = std::uint32_t(side_.size());
   const std::int8_t turns = turns_[first / 3];
@@ -145,16 +146,16 @@ void TangentGroups::grow(Corner first) {
     const Corner c = open.back();
     open.pop_back();
     std::int8_t& here = turns_[c / 3];
-    if (here == 0) here = turns;  // what does not speak sides with whom it meets first
+    if (here == 0) here = turns;  // a triangle without area takes the orientation of the first group that reaches it
     if (group_[c] != kNone || here != turns) continue;
     group_[c] = group;
-    // Over the edge before this corner the other triangle's corner here starts the edge; over the one after it ends it.
+    // The edge before this corner starts at the neighbour's corner here; the edge after it ends there.
     if (const Corner over = across_[previous(c)]; over != kNone) open.push_back(over);
     if (const Corner over = across_[c]; over != kNone) open.push_back(next(over));
   }
 }
 
-/// Corners of triangles that do not speak and no one reached take the first tangent of their vertex.
+/// Corners of triangles without area that no group reached take the first tangent of their vertex.
 void TangentGroups::lend() {
   std::vector<std::uint32_t> lender(joined_.size(), kNone);
   for (Corner c = 0; c < group_.size(); ++c)
@@ -181,7 +182,7 @@ std::vector<Vec3> TangentGroups::tangents(const std::vector<Vec3>& positions, co
   return unit;
 }
 
-/// What a morph target adds to the tangents of groups and of no group; empty: nothing.
+/// The displacement that a morph target adds to the tangents of each group; empty: none.
 std::vector<Vec3> added_by(const MorphTarget& target, const Primitive& primitive, const TangentGroups& groups,
                            const std::vector<Vec3>& at_rest) {
   if (target.positions.empty() && target.normals.empty()) return {};
@@ -207,7 +208,7 @@ void make_tangents(Primitive& primitive, const Texture& normal_map) {
   std::vector<std::vector<Vec3>> added;
   for (const MorphTarget& target : primitive.targets) added.push_back(added_by(target, primitive, groups, at_rest));
 
-  // Each vertex for its first group; for others copies of it, one behind the other.
+  // A vertex belongs to its first group; each further group gets a copy of the vertex.
   constexpr std::uint32_t kNew = kNone - 1;
   std::vector<std::uint32_t> sources(primitive.positions.size());
   std::iota(sources.begin(), sources.end(), 0u);

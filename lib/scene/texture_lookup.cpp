@@ -42,7 +42,7 @@ float TextureSpot::level(const Corners& corners, const TexturePyramid& pyramid) 
   const float area = length(cross(edge(1), edge(2)));
   const float texels = std::abs(cross2(minus(corners[1], corners[0]), minus(corners[2], corners[0]))) *
                        float(pyramid.width()) * float(pyramid.height());
-  const float ratio = texels / area * width_ * width_;  // texels in the footprint
+  const float ratio = texels / area * width_ * width_;  // number of texels in the footprint
   return ratio > 1 ? 0.5f * std::log2(std::min(ratio, 1e30f)) : 0;
 }
 
@@ -75,7 +75,7 @@ bool TextureSpot::axes_of_tangents(Vec3 normal, Vec3& right, Vec3& up) const {
     side += primitive.tangent_sides[corners_[c]] * share[c];
   }
   right = normalize(tangent - normal * dot(normal, tangent));
-  // A mirrored surface shows the mirror image: its normal and its tangent turn with it, their cross product does not.
+  // On a mirrored surface normal and tangent are mirrored, too, but their cross product is not.
   up = cross(normal, right) * ((side < 0) != surface_.flipped ? -1.0f : 1.0f);
   return length2(right) > 0.5f;
 }

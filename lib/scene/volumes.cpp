@@ -14,9 +14,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kFarthest = 1e15,
-                 kSmallest = 1e-12;  ///< m, of a medium's box: float32 has room for its cells and their inverses
+                 kSmallest = 1e-12;  ///< m, of a medium's box, so that its cells and their inverses fit into float32
 
-/// Values of one node's extras, each checked.
+/// Reads and checks the values of one node's extras.
 class Extras {
  public:
   Extras(const Json& object, std::string place) : object_(object), place_(std::move(place)) {}
@@ -108,7 +108,7 @@ std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<
   std::vector<Medium> media;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const VdbVolume volume = series.read({files[i], sources[i].grid}, max_memory);
-    if (volume.voxels->empty()) continue;  // smoke that has not begun
+    if (volume.voxels->empty()) continue;  // the sequence has not begun at this frame
     Affine scene_from_index = volume.world_from_index;
     scene_from_index.translation -= origin;
     try {

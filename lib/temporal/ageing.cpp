@@ -11,14 +11,14 @@ namespace {
 
 __extension__ typedef unsigned __int128 Wide;
 
-/// A number in [0, below): the high word of the product. It differs from uniform by below / 2^64.
+/// A number in [0, below): the high word of the product. Its distribution differs from a uniform one by below / 2^64.
 std::uint64_t number_below(std::uint64_t bits, std::uint64_t below) {
   return std::uint64_t((Wide(bits) * below) >> 64);
 }
 
 }  // namespace
 
-/// Takes one member out of a class.
+/// Takes one member out of a class of equal age.
 std::uint32_t AgeDraw::take(Class& from, std::uint64_t member) {
   std::uint32_t& taken = members_[from.first + std::size_t(member)];
   std::swap(taken, members_[from.first + --from.size]);

@@ -1,4 +1,4 @@
-// lib/temporal/ageing.h -- which cells get a new ray: drawn by how long they have had their old one.
+// lib/temporal/ageing.h -- draws the cells whose gather rays are renewed, by the age of their rays.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,18 @@
 
 namespace tempolux {
 
-/// Weight of a cell in the draw: its age, its age squared; or the oldest come first, equal ages by lot.
+/// Weight of a cell in the draw: its age, or its age squared. `oldest`: the oldest cells come first, in random order
+/// among equal ages.
 enum class AgeWeight { linear, square, oldest };
 
-/// Draws cells without replacement: each next one with probability weight / sum of the weights of those left [Tawara et
-/// al. 2004, a random integer mapped through the cumulated weights]. Cells of one age are one class, so a draw costs a
-/// step a class.
+/// Draws cells without replacement: each time a cell is drawn with probability weight / sum of the remaining weights
+/// [Tawara et al. 2004, a random integer mapped through the cumulated weights]. Cells of one age form one class, so a
+/// draw takes one step per class.
 class AgeDraw {
  public:
-  /// Ages are 1 to formats::kMaxAge; cells of that age are always drawn. `drawn` receives `count` cells, or all if
-  /// there are fewer, or those of that age if there are more. `key`: of the random numbers, another one in each draw.
+  /// Ages are 1 to formats::kMaxAge; cells of the maximum age are always drawn. `drawn` receives `count` cells, fewer
+  /// if there are fewer, more if more have the maximum age. `key` seeds the random numbers and must differ between
+  /// draws.
   void draw(std::span<const std::uint16_t> ages, std::size_t count, AgeWeight weight, std::uint64_t key,
             std::vector<std::uint32_t>& drawn);
 
@@ -28,7 +30,7 @@ class AgeDraw {
   std::uint32_t take(Class& from, std::uint64_t member);
 
   std::vector<Class> classes_;          ///< by age
-  std::vector<std::uint32_t> members_;  ///< cells, class by class
+  std::vector<std::uint32_t> members_;  ///< cells, sorted by class
 };
 
 }  // namespace tempolux

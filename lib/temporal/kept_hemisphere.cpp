@@ -15,7 +15,7 @@ std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
 std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
 Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// Random shares in [0, 1) by which a cell's mantissas are rounded up in the record's present update.
+/// Random shares in [0, 1) by which the mantissas of a cell's radiance are rounded up in this update of the record.
 std::array<float, 3> rounding_of(const formats::RadsamplesRecord& record, std::uint32_t cell) {
   const std::uint64_t bits = mix64(record.key ^ mix64(std::uint64_t(record.updates) << 32 | cell));
   const auto share = [&](int from) { return float((bits >> from) & 0x1fffff) * 0x1p-21f; };
@@ -32,7 +32,7 @@ void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
   std::array<std::uint8_t, 4>& rgbe = kept.samples[cell].rgbe;
   const Rgb scaled{float(rgbe[0]) * ratio.r, float(rgbe[1]) * ratio.g, float(rgbe[2]) * ratio.b};
   const float largest = max_component(scaled);
-  if (rgbe[3] >= 11 && largest >= 128 && largest < 255) {  // as encode_rgbe() would: the exponent stays
+  if (rgbe[3] >= 11 && largest >= 128 && largest < 255) {  // as encode_rgbe() does it if the exponent stays the same
     const std::array<float, 3> up = rounding_of(kept.record, cell);
     for (std::size_t c = 0; c < 3; ++c) {
       const auto whole = std::uint8_t(scaled[int(c)]);

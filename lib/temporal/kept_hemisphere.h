@@ -1,4 +1,4 @@
-// lib/temporal/kept_hemisphere.h -- a record with the samples it was made from.
+// lib/temporal/kept_hemisphere.h -- a record together with its incoming radiance samples, kept from frame to frame.
 #pragma once
 
 #include <cstdint>
@@ -14,74 +14,74 @@
 
 namespace tempolux {
 
-/// A record and its hemisphere, one sample a cell. Positions are scene space.
+/// A record and its hemisphere: one radiance sample per cell. Positions are in scene space.
 struct KeptHemisphere {
   formats::RadsamplesRecord record;
   std::vector<formats::RadianceSample> samples;
   std::vector<std::uint32_t> anchors;  ///< kNone: none
-  SampleShelf::Place place;            ///< where they are if they are not here
+  SampleShelf::Place place;            ///< of the samples, if they are not in memory
 
   Vec3 position() const { return {record.position[0], record.position[1], record.position[2]}; }
   Vec3 normal() const { return {record.normal[0], record.normal[1], record.normal[2]}; }
-  /// Number of a cell's present ray (GatherDirections::aim).
+  /// Number of a cell's present ray, from which its random direction follows (GatherDirections::aim).
   std::uint32_t draw_of(std::uint32_t cell) const { return record.updates + 1 - formats::age_of(samples[cell]); }
 };
 
-/// What is kept of a segment between two frames.
+/// All that is kept from one frame of a segment to the next.
 struct KeptHemispheres {
   std::vector<KeptHemisphere> records;
-  std::vector<Rgb> point_light;  ///< W/m^2 of all kinds, of the points that anchors name
-  std::string
-      high_hash;  ///< of what of the points' light is high: samples hold what rays bring without it; "": all of it
-  bool changed = false;                ///< was there anything for the records to follow in the last frame? not in files
-  std::shared_ptr<SampleShelf> shelf;  ///< for samples that are more than may stay in memory; none: all stay
+  std::vector<Rgb> point_light;  ///< W/m^2, all kinds together, by point; anchors name points
+  /// Hash of the bright points' explicit shares: samples leave that light out; "": samples hold all light
+  std::string high_hash;
+  bool changed = false;  ///< true if anything changed in the last frame that records follow; not stored in files
+  std::shared_ptr<SampleShelf> shelf;  ///< stores samples for which there is no memory; nullptr: all stay in memory
 };
 
-/// Brings a record's samples here; puts them back, changed; lets go of them, unchanged; gives up their place. Without a
-/// shelf they are always here.
+/// fetch loads a record's samples; put_away stores changed ones; let_go drops unchanged ones; give_up frees their
+/// place. Without a shelf all samples stay in memory.
 void fetch(const KeptHemispheres& all, KeptHemisphere& kept);
 void put_back(const KeptHemispheres& all, KeptHemisphere& kept);
 void let_go(const KeptHemispheres& all, KeptHemisphere& kept);
 void give_up(const KeptHemispheres& all, KeptHemisphere& kept);
-/// A record's samples and anchors to read, from where they are; `room` holds them if they are not in memory.
+/// Read access to a record's samples and anchors, wherever they are; `room` holds them if they are not in memory.
 struct SeenSamples {
   std::span<const formats::RadianceSample> samples;
   std::span<const std::uint32_t> anchors;
 };
 SeenSamples see(const KeptHemispheres& all, const KeptHemisphere& kept, KeptHemisphere& room);
 
-/// Distances are kept in this unit, m, over 1024.
+/// The unit of stored distances: 1/1024 of this, m.
 struct SampleUnits {
   float diagonal = 1;
   std::uint16_t encode(float distance) const { return formats::encode_half(distance * (1024 / diagonal)); }
   float decode(std::uint16_t distance) const { return formats::decode_half(distance) * (diagonal * (1.0f / 1024)); }
 };
 
-/// Keeps a cell's radiance; random numbers for its rounding are those of key, cell and update.
+/// Stores a cell's radiance. The random rounding depends on key, cell and update.
 void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance);
-/// keep_radiance of the present radiance times a ratio, by channel.
+/// Multiplies a cell's radiance by a ratio, per channel, and stores the result with keep_radiance.
 void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio);
-/// Keeps what a ray brought, at the age that the sample has. `may_anchor`: does the light that came follow that of the
-/// source's point?
+/// Stores the radiance that a ray found; the sample's age does not change. `may_anchor`: true if the radiance is
+/// proportional to the irradiance of the point that represents the hit.
 void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
               bool may_anchor, SampleUnits units);
 
-/// Irradiance, gradients and radii, before they are limited, from the samples alone. `further_share` receives how many
-/// further rays per cell the unevenness of the light would call for, if asked for.
+/// Computes irradiance, gradients and unlimited radii from the samples alone. If asked for, `further_share` receives
+/// the number of further rays per cell that the unevenness of the light asks for.
 IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units,
                              float* further_share = nullptr);
 
-/// Puts into the file's record what was made of it, and back.
+/// keep_result copies a record's computed values into its file record; the other function copies them back.
 void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record);
 IrradianceRecord result_of(const formats::RadsamplesRecord& record);
 
-/// What a file has beside its header and samples.
+/// A file's content besides its header and samples.
 formats::RadsamplesFile head_of(const KeptHemispheres& kept);
-/// Takes a record and its samples out of a file that is being read (formats::TakeSamples). `shift`: the file's origin
+/// Takes a record and its samples from a file that is being read (formats::TakeSamples). `shift` is the file's origin
 /// minus the frame's.
 void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift,
                   KeptHemispheres& kept);
-/// Takes the rest once it is read.
+/// Takes the file's other content after the records.
 void take_head(const formats::RadsamplesFile& head, KeptHemispheres& kept);
 
 }  // namespace tempolux

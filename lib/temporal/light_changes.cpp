@@ -10,11 +10,13 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint64_t kTurns =
-    8;  ///< updates in which each near hit is traced again once (table in docs/methods/temporal.md)
-constexpr float kLargestRatio = 2;  ///< of an anchor's light: beyond, and below its inverse, cells are traced again
+    8;  ///< updates in which each close hit is traced again once (table in docs/methods/temporal.md)
+/// Largest change of an anchor's light, as a factor up or down, by which a cell is scaled and not traced again.
+constexpr float kLargestRatio = 2;
 
 Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
-/// Is it the cell's turn in this update of its record? The answer depends on no light, so it brings no bias.
+/// True if the cell is traced again in this update by rotation. The rotation does not depend on light, so it causes no
+/// bias.
 bool is_its_turn(const formats::RadsamplesRecord& record, std::uint32_t cell) {
   return (mix64(record.key + cell) + record.updates) % kTurns == 0;
 }
@@ -38,14 +40,15 @@ LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& ke
   changes.ratios.resize(changes.points.size(), Rgb(1.0f));
   for (std::size_t i = 0; i < changes.points.size(); ++i) {
     const Rgb before = kept.point_light[i], light = scene.points[i].total();
-    if (is_bright(scene, std::uint32_t(i))) changes.points[i] = lost;  // it is a bright one since this frame
+    if (is_bright(scene, std::uint32_t(i))) changes.points[i] = lost;  // the point became a bright point at this frame
     if (before == light) continue;
     if (changes.points[i] == lost) continue;
     changes.points[i] = scaled;
     changes.anything = true;
     for (int c = 0; c < 3; ++c) {
       if (before[c] == light[c]) continue;
-      const float ratio = changes.ratios[i][c] = light[c] / before[c];  // infinite: the next line
+      // infinite if `before` is 0; the next line handles that
+      const float ratio = changes.ratios[i][c] = light[c] / before[c];
       if (!(ratio <= kLargestRatio && ratio * kLargestRatio >= 1)) changes.points[i] = lost;
     }
   }
@@ -64,7 +67,8 @@ bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const G
     } else if (flags & formats::sample_anchored) {
       marks[c] = changes.points[kept.anchors[c]];
     } else if (flags &
-               formats::sample_near) {  // what neither has an anchor nor more along it is black, whatever the light
+               // a cell that neither has an anchor nor a hit along its ray is black under any light
+               formats::sample_near) {
       marks[c] = unanchored;
     }
   }

@@ -1,4 +1,4 @@
-// lib/temporal/light_changes.h -- what differs from one frame to the next, and which cells of a record that concerns.
+// lib/temporal/light_changes.h -- finds what differs between two frames, and which cells of a record are concerned.
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,30 @@
 
 namespace tempolux {
 
-/// What becomes of a cell: it stays, it is scaled as its anchor's light, or why it is traced.
+/// What happens to a cell: it stays, its radiance is scaled with its anchor's light, or the reason for which it is
+/// traced again.
 enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, near, aged, all };
 inline bool is_traced(std::uint8_t mark) { return mark > scaled; }
 
-/// What has changed between the frame that was kept and the scene's.
+/// The differences between the kept frame and the present one.
 struct LightChanges {
-  std::vector<Box3> boxes;  ///< m: what has moved
-  /// For each anchor: unmarked, scaled or lost. `ratios`, the change of its light, is an array of its own, as few cells
-  /// ask for it.
+  std::vector<Box3> boxes;  ///< m; around both places of each surface that has moved
+  /// For each point that may be an anchor: unmarked, scaled or lost. `ratios` holds the change of its light; a separate
+  /// array, since few cells read it.
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
   bool anything = false, materials = false;
-  bool divided = false;  ///< there is an explicit part, or was one in the frame before
+  bool divided = false;  ///< true if there are bright points, or were in the frame before
 };
 LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept);
 
-/// Is a part of the point's light sampled explicitly? How much rays then bring of it follows from their length, too.
+/// True if the point is a bright point. The light that rays bring from a bright point depends on the rays' length, too.
 bool is_bright(const TemporalScene& scene, std::uint32_t point);
-/// Marks the cells that are scaled or traced again along their old ray. False if nothing about the light that rays
-/// bring has changed.
+/// Marks the cells that are scaled, or traced again along their old ray. False if nothing has changed in the light of
+/// the cells.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,
                 SampleUnits units, std::vector<std::uint8_t>& marks);
-/// Has something moved where a record looks around itself?
+/// True if something has moved within the reach of the record's clearance.
 bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes);
 
 }  // namespace tempolux

@@ -7,12 +7,13 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLeast = 1.0 / 16;  ///< the noise of irradiance under the spatial filter: what is smaller is not seen
+constexpr double kLeast = 1.0 / 16;  ///< smaller steps are hidden in the noise of the filtered irradiance
 constexpr double kStandsOut =
-    2;  ///< of the steps around it: motion that starts or ends has a step of its own size beside it
-constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are followed
+    2;  ///< over the sum of the neighbouring steps: where motion starts or ends, one neighbour has the size of the step
+constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are compared
 
-/// Power of the lamps, up to textures [W for lamps of W/sr and W/m^2/sr; suns count by their irradiance].
+/// Power of all lights, without textures [W for lights given in W/sr or W/m^2/sr; directional lights count with their
+/// irradiance].
 double lamp_power(const SceneFrame& frame) {
   double power = 0;
   for (const PlacedLight& lamp : frame.lights) power += 4 * std::numbers::pi * double(luminance(lamp.light.intensity));
@@ -34,7 +35,7 @@ double step_of_lamps(const SceneFrame& a, const SceneFrame& b) {
   return most > 0 ? std::abs(to - from) / most : 0;
 }
 
-/// How far the vertices of a surface go, in diagonals of their box.
+/// Largest distance that a vertex of the surface moves, over the diagonal of the surface's box.
 double step_of_surface(const Surface& a, const Surface& b) {
   const std::uint32_t count = std::uint32_t(a.primitive->positions.size()), stride = std::max(1u, count / kLooked);
   Box3 box_a, box_b;

@@ -1,12 +1,12 @@
-// lib/temporal/light_jumps.h -- frames between which light does not change but jumps: lamps switched, things born, gone
-// or put elsewhere.
+// lib/temporal/light_jumps.h -- finds frames at which light jumps: lamps are switched, objects appear, vanish or are
+// put elsewhere.
 #pragma once
 
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
 
-/// Four frames in a row of a segment; null beyond its ends.
+/// Four consecutive frames of a segment; null outside the segment.
 struct FramesInARow {
   const SceneFrame* before_last = nullptr;
   const SceneFrame* last = nullptr;
@@ -14,9 +14,9 @@ struct FramesInARow {
   const SceneFrame* next = nullptr;
 };
 
-/// Does light, or what is in it, jump between `last` and `here`? It does if the step stands out from those around it,
-/// by more than twice their sum, and is larger than 1/16: of the power of all lamps, or, of a surface that moves, of
-/// its size. False without `last`.
+/// True if the lights, or a surface in their light, jump between `last` and `here`: the step is larger than twice the
+/// sum of the steps before and after, and larger than 1/16 of the power of all lights or of the moving surface's size.
+/// False if `last` is null.
 bool light_jumps(const FramesInARow& frames);
 
 }  // namespace tempolux

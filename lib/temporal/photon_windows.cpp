@@ -15,14 +15,14 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 1024;  ///< elements in a piece of work
-constexpr int kRegions = 3;           ///< whose tests can reject stationary light: element, kernel, ring
-/// Photons that a block must be expected to hold for a test: below, the tails of its distribution are not a Gaussian's.
+constexpr std::size_t kChunk = 1024;  ///< elements that one task processes
+constexpr int kRegions = 3;           ///< regions whose tests can reject constant light: element, kernel, ring
+/// Expected photons that a block needs to be tested: with fewer, the tails of its distribution are not Gaussian.
 constexpr double kPhotonsInBlock = 8;
 
-constexpr double kLargestSum = 0x1p55;  ///< of a frame, so that those of 255 frames do not overflow
+constexpr double kLargestSum = 0x1p55;  ///< of one frame, so that the sums of 255 frames do not overflow
 
-/// Blocks of 1, 1, 2, 4, 8 ... frames.
+/// Last distance of the block that starts at `distance`: blocks have 1, 1, 2, 4, 8 ... frames.
 int block_end(int distance) { return distance == 0 ? 1 : 2 * distance; }
 
 /// x with P(|Gaussian| > x) = p.
@@ -35,7 +35,7 @@ double two_sided_quantile(double p) {
   return low;
 }
 
-/// The added frames: some on each side of the window.
+/// The frames that are added to a window, on each side.
 struct Added {
   int before = 0, after = 0;
   int frames() const { return before + after; }
@@ -46,8 +46,8 @@ struct Sides {
   bool any() const { return before || after; }
 };
 
-/// How a window grows to one side: distances of the last frame of each step from the middle, each frame a step, and the
-/// blocks that follow.
+/// Visits the steps in which a window grows on one side: single frames first, then blocks; passes the distance of each
+/// step's last frame from the middle.
 template <class Visit>
 void each_step(int reach, const Visit& visit) {
   for (int start = 0; start < reach; start = block_end(start)) {
@@ -57,7 +57,7 @@ void each_step(int reach, const Visit& visit) {
   }
 }
 
-/// Tests that a region of so many photons a frame gets while a window grows to its full size.
+/// Number of tests for a region of `rate` photons per frame while a window grows to its full size.
 int tests_of(double rate, const Added& most, int reach) {
   int tests = 0;
   each_step(reach, [&](int from, int to) {
@@ -80,8 +80,9 @@ class Grower {
     threshold_ = thresholds.of(tests);
   }
 
-  /// On which sides may these frames join the window? If both sides together differ from it, that one may that does not
-  /// by itself; if neither does by itself, light passes through an extreme, and neither may.
+  /// On which sides the added frames may join the window. If both sides together differ from the window, a side may
+  /// join that does not differ by itself. If neither side differs by itself, light passes through an extreme, and
+  /// neither side may join.
   Sides sides(const Window& window, const Added& added) const {
     if (added.frames() == 0 || !differs(window, added)) return {true, true};
     const bool before = added.before > 0 && differs(window, {added.before, 0});
@@ -90,7 +91,7 @@ class Grower {
   }
 
  private:
-  /// Does the light of these further frames differ from that of the window?
+  /// True if the light of the added frames differs from the window's light.
   bool differs(const Window& window, const Added& added) const {
     const HitBlock kernel = all_of(*series_.kernel, window, added);
     return rejects(*series_.element, window, added) || rejects(*series_.kernel, window, added) ||
@@ -115,7 +116,7 @@ class Grower {
     if ((old.photons + added.photons) * p < kPhotonsInBlock) return false;
     return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
   }
-  /// Would the mean of the region shift by more than the noise that the kernel's mean loses with the added frames?
+  /// True if joining the frames shifts the region's mean by more than the noise that the kernel's mean loses.
   bool matters(const HitSeries& s, const Window& w, const Added& a, const HitBlock& kernel) const {
     const double old_frames = w.before + 1 + w.after, frames = old_frames + a.frames();
     const HitBlock all = all_of(s, w, a);
@@ -129,7 +130,7 @@ class Grower {
   double threshold_ = 0;
 };
 
-/// Of each element its photons by frame: entries [first[i], first[i + 1]).
+/// The photons of each element by frame: entries [first[i], first[i + 1]).
 struct HitTable {
   struct Entry {
     const formats::MeshElement* counted;
@@ -153,7 +154,7 @@ HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<
     for (std::uint32_t f = 0; f < frames.size(); ++f)
       for (const formats::MeshElement& e : frames[f]->elements) {
         const auto found = sides.find(key(e));
-        if (found == sides.end()) continue;  // it has no area now
+        if (found == sides.end()) continue;  // the element has no area at this frame
         if (elements[found->second].cuts != e.cuts)
           throw std::invalid_argument("collect_windows: a triangle is cut otherwise in frame " +
                                       std::to_string(frames[f]->frame));
@@ -170,7 +171,7 @@ HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<
   return table;
 }
 
-/// The unit of an entry's counts.
+/// The unit in which an entry's sums are counted.
 double unit_of(std::span<const FrameCounts* const> frames, const HitTable::Entry& entry) {
   return frames[entry.frame]->unit;
 }
@@ -180,11 +181,11 @@ HitBlock hits_of(const formats::MeshElement& e, double unit) {
           unit * unit * e.squares()};
 }
 
-/// Regions of elements: those in a cube that face along one axis and belong to one object.
+/// Groups elements into regions: the elements in one cube that face along one axis and belong to one object.
 class Regions {
  public:
   Regions(std::size_t frames, double edge) : frames_(frames), per_m_(1 / edge) {}
-  /// The region of an element, which it joins.
+  /// Adds an element to its region; returns the region's number.
   std::uint32_t add(const formats::MeshElement& e) {
     const auto n = formats::decode_normal(e.normal);
     std::size_t axis = 0;
@@ -215,10 +216,10 @@ class Regions {
   std::vector<Region> all_;
 };
 
-/// The regions around each element.
+/// The two regions around each element: kernel and ring.
 class Surroundings {
  public:
-  /// `edge` [m]: of the kernels' cubes.
+  /// `edge` [m] of the cubes of the kernels.
   Surroundings(std::span<const FrameCounts* const> frames, const HitTable& table,
                const std::vector<formats::MeshElement>& elements, double edge)
       : kernels_(frames.size(), edge), rings_(frames.size(), 3 * edge), all_(frames.size()), of_(elements.size()) {
@@ -246,7 +247,7 @@ class Surroundings {
   std::vector<std::array<std::uint32_t, 2>> of_;
 };
 
-/// The frames around `at` that no jump parts from it.
+/// First and last frame around `at` between which light does not jump.
 std::pair<int, int> between_jumps(std::span<const FrameCounts* const> frames, int at) {
   int first = at, last = at;
   while (first > 0 && !frames[std::size_t(first)]->jump) --first;
@@ -254,15 +255,15 @@ std::pair<int, int> between_jumps(std::span<const FrameCounts* const> frames, in
   return {first, last};
 }
 
-/// A window, the frame that it is around, and whether the element's size may differ from frame to frame.
+/// A window, its middle frame, and whether the element's size may differ from frame to frame.
 struct PlacedWindow {
   int now = 0;
   Window window;
   bool changes_size = false;
 };
 
-/// Writes the photons of the window into the element. Returns their flux in a frame [unit], for the area that the
-/// element has.
+/// Writes the window's photons into the element. Returns their mean flux per frame [unit of the counts], scaled to the
+/// element's present area.
 Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
                 const PlacedWindow& placed, formats::MeshElement& e) {
   const auto& [now, window, changes_size] = placed;

@@ -21,20 +21,20 @@ constexpr std::size_t kSample = sizeof(formats::RadianceSample), kAnchor = sizeo
                       std::strerror(error) + "; make room there, or raise --max-memory");
 }
 
-/// A file without a name.
+/// Opens a file without a name, which the system removes when it is closed.
 int open_nameless(const std::string& folder) {
   int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0) return file;
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL && errno != ENOENT)
     fail(folder, "cannot create it", errno);
-  std::string name = folder + "/.samples.tmp.XXXXXX";  // a file system that has none
+  std::string name = folder + "/.samples.tmp.XXXXXX";  // for file systems without nameless files
   file = mkostemp(name.data(), O_CLOEXEC);
   if (file < 0) fail(folder, "cannot create it", errno);
   unlink(name.c_str());
   return file;
 }
 
-/// All of it, or -1 with errno; 0 where the file ends before.
+/// Transfers all bytes. Returns -1 with errno after an error, 0 if the file ends too early.
 template <class Byte, class Transfer>
 int transfer_all(int file, Byte* data, std::size_t size, std::int64_t at, const Transfer& transfer) {
   while (size > 0) {
@@ -92,7 +92,7 @@ void SampleShelf::fetch(std::size_t count, const Place& place, std::vector<forma
   if (!place.on_disk()) return;
   samples.resize(count), anchors.resize(count);
   const auto read = [](int file, char* data, std::size_t size, std::int64_t at) { return pread(file, data, size, at); };
-  errno = EIO;  // if the file ends
+  errno = EIO;  // the file ended too early
   if (transfer_all(file_, reinterpret_cast<char*>(samples.data()), count * kSample, place.offset, read) <= 0 ||
       transfer_all(file_, reinterpret_cast<char*>(anchors.data()), count * kAnchor,
                    place.offset + std::int64_t(count * kSample), read) <= 0)

@@ -1,4 +1,4 @@
-// lib/temporal/sample_shelf.h -- samples beyond what may stay in memory, in a file.
+// lib/temporal/sample_shelf.h -- stores radiance samples in a file if they do not fit into memory.
 #pragma once
 
 #include <atomic>
@@ -13,34 +13,34 @@
 
 namespace tempolux {
 
-/// Keeps the samples of records (12 bytes each with their anchors) in memory up to a limit, the others in a file
-/// without a name, gone when the process ends however it ends. Threads may use different records side by side.
+/// Keeps the samples of records (12 bytes each, with anchors) in memory up to a limit and all others in a nameless
+/// file, which vanishes when the process ends, however it ends. Threads may use different records at the same time.
 class SampleShelf {
  public:
-  /// Where the samples of a record are. Belongs to one record.
+  /// Where the samples of one record are.
   struct Place {
-    std::int64_t offset = in_memory;  ///< bytes, in the file
-    bool counted = false;             ///< in memory, and counted
+    std::int64_t offset = in_memory;  ///< in the file, bytes
+    bool counted = false;             ///< in memory, and counted against the limit
     bool on_disk() const { return offset >= 0; }
     static constexpr std::int64_t in_memory = -1;
   };
 
-  /// `limit`: bytes of samples that may stay in memory. `folder`: of the file, which is made when it is needed first.
-  /// ResourceError from any of the others if it cannot be made, written or read.
+  /// `limit`: bytes of samples that may stay in memory. `folder`: for the file, which is created when it is first
+  /// needed. The other functions throw ResourceError if the file cannot be created, written or read.
   SampleShelf(std::string folder, std::uint64_t limit);
   ~SampleShelf();
   SampleShelf(const SampleShelf&) = delete;
   SampleShelf& operator=(const SampleShelf&) = delete;
 
-  /// Puts samples away: they stay, or go to the file and are cleared. A record keeps its place from then on.
+  /// Stores samples: they stay in memory, or are written to the file and cleared. A record keeps its place in the file.
   void put(Place& place, std::vector<formats::RadianceSample>& samples, std::vector<std::uint32_t>& anchors);
-  /// Brings `count` samples back, as they were put; does nothing if they are in memory.
+  /// Reads `count` samples back as they were put; does nothing if they are in memory.
   void fetch(std::size_t count, const Place& place, std::vector<formats::RadianceSample>& samples,
              std::vector<std::uint32_t>& anchors) const;
-  /// Clears what was fetched and has not changed.
+  /// Clears fetched samples that have not changed.
   void let_go(const Place& place, std::vector<formats::RadianceSample>& samples,
               std::vector<std::uint32_t>& anchors) const;
-  /// The record is no more: its place is free for another of as many samples.
+  /// Frees the place of a removed record for another one with as many samples.
   void give_up(std::size_t count, Place& place);
 
   std::uint64_t bytes_in_memory() const { return in_memory_; }
@@ -52,9 +52,9 @@ class SampleShelf {
   std::string folder_;
   std::uint64_t limit_;
   std::atomic<std::uint64_t> in_memory_ = 0;
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< guards the members below
   std::int64_t end_ = 0;
-  std::map<std::size_t, std::vector<std::int64_t>> free_;  ///< places by number of samples
+  std::map<std::size_t, std::vector<std::int64_t>> free_;  ///< free places by number of samples
   int file_ = -1;
 };
 

@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kMargin = 0x1p-18f;  ///< of the largest coordinate: rounding of rays and boxes
+constexpr float kMargin = 0x1p-18f;  ///< over the largest coordinate: rounding of rays and boxes
 constexpr float kAngle = 1e-3f;      ///< radians: rounding of angles
 
 void widen(Box3& box) {
@@ -41,7 +41,7 @@ std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now) {
 bool meets(const Ray& ray, float t, const Box3& box) {
   float first = 0, last = t * (1 + 0x1p-20f);
   for (int axis = 0; axis < 3; ++axis) {
-    // 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as their second argument.
+    // 0 x infinity is NaN (a ray in the plane of a face); std::min and std::max ignore NaN as second argument.
     const float inverse = 1 / ray.direction[axis];
     const float a = (box.lower[axis] - ray.origin[axis]) * inverse, b = (box.upper[axis] - ray.origin[axis]) * inverse;
     first = std::max(first, inverse < 0 ? b : a);
@@ -70,7 +70,7 @@ CellsTowards::CellsTowards(Vec3 position, const Frame& frame, const Box3& box, i
     return std::min(rings - 1, int(s * s * float(rings)));
   };
   last_ring_ = ring_at(tilt + half);
-  if (tilt <= half) return;  // the cone holds the normal: all azimuths
+  if (tilt <= half) return;  // the cone holds the normal, so all azimuths are possible
   first_ring_ = ring_at(tilt - half);
   const float spread = std::asin(std::min(1.0f, std::sin(std::min(half, kPi / 2)) / std::sin(tilt))) + kAngle;
   if (tilt + half >= kPi / 2 && !(spread < kPi / 2)) return;

@@ -1,4 +1,4 @@
-// lib/temporal/swept_boxes.h -- where something has moved between two frames.
+// lib/temporal/swept_boxes.h -- boxes around everything that has moved between two frames.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,16 @@
 
 namespace tempolux {
 
-/// One box for each surface whose vertices differ between two frames of a segment: around both places, m, scene space,
-/// a little larger than they are.
+/// One box for each surface whose vertices differ between two frames of a segment: around both positions, slightly
+/// enlarged; m, scene space.
 std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now);
 
-/// Does the ray, up to `t` of its lengths (infinity: all of it), meet the box? True where rounding leaves it open.
+/// True if the ray meets the box before `t` times its direction (infinity: anywhere). Also true where rounding cannot
+/// decide.
 bool meets(const Ray& ray, float t, const Box3& box);
 
-/// Which cells of a hemisphere can a box be seen through? Those whose cone about the box's sphere may hold it: none is
-/// left out.
+/// Finds the cells of a hemisphere through which a box can be visible: all cells that may meet the cone around the
+/// box's sphere.
 class CellsTowards {
  public:
   CellsTowards(Vec3 position, const Frame& frame, const Box3& box, int rings, int sectors);

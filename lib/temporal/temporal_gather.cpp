@@ -14,15 +14,16 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSteps = 15;  ///< of strata: 9 times the rays, in steps of 2^(1/4), and one
-constexpr int kStepForEvenness =
-    1;  ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
+constexpr int kSteps = 15;  ///< numbers of strata: up to 9 times the rays, in steps of 2^(1/4), and one step more
+/// Step of 2^(1/4): with equally many rays noise is 9 % more, as with 19 % fewer rays (docs/methods/temporal.md)
+constexpr int kStepForEvenness = 1;
 constexpr int kFadingFrames = 4;
-constexpr float kLeastOfHidden = 1.0f / 64;  ///< of the smallest radius: radii stay above 0
-constexpr std::uint32_t kAhead = 12;         ///< cells: of the light that is fetched from memory
-constexpr float kLeastAged = 0.25f;          ///< of `refresh`: drawn by age however many cells are traced anyway
+constexpr float kLeastOfHidden = 1.0f / 64;  ///< over the smallest radius: radii stay above 0
+constexpr std::uint32_t kAhead = 12;         ///< cells whose light is prefetched into the processor's cache
+/// Share of `refresh` that is always drawn by age, however many cells are traced for another reason.
+constexpr float kLeastAged = 0.25f;
 
-/// Unit vectors along a triangle's first edge, across it and along its normal.
+/// Unit vectors along a triangle's first edge, across it in its plane, and along its normal.
 std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
   const auto& t = surface.primitive->triangles[triangle];
   const Vec3 a = surface.position(t[0]), along = normalize(surface.position(t[1]) - a);
@@ -30,7 +31,8 @@ std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
   return {along, cross(normal, along), normal};
 }
 
-/// Is the triangle one at both frames? What is not there, scaled to nothing, has no place for records.
+/// True if the record's triangle has an area at both frames. A surface that is scaled to nothing has no place for
+/// records.
 bool stays(const SceneFrame& before, const SceneFrame& now, const formats::RadsamplesRecord& r) {
   for (const SceneFrame* frame : {&before, &now})
     for (const Vec3 edge : edges_of(frame->surfaces[r.surface], r.triangle))
@@ -52,8 +54,8 @@ void add(const TemporalCounts& from, TemporalCounts& to) {
 }  // namespace
 
 struct TemporalGather::Marked {
-  std::vector<std::uint8_t> marks;  ///< by cell; of samples that are not in memory empty, to be made again
-  std::size_t count = 0;            ///< of those that are traced
+  std::vector<std::uint8_t> marks;  ///< by cell; empty if the samples are not in memory, and then computed again
+  std::size_t count = 0;            ///< number of cells that are traced
   bool changed = false;
 };
 
@@ -79,7 +81,7 @@ TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& 
 const GatherStrata& TemporalGather::strata_of(int rings, int sectors) const {
   for (const GatherStrata& strata : strata_)
     if (strata.rings == rings && strata.sectors == sectors) return strata;
-  thread_local GatherStrata other;  // of a file made with another number of rays
+  thread_local GatherStrata other;  // for a file that was made with another number of rays
   if (other.rings != rings || other.sectors != sectors) other = GatherStrata(rings, sectors);
   return other;
 }
@@ -89,7 +91,7 @@ SurfacePoint TemporalGather::place_of(const KeptHemisphere& kept) const {
   return scene_.tracer.surface_point({0, r.surface, r.triangle, r.barycentric[0], r.barycentric[1]});
 }
 
-/// Takes a record along with the triangle it lies on.
+/// Moves a record with the triangle it lies on.
 void TemporalGather::ride(KeptHemisphere& kept) const {
   formats::RadsamplesRecord& r = kept.record;
   const auto before = edges_of(scene_.before->surfaces[r.surface], r.triangle);
@@ -103,7 +105,7 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
   if (length2(turned) > 0) r.normal = {turned.x, turned.y, turned.z};
 }
 
-/// Traces the marked cells along the rays that their ages say.
+/// Traces the marked cells along the rays that belong to their ages.
 void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
                            const GatherStrata& strata, std::span<const std::uint8_t> marks,
                            GatherCounts& counts) const {
@@ -138,9 +140,9 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   }
 }
 
-/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come
-/// close, and hidden it? Behind a lamp that glides along a ceiling it is dark; it would darken what is seen beside the
-/// lamp.
+/// True if a record must lose the smallest radius (the radius that covers pixels around a record) because a mover came
+/// close and hides the record from the camera. Behind a lamp that glides along a ceiling a record is dark, and would
+/// darken the visible ceiling around the lamp.
 bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before,
                               const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
@@ -150,7 +152,7 @@ bool TemporalGather::outlived(const SurfacePoint& place, const formats::Radsampl
   return !eye || scene_.tracer.occluded(spawn_shadow_ray(place, *eye, 0));
 }
 
-/// The record that the samples make.
+/// Recomputes the record from its samples.
 void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born,
                             GatherCounts& counts) const {
   float further = kept.record.further_share;
@@ -165,7 +167,7 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, boo
   keep_result(made, kept.record);
 }
 
-/// The explicit part of a record whose cells have no reason to change.
+/// Samples the bright points anew for a record whose cells do not change.
 void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const {
   finish(place_of(kept), kept, near_a_mover(kept, changes), false, counts);
 }
@@ -183,8 +185,8 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set
                                                              : formats::SurfaceSet::dynamic_set;
   r.footprint = seen.footprint;
-  // As many cells as FinalGather::gather has rays, one each, so that each can be drawn again; and a step more for what
-  // even rays lose against those that go where light is uneven.
+  // As many cells as FinalGather::gather traces rays, so that each cell can be redrawn alone. One step more makes up
+  // for FinalGather's further rays, which go to uneven cells and reduce noise more than even rays do.
   const double steps = kStepForEvenness + 4 * std::log2(1 + double(further_share));
   const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
   r.rings = std::uint16_t(strata.rings);
@@ -197,8 +199,8 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   return kept;
 }
 
-/// Takes a record along with what it rides on and marks the cells that are traced again. False if nothing about its
-/// light has changed.
+/// Moves a record with its surface and marks the cells to be traced again. False if nothing about its light has
+/// changed.
 bool TemporalGather::look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const {
   if (kept.record.set == formats::SurfaceSet::dynamic_set) ride(kept);
   const SurfacePoint place = place_of(kept);
@@ -224,8 +226,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     ages[c] = formats::age_of(kept.samples[c]);
     kept.samples[c].flags = std::uint16_t(kept.samples[c].flags + (ages[c] < formats::kMaxAge));
   }
-  // From all cells, the marked ones too: were those left out, cells that have come to see what is always traced again
-  // would keep that direction for good, and others would join them.
+  // Draws by age from all cells, including marked ones. If marked cells were left out, a cell that is marked in every
+  // frame would keep its direction for good, and more and more cells would end in such directions.
   lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), options_.age_weight,
            mix64(r.key + r.updates), drawn);
   for (const std::uint32_t c : drawn) {
@@ -245,8 +247,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   finish(place, kept, near_a_mover(kept, changes), false, counts.update);
 }
 
-/// Looks at all records, then updates those that change: how many cells are drawn by age follows from how many are
-/// traced anyway.
+/// First marks the cells of all records, then updates the records that change: the number of cells drawn by age depends
+/// on the number traced anyway.
 void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone,
                                 TemporalCounts& counts) const {
   std::vector<Marked> marked(kept.records.size());
@@ -321,7 +323,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
     for (const KeptHemisphere& k : kept.records) counts.cells += k.record.samples();
     counts.kept += before;
   }
-  // Numbers of records before those that went.
+  // New number of each record after others were removed.
   std::vector<std::uint32_t> moved_to(before + 1, 0);
   for (std::size_t i = 0; i < before; ++i) moved_to[i + 1] = moved_to[i] + !gone[i];
   for (std::size_t i = 0; i < before; ++i)
@@ -332,8 +334,8 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   kept.point_light.clear();
 }
 
-/// The records of a store. Some begin to fade: those before them weigh by a whole record more
-/// than then.
+/// Fills the store with the kept records. A record begins to fade if the records before it weigh by a whole record more
+/// than when it was placed.
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = result_of(k.record);
@@ -359,7 +361,7 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
-    give_up(kept, batch[slot]);  // of one that was not added
+    give_up(kept, batch[slot]);  // of a record that was not added
     batch[slot] = birth(seen, store.expected_further_share(seen.surface.position, seen.normal), gathered);
     put_back(kept, batch[slot]);
     return result_of(batch[slot].record);

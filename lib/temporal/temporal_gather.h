@@ -1,5 +1,5 @@
-// lib/temporal/temporal_gather.h -- records whose samples are kept from frame to frame: a frame shoots only what age or
-// motion asks for.
+// lib/temporal/temporal_gather.h -- keeps the samples of records from frame to frame; each frame traces only cells that
+// are old or changed.
 #pragma once
 
 #include <cstdint>
@@ -15,75 +15,74 @@
 
 namespace tempolux {
 
-/// How many cells are drawn by age, with a share to be refreshed: so many that those with a reason and these make up
-/// the share, a quarter of it at least; or the share of all cells without a reason.
+/// How many cells are drawn by age. adaptive: so many that they and the cells traced for another reason make up the
+/// share `refresh`, but at least a quarter of the share. fixed: the share of the cells without a reason.
 enum class RefreshRule { adaptive, fixed };
 
 struct TemporalOptions {
-  float refresh = 0.05f;  ///< share, of the cells of the records whose light changed in a frame
+  float refresh = 0.05f;  ///< share of cells to renew, among the records whose light changed in a frame
   RefreshRule rule = RefreshRule::adaptive;
-  AgeWeight age_weight = AgeWeight::square;  ///< of cells that get a new ray
+  AgeWeight age_weight = AgeWeight::square;  ///< weight by which cells are drawn
 };
 
-/// rays of gather: of new records and their continuations. Cells that were traced again: `moved` along their old ray,
-/// as what moves was or is in the way; `lost`: their anchor's light is more than twice or less than half of what it
-/// was; `unanchored`: nothing stands for what they met; `near`: it was the turn of a hit near by; `aged` got a new ray.
-/// `scaled` read their anchor's new light; `kept` records had no reason to change; of `explicit_only` none of the cells
-/// had.
+/// Counts of one frame. `rays` are the gather rays of new records and all their continuations. Cells traced again, by
+/// reason: `moved`: a mover is or was in the way of the old ray; `lost`: their anchor's light is more than twice or
+/// less than half as strong as before; `unanchored`: no point represents what they hit; `near`: close hits, by
+/// rotation; `aged`: they got a new ray. `scaled` cells were scaled with their anchor's light. `kept` records had no
+/// reason to change; in `explicit_only` records only the bright points were sampled anew.
 struct TemporalCounts {
   std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, near = 0, aged = 0, scaled = 0;
   std::uint64_t records = 0, kept = 0, explicit_only = 0, born = 0, fading = 0, removed = 0, deforming = 0;
   GatherCounts update, birth;
-  std::vector<std::uint64_t> ages;  ///< cells by age, after the frame
+  std::vector<std::uint64_t> ages;  ///< number of cells by age, after the frame
 };
 
-/// What a frame's temporal gathering reads; all of it must outlive it.
+/// The inputs of a frame's temporal gathering; all must outlive the gathering.
 struct TemporalScene {
   const Tracer& tracer;
   const Lights& lights;
   const PointLookup& lookup;
   std::span<const IrradiancePoint> points;  ///< of the lookup
-  std::size_t anchored_points = 0;          ///< the first of them, on what stands still, may be anchors
-  const SceneFrame* before = nullptr;       ///< the scene at the frame that was kept; null: nothing is kept
-  /// With GatherOptions::bright: the share of each point's light that is sampled explicitly, and a hash of them all;
-  /// without: empty.
+  std::size_t anchored_points = 0;          ///< the first points, on static surfaces, which may be anchors
+  const SceneFrame* before = nullptr;       ///< scene at the kept frame; nullptr: nothing is kept
+  /// With GatherOptions::bright: the share of each point's light that is sampled explicitly, and a hash of all shares.
+  /// Else empty.
   std::span<const float> high_shares = {};
   std::string high_hash = {};
-  /// From where the camera looks at a place; nothing if it looks away. Records that something comes close to keep the
-  /// smallest radius if it sees them; empty: all do.
+  /// Direction towards the camera from a place that the camera sees, else nothing. A record that a mover comes close to
+  /// keeps the smallest radius if the camera sees it; without this function every record does.
   std::function<std::optional<Vec3>(Vec3)> eye = {};
 };
 
 struct LightChanges;  // lib/temporal/light_changes.h
 
-/// How many of a frame's first points lie on what stands still.
+/// Number of a frame's first points that lie on static surfaces.
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points);
 
-/// One frame. Same records for any number of threads.
+/// Temporal gathering of one frame. The records are the same for any number of threads.
 class TemporalGather {
  public:
   TemporalGather(const TemporalScene& scene, const GatherOptions& gather, const PlacementOptions& placement,
                  const TemporalOptions& options, float diagonal);
 
-  /// Brings what was kept to this frame. The records of what deforms, and of what is not there at one of the frames,
-  /// are left out. Of the others a record changes where one of these holds, else it stays to the bit:
-  /// - a cell's ray, from the place to what it met, meets a box in which something has moved, or what it met moves:
-  /// traced again, *along
-  ///   its old direction*. Another direction would bring a bias: what hits the mover would be thrown away, what misses
-  ///   it kept;
-  /// - the point that stands for what it met has other light now: the cell's radiance is scaled by the ratio, per
-  /// channel, or
-  ///   traced again along its old direction beyond 1/2 to 2;
-  /// - no point stands for what it met (mirrors, corners): traced again alike.
-  /// If a record changes, its cells whose radiance is more than one point's light (hits near by) are traced again in
-  /// turn, each in every eighth update. If a record changes, further cells get a new ray in their place of the
-  /// hemisphere. They are drawn by age: see TemporalOptions::refresh. Where bright points are sampled explicitly, cells
-  /// that met one have no anchor, as what is left of its light follows from the distance, too; and if anything has
-  /// changed the explicit part of every record is sampled anew, with the record's random numbers.
+  /// Updates the kept records to this frame. Records on deforming surfaces, or on surfaces without area at either
+  /// frame, are removed. Another record changes if one of these holds for a cell; else it stays the same to the bit:
+  /// - The cell's ray meets a box in which something has moved, or what it hit moves. The cell is traced again along
+  /// its old direction. A new direction would cause a bias: rays that hit the mover would be replaced, and rays that
+  /// miss it kept.
+  /// - The light of the point that represents the cell's hit has changed. The cell's radiance is scaled by the ratio,
+  /// per channel; outside the range 1/2 to 2 the cell is traced again along its old direction.
+  /// - No point represents the cell's hit (mirrors, corners). The cell is traced again along its old direction.
+  /// If a record changes, two more sets of its cells are traced: cells whose radiance depends on several points (close
+  /// hits) in turn, each in every eighth update; and cells drawn by age, which get a new ray in their stratum
+  /// (TemporalOptions::refresh).
+  /// With bright points, cells that hit a bright point have no anchor, since the light that rays bring from it depends
+  /// on the distance, too. If anything has changed, the bright points are sampled anew for every record, with the
+  /// record's own random numbers.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
-  /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too. After
-  /// a change records fade away, in four frames, where those before them weigh by a whole record more than when they
-  /// were placed.
+  /// Puts the kept records into a store and places new records where the kept ones do not cover what the camera sees;
+  /// new records are kept, too. After a change a record fades out over four frames if the records before it weigh by a
+  /// whole record more than when it was placed.
   void place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store,
              TemporalCounts& counts, const std::function<void(double)>& progress = {}) const;
 
@@ -111,7 +110,7 @@ class TemporalGather {
   TemporalOptions options_;
   SampleUnits units_;
   FinalGather gather_;
-  std::vector<GatherStrata> strata_;  ///< steps of 2^(1/4) cells
+  std::vector<GatherStrata> strata_;  ///< numbers of cells in steps of 2^(1/4)
 };
 
 }  // namespace tempolux

@@ -1,4 +1,5 @@
-// lib/trace/build_trees.cpp -- trees of a frame: of what stands and what moves, of instances, with filters of alpha.
+// lib/trace/build_trees.cpp -- builds the search trees of a frame: static and moving surfaces, instances, and filters
+// for alpha.
 #include <bit>
 #include <string>
 
@@ -11,11 +12,11 @@
 namespace tempolux {
 namespace {
 
-/// kOffsetScale of instances, of the sum that instance_offset says.
+/// kOffsetScale for instances, relative to the sum in instance_offset.
 constexpr float kInstanceOffsetScale = 2 * kOffsetScale;
 
-/// In [0, 1), from the bits of ray and triangle: the same ray meets the same triangle or passes it, in whatever
-/// order Embree finds its hits, on any thread.
+/// A number in [0, 1) from the bits of ray and triangle: the same ray hits the same triangle or passes it, in whatever
+/// order Embree finds hits, on any thread.
 float chance(const RTCRay& ray, std::uint32_t surface, std::uint32_t triangle) {
   std::uint64_t key = mix64((std::uint64_t(surface) << 32 | triangle) + 0x616c706861ull);
   for (const float x : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
@@ -23,8 +24,8 @@ float chance(const RTCRay& ray, std::uint32_t surface, std::uint32_t triangle) {
   return float(key >> 40) * 0x1p-24f;
 }
 
-/// Embree's filter of surfaces with alpha: refuses a hit where the surface is not there (MASK), or with probability
-/// 1 - alpha (BLEND). Never throws: the texture was decoded before.
+/// Embree's filter for surfaces with alpha: rejects a hit where the surface is cut out (MASK), or with probability 1 -
+/// alpha (BLEND). Never throws: the texture was decoded before.
 void pass_by_alpha(const RTCFilterFunctionNArguments* arguments) {
   const auto& alpha = *static_cast<const AlphaSurface*>(arguments->geometryUserPtr);
   for (unsigned i = 0; i < arguments->N; ++i) {
@@ -50,7 +51,7 @@ Forest::~Forest() {
   rtcReleaseDevice(device);
 }
 
-bool StandingTree::Kept::holds_for(const SceneFrame& frame) const {
+bool StaticTree::Kept::holds_for(const SceneFrame& frame) const {
   const auto same = [](const Surface& a, const Surface& b) {
     return a.primitive == b.primitive && a.positions.data() == b.positions.data() &&
            a.scene_from_node == b.scene_from_node;
@@ -59,13 +60,13 @@ bool StandingTree::Kept::holds_for(const SceneFrame& frame) const {
          std::equal(surfaces.begin(), surfaces.end(), frame.surfaces.begin(), same) && !passable(frame);
 }
 
-bool StandingTree::Kept::passable(const SceneFrame& frame) {
+bool StaticTree::Kept::passable(const SceneFrame& frame) {
   return std::any_of(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count),
                      [&](const Surface& s) { return lets_rays_pass(frame.materials[s.material]); });
 }
 
-StandingTree::StandingTree() = default;
-StandingTree::~StandingTree() = default;
+StaticTree::StaticTree() = default;
+StaticTree::~StaticTree() = default;
 
 void Tracer::Impl::throw_on_error() const {
   const RTCError error = rtcGetDeviceError(forest->device);
@@ -76,7 +77,7 @@ void Tracer::Impl::throw_on_error() const {
 
 RTCGeometry Tracer::Impl::triangles_of(const Primitive& primitive, const Vec3* positions) {
   RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree reads vertices in 16-byte loads, so the last one needs padding: a copy of its own.
+  // Embree reads vertices in 16-byte loads, so the last one needs padding: the vertices are copied.
   auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                               sizeof(Vec3), primitive.positions.size()));
   if (vertices) std::copy_n(positions, primitive.positions.size(), vertices);
@@ -133,7 +134,7 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
   tree.first_surface = std::uint32_t(first);
   if (first == last) return;
   tree.scene = rtcNewScene(forest->device);
-  // Not the quick build: in Debian's Embree 3.13 it ends the process by an assertion where all meshes lie in one plane.
+  // Not the fast build: in Debian's Embree 3.13 it aborts by an assertion if all meshes lie in one plane.
   rtcSetSceneBuildQuality(tree.scene, RTC_BUILD_QUALITY_MEDIUM);
   rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
   for (std::size_t s = first; s < last; ++s) {
@@ -145,7 +146,7 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
     const RTCGeometry geometry = triangles_of(*surface.primitive, surface.positions.data());
     for (const Vec3 p : surface.positions) tree.bounds.add(p);
     if (const Material& material = frame->materials[surface.material]; lets_rays_pass(material)) {
-      if (material.textures && material.textures->base_color)  // decoded here, not in the filter
+      if (material.textures && material.textures->base_color)  // decoded here, since the filter must not throw
         frame->images->pyramid(material.textures->base_color.image, base_color_transfer(material));
       alpha.push_back({frame, std::uint32_t(s)});
       rtcSetGeometryUserData(geometry, &alpha.back());
@@ -165,29 +166,29 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
 }
 
 Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
-  StandingTree none;
+  StaticTree none;
   build(frame, none);
 }
 
-Tracer::Tracer(const SceneFrame& frame, StandingTree& standing) : impl_(std::make_unique<Impl>()) {
-  build(frame, standing);
+Tracer::Tracer(const SceneFrame& frame, StaticTree& static_scene) : impl_(std::make_unique<Impl>()) {
+  build(frame, static_scene);
 }
 
-void Tracer::build(const SceneFrame& frame, StandingTree& standing) {
+void Tracer::build(const SceneFrame& frame, StaticTree& static_scene) {
   impl_->frame = &frame;
-  if (!standing.kept_ || !standing.kept_->holds_for(frame)) {
-    standing.kept_.reset();  // before the next one: they need not fit into memory together
+  if (!static_scene.kept_ || !static_scene.kept_->holds_for(frame)) {
+    static_scene.kept_.reset();  // freed before the next tree is built, so that memory need not hold both
     impl_->forest = std::make_shared<Forest>();
-    const auto made = std::make_shared<StandingTree::Kept>();
+    const auto made = std::make_shared<StaticTree::Kept>();
     made->forest = impl_->forest;
     made->surfaces.assign(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count));
-    made->filtered = StandingTree::Kept::passable(frame);
+    made->filtered = StaticTree::Kept::passable(frame);
     impl_->build(made->tree, 0, frame.static_count);
-    standing.kept_ = made;
+    static_scene.kept_ = made;
   }
-  impl_->standing = standing.kept_;
-  impl_->forest = impl_->standing->forest;
-  impl_->fixed = impl_->standing->tree;
+  impl_->static_scene = static_scene.kept_;
+  impl_->forest = impl_->static_scene->forest;
+  impl_->fixed = impl_->static_scene->tree;
   impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
   for (const Surface& surface : frame.surfaces) {
     impl_->surfaces.emplace_back(surface);

@@ -6,22 +6,22 @@
 namespace tempolux {
 namespace {
 
-/// A ray as boxes are asked about it.
+/// A ray, prepared for tests against boxes.
 struct Slabs {
-  Vec3 below, above, inverse;  ///< the ray's origin a little moved, down and up
+  Vec3 below, above, inverse;  ///< the ray's origin, moved down and up by a rounding error
   float leave;
 
-  /// Rays are traced by coordinates relative to their origin, to 2^-24 of the distance. Boxes are 2^-18 of their
-  /// largest coordinate larger than their content; of rays from farther away they are met as if they were 2^-21 of the
-  /// origin's coordinate larger still. `leave` is a few roundings longer than the way.
+  /// Rays are traced relative to their origin, with an error of 2^-24 of the distance. Boxes exceed their content by
+  /// 2^-18 of their largest coordinate; for rays from farther away they are enlarged by another 2^-21 of the origin's
+  /// coordinate. `leave` exceeds the ray's length by a few roundings.
   Slabs(const Ray& ray, float t)
       : inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z}, leave(t * (1 + 0x1p-20f)) {
     const float far = 0x1p-21f * max_component(abs(ray.origin));
     below = ray.origin - Vec3{far, far, far};
     above = ray.origin + Vec3{far, far, far};
   }
-  /// False only if the ray does not come near. 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as
-  /// their second argument.
+  /// False only if the ray misses the box clearly. 0 x infinity (a ray in a face's plane) is NaN, which std::min and
+  /// std::max ignore as second argument.
   bool meet(const Box3& box) const {
     if (box.empty()) return false;
     float first = 0, last = leave;
@@ -33,7 +33,7 @@ struct Slabs {
     }
     return first <= last;
   }
-  /// The same of a surface.
+  /// The same for the boxes of a surface.
   bool meet(const MovingBoxes& boxes, std::size_t surface) const {
     if (!meet(boxes.surfaces[surface])) return false;
     const std::span<const Box3> pieces = boxes.pieces_of(surface);
@@ -41,12 +41,12 @@ struct Slabs {
   }
 };
 
-/// Can a segment from `from` to a place in `target` meet `box`? Axis by axis, where along the segment may it be within
-/// the box's slab: at t it lies between from + t low and from + t high.
+/// True if a segment from `from` to a place in `target` can meet `box`. For each axis it finds where along the segment
+/// the segment can be inside the box's slab: at t its coordinate is between from + t low and from + t high.
 bool shaft_meets(Vec3 from, const Box3& target, const Box3& box) {
   if (box.empty()) return false;
   float first = 0, last = 1;
-  const auto at_least = [&](float slope, float value) {  // slope t >= value
+  const auto at_least = [&](float slope, float value) {  // keeps the t with slope t >= value
     if (slope > 0) first = std::max(first, value / slope);
     else if (slope < 0) last = std::min(last, value / slope);
     else if (value > 0) last = -1;

@@ -1,4 +1,4 @@
-// lib/trace/surface_points.cpp -- hits as points of surfaces, and rays that leave them.
+// lib/trace/surface_points.cpp -- computes surface points from hits, and rays that leave them.
 #include <cmath>
 
 #include "lib/trace/trees.h"
@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// Points keep this much of each corner (4e-6 of the triangle's height away from its edges): rounding at an
-/// edge must not put a point behind the neighbouring wall, from where the next ray would leave a closed room.
+/// Smallest barycentric coordinate: points stay 4e-6 of the triangle's height away from its edges. At an edge rounding
+/// could put a point behind the neighbouring wall, and the next ray would leave a closed room.
 constexpr float kSmallestBarycentric = 0x1p-18f;
 
 }  // namespace
@@ -25,7 +25,7 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   v *= scale;
   w *= scale;
 
-  // Kept in registers until stored once: a vector just stored and copied waits for its parts.
+  // Kept in registers until stored once: copying a vector that was just stored stalls.
   Vec3 normal_geometric = normalize(cross(b - a, c - a));
   if (surface.flipped) normal_geometric = -normal_geometric;
   Vec3 normal = normal_geometric;
@@ -66,7 +66,7 @@ Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset
   const Vec3 origin = spawn_ray(point, target - point.position).origin;
   const Vec3 direction = target - origin;
   const float distance = length(direction);
-  // Stop short of the light by its own offset, a few ulp of the distance at least.
+  // The ray ends before the light by the light's own offset, but at least a few ulp of the distance.
   const float stop = distance > 0 ? 1 - std::min(0.5f, 4 * target_offset / distance + 0x1p-20f) : 0;
   return {origin, direction, 0, stop};
 }

@@ -1,4 +1,4 @@
-// lib/trace/trace.cpp -- rays against the trees.
+// lib/trace/trace.cpp -- intersects rays with the search trees.
 #include "lib/trace/trace.h"
 
 #include <cmath>
@@ -9,8 +9,8 @@
 namespace tempolux {
 namespace {
 
-/// Finite, t_min >= 0, and small enough that Embree's squared lengths stay finite. A sum that is below a number
-/// has no NaN in it.
+/// True if the ray is finite, t_min >= 0, and so small that Embree's squared lengths stay finite. The comparison of the
+/// sum is false for NaN.
 bool usable(const Ray& ray) {
   constexpr float kLargest = 1e18f;
   const auto sum = [](Vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
@@ -48,8 +48,8 @@ bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
 
 constexpr std::size_t kPacket = 8;
 
-/// Eight rays as Embree takes them. Left out (valid 0) are those beyond the end of a list and unusable ones, whose
-/// numbers must not come near Embree.
+/// Eight rays in Embree's layout. Rays beyond the end of a list, and unusable ones, have valid 0: Embree must not
+/// compute with their numbers.
 struct Packet {
   RTCRayHit8 query;
   alignas(32) int valid[kPacket];
@@ -77,8 +77,8 @@ struct Packet {
     valid[i] = use ? -1 : 0;
   }
 
-  /// Hits with this tree that are nearer than those found before; the rays are shortened to them. everywhere:
-  /// the tree fills the scene, so that asking whether a ray may hit it would be a waste.
+  /// Finds hits in this tree that are nearer than earlier ones, and shortens the rays to them. everywhere: the tree
+  /// fills the scene, so testing its box would cost more than it saves.
   void intersect(const Tree& tree, bool everywhere, bool alike, Hit* hits) {
     bool any = false;
     alignas(32) int active[kPacket];
@@ -121,7 +121,7 @@ bool Tracer::intersect(const Ray& ray, Hit& hit) const {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  // The first call shortens the ray, so the second reports only what is strictly nearer.
+  // The first call shortens the ray, so the second call reports strictly nearer hits only.
   RTCRayHit query{to_embree(ray), {}};
   bool found = false;
   if (impl_->fixed.exists()) found = intersect_tree(impl_->fixed, query, hit);

@@ -1,4 +1,4 @@
-// lib/trace/trace.h -- rays against the scene at a frame; the only user of Embree.
+// lib/trace/trace.h -- intersects rays with the scene at a frame; the only user of Embree.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,23 @@ namespace tempolux {
 
 struct Ray {
   Vec3 origin;     ///< scene space
-  Vec3 direction;  ///< need not be unit; t is in units of its length
+  Vec3 direction;  ///< need not be unit; t is in multiples of its length
   float t_min = 0, t_max = INFINITY;
-  bool all_blend = false;  ///< meets surfaces of alpha mode BLEND wherever alpha > 0: to measure them, not for light
+  bool all_blend = false;  ///< hits surfaces of alpha mode BLEND wherever alpha > 0: for measurements, not for light
 };
 
 struct Hit {
   float t = 0;
-  std::uint32_t surface = kNone, triangle = 0;  ///< index into SceneFrame::surfaces, triangle of its primitive
-  float u = 0, v = 0;                           ///< barycentrics of corners 1 and 2
+  std::uint32_t surface = kNone, triangle = 0;  ///< index into SceneFrame::surfaces; triangle of its primitive
+  float u = 0, v = 0;                           ///< barycentric coordinates of corners 1 and 2
 };
 
-/// The search tree of what stands still, handed from the Tracer of one frame to that of the next: built anew only where
-/// that is something else. For the frames of one Scene, one Tracer made at a time.
-class StandingTree {
+/// The search tree of the static surfaces, passed from one frame's Tracer to the next one's; built anew only if the
+/// static surfaces differ. For frames of one Scene; only one Tracer may be constructed at a time.
+class StaticTree {
  public:
-  StandingTree();
-  ~StandingTree();
+  StaticTree();
+  ~StaticTree();
 
  private:
   friend class Tracer;
@@ -37,52 +37,53 @@ class StandingTree {
   std::shared_ptr<const Kept> kept_;
 };
 
-/// Two search trees, what is static over the segment and what moves; the nearer hit wins, static at a tie.
-/// Surfaces of alpha mode MASK are not there where alpha is below the cut-off; those of BLEND are met with probability
-/// alpha, drawn from the bits of ray and triangle: in the mean a share 1 - alpha of all light goes through, straight
-/// on, and no one else needs to know. Thread-safe once built. Every ray is checked: one that is not finite is a miss
-/// and counted, never an abort.
+/// Two search trees: static surfaces, and surfaces that move in the segment. The nearer hit counts; at equal distance
+/// the static one. Surfaces of alpha mode MASK are cut out where alpha is below the cut-off. A surface of mode BLEND is
+/// hit with probability alpha, decided by the bits of ray and triangle: so on average a share 1 - alpha of all light
+/// passes straight through, and callers need not handle alpha. Thread-safe once built. A ray that is not finite counts
+/// as a miss and is counted; it never aborts.
 class Tracer {
  public:
   explicit Tracer(const SceneFrame& frame);
-  /// The same; the tree of the static surfaces is that of `standing` if they are the same arrays, as in all frames of a
-  /// SegmentScene, and let no ray pass by alpha. Else it is built, and left there for the next.
-  Tracer(const SceneFrame& frame, StandingTree& standing);
+  /// The same with the tree in `static_scene`, if its static surfaces are the same arrays (as in all frames of a
+  /// SegmentScene) and none lets rays pass by alpha. Otherwise the tree is built and left in `static_scene` for the
+  /// next frame.
+  Tracer(const SceneFrame& frame, StaticTree& static_scene);
   ~Tracer();
   Tracer(Tracer&&) noexcept;
 
-  /// Nearest hit in (t_min, t_max). Returns false, hit untouched, if there is none.
+  /// Nearest hit in (t_min, t_max). False, with `hit` unchanged, if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
-  /// The same for many rays, hits[i] of rays[i] (surface kNone: none): a third to a half of the time where
-  /// neighbours in the list leave one place into like directions. Which of two equally near hits is reported
-  /// may differ from intersect(); the same list gives the same hits.
-  /// alike: false if they do not; that loses nothing against one by one.
+  /// The same for many rays: hits[i] belongs to rays[i] (surface kNone: no hit). Takes a third to a half of the time if
+  /// neighbours in the list start close together in similar directions. Of two equally near hits it may report another
+  /// one than intersect(); the same list gives the same hits. alike: false if neighbours differ, which is then no
+  /// slower than single rays.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike = true) const;
-  /// Nearest hit with the static surfaces alone.
+  /// Nearest hit with static surfaces only.
   bool intersect_static(const Ray& ray, Hit& hit) const;
-  /// Is anything in between?
+  /// True if a surface lies between the ray's ends.
   bool occluded(const Ray& ray) const;
 
   SurfacePoint surface_point(const Hit& hit) const;
-  /// The same for many: points[i] of hits[i].
+  /// The same for many: points[i] belongs to hits[i].
   void surface_points(std::span<const Hit> hits, SurfacePoint* points) const;
-  /// Rays refused because they were not finite; for stats.
+  /// Number of rays refused because they were not finite; for stats.
   std::uint64_t refused_ray_count() const;
   const SceneFrame& frame() const;
 
  private:
   struct Impl;
-  void build(const SceneFrame& frame, StandingTree& standing);
+  void build(const SceneFrame& frame, StaticTree& static_scene);
   std::unique_ptr<Impl> impl_;
 };
 
-/// A ray that leaves `point` into `direction`, started off the surface on the side it leaves to.
+/// A ray from `point` into `direction` that starts off the surface, on the side it leaves to.
 inline Ray spawn_ray(const SurfacePoint& point, Vec3 direction) {
   const float side = std::copysign(point.offset, dot(direction, point.normal_geometric));
   return {point.position + point.normal_geometric * side, direction, 0, INFINITY};
 }
-/// A ray from `point` that ends just before `target`; target_offset is that point's own offset, or 0.
-/// Direction is not normalised: t runs from 0 to 1.
+/// A ray from `point` that ends just before `target`; target_offset is the target's own offset, or 0. The direction is
+/// not normalised: t runs from 0 to 1.
 Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset);
 
 }  // namespace tempolux

@@ -1,5 +1,5 @@
-// lib/trace/trees.h -- what a Tracer keeps: Embree's trees, and surfaces as rays read them. Shared by build_trees.cpp,
-// trace.cpp (rays) and surface_points.cpp (hits).
+// lib/trace/trees.h -- the data of a Tracer: Embree's trees, and surfaces laid out for look-ups. Shared by
+// build_trees.cpp, trace.cpp (rays) and surface_points.cpp (hits).
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -17,25 +17,25 @@
 
 namespace tempolux {
 
-/// Rays leave a surface this fraction of the largest coordinate of its triangle above it: 16 ulp of float32,
-/// four times the rounding of a point made from barycentrics and of Embree's own arithmetic.
+/// Distance between a ray's start and its surface, over the largest coordinate of the triangle: 16 ulp of float32, four
+/// times the rounding of a point from barycentric coordinates and of Embree's arithmetic.
 inline constexpr float kOffsetScale = 0x1p-20f;
 
 struct Tree {
   RTCScene scene = nullptr;
   std::uint32_t first_surface = 0;
-  Box3 bounds;  ///< a little larger than what is in it
+  Box3 bounds;  ///< slightly larger than its content
 
   bool exists() const { return scene != nullptr; }
 
-  /// The surface of a hit: its geometry in this tree, or that of the instance in whose own tree it was found.
+  /// The surface of a hit: the geometry in this tree, or the instance in whose own tree the hit was found.
   std::uint32_t surface(std::uint32_t geometry, std::uint32_t instance) const {
     return first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
   }
 
-  /// False only if the ray does not come near: a few operations instead of a walk through the tree. Distances are
-  /// within 3 ulp and the box is 2^-18 larger than its content; 0 x infinity (a ray in a face's plane) is NaN, which
-  /// min and max drop as their second argument.
+  /// False only if the ray misses the tree's box: a few operations instead of a walk through the tree. Distances are
+  /// within 3 ulp, and the box exceeds its content by 2^-18. 0 x infinity (a ray in a face's plane) is NaN, which
+  /// std::min and std::max ignore as second argument.
   bool may_hit(const RTCRay& ray) const {
     return may_hit({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tnear, ray.tfar);
   }
@@ -51,25 +51,25 @@ struct Tree {
   }
 };
 
-/// The tree of a primitive that instances share, in its own space.
+/// The tree of a primitive that several instances share, in the primitive's space.
 struct SharedTree {
   RTCScene scene = nullptr;
   Box3d bounds;
   float reach = 0;  ///< largest coordinate
 };
 
-/// What surface_point reads of a surface, found with one load each.
+/// The arrays of a surface that surface_point reads, each found with one load.
 struct SurfaceArrays {
   const std::array<std::uint32_t, 3>* triangles;
-  const Vec3 *positions, *normals;  ///< normals, uvs: null if there are none
+  const Vec3 *positions, *normals;  ///< normals and uvs are null if there are none
   const Vec2* uvs;
-  const Surface* instance;  ///< null if positions and normals are there
+  const Surface* instance;  ///< the surface, if it is instanced and has no arrays; else null
   std::uint32_t object, material;
   bool flipped, smooth;
   float instance_offset = 0;
 
-  /// Positions or normals of a triangle's corners, in scene space: where they are (copies wait for their parts), those
-  /// of an instance made in `own`.
+  /// Positions or normals of a triangle's corners in scene space. Pointers into the surface's arrays (copying would
+  /// stall); for an instance they are computed into `own`.
   struct Corners {
     const Vec3 *a, *b, *c;
   };
@@ -107,14 +107,14 @@ struct SurfaceArrays {
 
 inline constexpr unsigned kAllBlend = 1;  ///< RTCRay::id of a ray with all_blend
 
-/// What the filter of a surface that lets rays pass reads.
+/// The data that the filter of a surface with alpha reads.
 struct AlphaSurface {
   const SceneFrame* frame;
   std::uint32_t surface;
 };
 
-/// What all trees of a device come from. The instructions are named, as processors that have wider ones round hits
-/// differently, and one ray at a time gains nothing by them; what we are compiled for has these.
+/// The Embree device of all trees. The instruction set is fixed: wider instructions of some processors round hits
+/// differently and do not make single rays faster. The set is the one this program is compiled for.
 struct Forest {
   RTCDevice device = rtcNewDevice("isa=avx2");
   std::unordered_map<const Primitive*, SharedTree> shared_trees;
@@ -125,11 +125,14 @@ struct Forest {
   ~Forest();
 };
 
-struct StandingTree::Kept {
+struct StaticTree::Kept {
   std::shared_ptr<Forest> forest;
   Tree tree;
-  std::vector<Surface> surfaces;  ///< those in it; they keep its arrays, so that equal addresses are equal arrays
-  bool filtered = false;          ///< filters ask the frame they were made for: such a tree is of no other
+  /// The surfaces in the tree; holding their arrays ensures that equal addresses mean equal arrays.
+  std::vector<Surface> surfaces;
+  /// True if the tree has intersection filters, which point to this frame: the tree must not be reused for another
+  /// frame.
+  bool filtered = false;
 
   ~Kept() {
     if (tree.scene) rtcReleaseScene(tree.scene);
@@ -141,10 +144,10 @@ struct StandingTree::Kept {
 struct Tracer::Impl {
   const SceneFrame* frame = nullptr;
   std::shared_ptr<Forest> forest;
-  std::shared_ptr<const StandingTree::Kept> standing;  ///< owns `fixed`
+  std::shared_ptr<const StaticTree::Kept> static_scene;  ///< owns `fixed`
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
-  std::deque<AlphaSurface> alpha;  ///< of the surfaces that have a filter; they stay where they are
+  std::deque<AlphaSurface> alpha;  ///< data of the filters; a deque, since filters point to its elements
   mutable std::atomic<std::uint64_t> refused{0};
 
   ~Impl() {
@@ -152,8 +155,8 @@ struct Tracer::Impl {
   }
 
   void build(Tree& tree, std::size_t first, std::size_t last);
-  /// Rays meet an instance in its own space: what is rounded there counts in scene space by as much as the
-  /// transform stretches, and where the instance stands is rounded as well.
+  /// Offset of rays that start on an instance. Rays hit an instance in its own space, where rounding errors are scaled
+  /// by the transform; the transform's translation is rounded, too.
   float instance_offset(const Surface& surface) const;
   SurfacePoint point_of(const Hit& hit) const;
 

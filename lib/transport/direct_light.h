@@ -1,4 +1,4 @@
-// lib/transport/direct_light.h -- one sample of the lights at a place.
+// lib/transport/direct_light.h -- draws one light sample for a surface.
 #pragma once
 
 #include "lib/light/lights.h"
@@ -7,26 +7,26 @@
 
 namespace tempolux {
 
-/// A side of a surface that light arrives at.
+/// One side of a surface, which receives light.
 struct Receiver {
   const SurfacePoint& place;
-  Vec3 geometric, shading;  ///< normals, unit, on the lit side
-  const Bsdf* coat =
-      nullptr;  ///< the lobes there, if they weigh light by the angle it arrives at (Bsdf::arrival_weight)
+  Vec3 geometric, shading;     ///< unit, on the lit side
+  const Bsdf* coat = nullptr;  ///< set if the lobes weigh light by its angle of arrival (Bsdf::arrival_weight)
 };
 
-/// A sample of the lights that can reach a receiver.
+/// One sample of the lights that can reach a receiver.
 struct DirectSample {
   LightSample light;
-  Rgb irradiance{0.0f};  ///< W/m^2 over the density of the sample, if nothing is in the way: by the cosine to the
-                         ///< shading normal, times Bsdf::arrival_weight under a coat
-  Ray shadow;  ///< transmittance() of it is the share that arrives
+  /// Estimate of the unshadowed irradiance by the cosine to the shading normal [W/m^2], times Bsdf::arrival_weight
+  /// under a coat.
+  Rgb irradiance{0.0f};
+  Ray shadow;  ///< its transmittance() is the share of the light that arrives
 };
 
-/// Draws a light and a place on it (Lights::sample). False if none can reach the receiver, or the light comes from
-/// behind either of its normals.
+/// Draws a light and a point on it (Lights::sample). False if no light can reach the receiver, or the light comes from
+/// behind its geometric or its shading normal.
 bool sample_direct(const Lights& lights, const Receiver& at, float u_choice, Vec2 u, DirectSample& sample);
-/// The same from one stratified pair.
+/// The same from one stratified pair (Lights::sample).
 bool sample_direct(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);
 
 }  // namespace tempolux

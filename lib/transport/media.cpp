@@ -34,14 +34,13 @@ Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const Mediu
                          const WayBits& bits, std::uint64_t& shadow_rays) {
   LightSample light;
   if (!lights.sample(point.position, {}, u, light)) return Rgb(0.0f);
-  // Seen along the path from the eye light goes backwards: out of the phase function's peak lies where the path would
-  // go on.
+  // The path runs from the eye, so light travels against it: the phase function's peak lies ahead along the path.
   const float phase = pdf_hg(point.g, point.travel, light.wi);
-  Rgb radiance = light.radiance * phase;
+  Rgb radiance = light.facing_irradiance * phase;
   if (weigh && !light.delta) radiance *= mis_power(light.pdf_solid_angle, phase);
   if (is_black(radiance)) return radiance;
   ++shadow_rays;
-  SurfacePoint from{};  // nothing to keep off
+  SurfacePoint from{};  // in a medium there is no surface to offset the ray from
   from.position = point.position;
   return radiance * transmittance(tracer, spawn_shadow_ray(from, light.position, light.position_offset), bits);
 }

@@ -1,4 +1,4 @@
-// lib/transport/media.h -- what paths from the eye do in media: collide, gather light from lamps, go on.
+// lib/transport/media.h -- participating media along paths from the eye: transmittance, collisions, scattered light.
 #pragma once
 
 #include "lib/core/random.h"
@@ -10,7 +10,8 @@
 
 namespace tempolux {
 
-/// Random bits of the steps of one way: `random` and `bounce` are the path's, `way` tells the ways of one bounce apart.
+/// Keys of the random numbers along one ray: `random` and `bounce` belong to the path, `way` distinguishes the rays of
+/// one bounce.
 struct WayBits {
   PathRandom random;
   std::uint32_t bounce, way;
@@ -20,27 +21,26 @@ struct WayBits {
 };
 enum Way : std::uint32_t { way_path = 0, way_shadow = 1, way_shadow_of_medium = 2 };  ///< < 16
 
-/// Share of light left on a ray whose direction need not be unit, by media alone: an estimate (estimate_transmittance).
+/// Estimate (estimate_transmittance) of the transmittance of the media along a ray, whose direction need not be unit.
 float media_transmittance(const Media& media, const Ray& ray, const WayBits& bits);
 
-/// The same for a ray between a point and a light; 0 where a surface is in the way. Without media exactly 0 or 1. This
-/// is what shadow rays ask.
+/// The same for a shadow ray; 0 if a surface is in the way. Without media the result is exactly 0 or 1.
 float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits);
 
-/// A collision with a medium: where the path is scattered next.
+/// A collision with a medium, where the path is scattered.
 struct MediumPoint {
-  Vec3 position, travel;  ///< travel: direction of flight before it, seen along the path from the eye; unit
+  Vec3 position, travel;  ///< travel: unit direction of the path before the collision, away from the eye
   Rgb albedo;
   float g;
 };
 
-/// Where the path along the ray (unit direction) collides before t = end; false if it does not.
+/// Draws the collision of the path along the ray (unit direction) with a medium before t = end; false if there is none.
 bool collides(const Media& media, const Ray& ray, float end, const PathRandom& random, std::uint32_t bounce,
               MediumPoint& point);
 
-/// Light of a sampled lamp scattered at the point towards where the path came from, shadows and transmittance included:
-/// radiance [W/m^2/sr], albedo not. `weigh`: by the power heuristic against scattering, for paths that go on and may
-/// hit the lamp. `u`: chooses lamp and place on it. Counts a shadow ray if one is traced.
+/// Radiance [W/m^2/sr] of a sampled light that the point scatters back along the path, with shadows and transmittance
+/// but without albedo. `weigh`: weigh by the power heuristic against scattering, for paths that go on and may hit the
+/// light. `u` chooses the light and the point on it. Counts a shadow ray if one is traced.
 Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh,
                          const WayBits& bits, std::uint64_t& shadow_rays);
 

@@ -1,10 +1,10 @@
-// lib/volume/flight.h -- free flight through media: tentative collisions against a majorant, drawn from numbers of
-// their own.
+// lib/volume/flight.h -- free flight through media: tentative collisions against a majorant, with random numbers per
+// step.
 //
-// A tentative collision happens as if the extinction were the majorant everywhere; it is real with probability
-// extinction / majorant, else nothing happens (null collisions; Woodcock et al. 1965). Step k of a way draws its
-// numbers from one word of bits that depends on the way and k alone. So under a frozen majorant the places that a
-// photon looks at stay the same when the medium changes, up to its first real collision.
+// Tentative collisions are distributed as if the extinction were the majorant everywhere. A tentative collision is real
+// with probability extinction / majorant; otherwise nothing happens (null collisions; Woodcock et al. 1965). Step k of
+// a ray draws its numbers from one word of bits that depends on the ray and on k only. So with a frozen majorant a
+// photon looks up the same places when the medium changes, up to its first real collision.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +16,17 @@
 
 namespace tempolux {
 
-/// Roulette after a collision lets a path go on with this probability at most, so that paths end in lossless smoke that
-/// no wall ends: after a million collisions in the mean. Not earlier: in lossless smoke of optical depth tau paths take
-/// up to tau^2 collisions, and what ends most of these leaves their light to a few that nobody sees. Nor is it dear:
-/// paths that enter a convex body evenly from all sides have a mean way of 4 V / S in it, whatever scatters them there
-/// (Blanco and Fournier 2003).
+/// Largest probability with which Russian roulette lets a path continue after a collision. It ends paths in lossless,
+/// unbounded smoke after a million collisions on average. A smaller value would be wrong: in lossless smoke of optical
+/// depth tau paths have up to tau^2 collisions, and ending most paths early leaves their light to a few paths that are
+/// never sampled. The value is not expensive either: paths that enter a convex body uniformly have a mean length of 4 V
+/// / S in it, however they are scattered (Blanco and Fournier 2003).
 inline constexpr float kLargestSurvivalInMedia = 0.999999f;
 
-/// What one step draws, of 64 random bits.
+/// The random numbers of one step, from 64 random bits.
 struct FlightNumbers {
-  float depth;   ///< majorant x length to the next tentative collision: exponential, mean 1
-  float accept;  ///< in [0, 1): real where accept x majorant < extinction
+  float depth;   ///< majorant x distance to the next tentative collision: exponential, mean 1
+  float accept;  ///< in [0, 1): the collision is real if accept x majorant < extinction
   explicit FlightNumbers(std::uint64_t bits)
       : depth(-std::log1p(-std::min(float(std::uint32_t(bits >> 32)) * 0x1p-32f, kOneMinus))),
         accept(unit_float(std::uint32_t(bits))) {}
@@ -36,11 +36,11 @@ struct FlightNumbers {
 };
 
 struct Tentative {
-  float distance;  ///< m from the way's origin
+  float distance;  ///< m from the ray's origin
   float majorant;  ///< 1/m, there
 };
 
-/// A way, from one tentative collision to the next.
+/// Steps along a ray segment from one tentative collision to the next.
 class Flight {
  public:
   /// `direction` is unit; `length` may be infinite.
@@ -49,7 +49,7 @@ class Flight {
     ended_ = !walk_.next(piece_);
     at_ = piece_.begin;
   }
-  /// The next one, `depth` (FlightNumbers) farther; false if the way ends before.
+  /// Advances by `depth` (FlightNumbers) to the next collision; false if the segment ends first.
   bool next(float depth, Tentative& found) {
     while (!ended_) {
       const float reach = (piece_.end - at_) * piece_.majorant;
@@ -72,8 +72,8 @@ class Flight {
   bool ended_ = true;
 };
 
-/// Distance [m] of the first real collision; INFINITY if the way ends before. `bits(k)`: 64 random bits of step k.
-/// Probability of passing: exp(- optical depth), exactly in the mean.
+/// Distance [m] of the first real collision; INFINITY if the segment ends first. `bits(k)`: 64 random bits of step k.
+/// The probability of no collision is exp(- optical depth), without bias.
 template <class Bits>
 float first_collision(const Media& media, Vec3 origin, Vec3 direction, float length, const Bits& bits) {
   Flight flight(media.majorants(), origin, direction, length);
@@ -85,9 +85,9 @@ float first_collision(const Media& media, Vec3 origin, Vec3 direction, float len
   }
 }
 
-/// Share of light left after the way, in [0, 1]: an estimate whose mean is exp(- optical depth). Product of the null
-/// collisions' probabilities (ratio tracking; Novak et al., "Residual ratio tracking", 2014); below a tenth by
-/// roulette, so that dense media do not cost more and more.
+/// Unbiased estimate, in [0, 1], of the transmittance exp(- optical depth). Product of the probabilities of null
+/// collisions (ratio tracking; Novak et al., "Residual ratio tracking", 2014); below a tenth Russian roulette, so that
+/// the cost does not grow with the density.
 template <class Bits>
 float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, float length, const Bits& bits) {
   constexpr float kRouletteBelow = 0.1f;
@@ -100,7 +100,8 @@ float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, fl
     const float before = left;
     left *= std::max(0.0f, 1 - media.extinction(origin + direction * t.distance) / t.majorant);
     if (left >= kRouletteBelow) continue;
-    // Above the threshold a tenth survives by left / threshold; once below, by what this step has left over.
+    // Above the threshold the estimate becomes a tenth with probability left / threshold; once below, it is reduced by
+    // this step's share only.
     const float threshold = std::min(before, kRouletteBelow);
     if (!(numbers.accept * threshold < left)) return 0;
     left = threshold;

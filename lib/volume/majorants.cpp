@@ -64,7 +64,7 @@ MajorantWalk::MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction
     : grid_(&grid), origin_(origin), begin_(0), end_(length) {
   if (grid.empty()) return;
   constexpr float kAlong =
-      1e-30f;  // of smaller components 1 / d is infinite, and 0 x infinity no number: no ray gets anywhere by them
+      1e-30f;  // below this 1 / d overflows, and 0 x infinity is NaN; a ray does not advance along such an axis
   for (int a = 0; a < 3; ++a) {
     if (std::abs(direction[a]) < kAlong) {
       if (!(origin[a] >= grid.box_.lower[a] && origin[a] <= grid.box_.upper[a])) return;
@@ -99,7 +99,7 @@ bool MajorantWalk::next(Piece& piece) {
   if (!inside_) return false;
   const std::size_t axis = leave_[0] <= leave_[1] ? (leave_[0] <= leave_[2] ? 0 : 2) : (leave_[1] <= leave_[2] ? 1 : 2);
   piece.begin = begin_;
-  piece.end = std::max(begin_, std::min(end_, leave_[axis]));  // rounding may put a plane before the entry
+  piece.end = std::max(begin_, std::min(end_, leave_[axis]));  // rounding may put a plane before the entry point
   piece.majorant = grid_->values_[(std::size_t(cell_[0]) * std::size_t(grid_->counts_[1]) + std::size_t(cell_[1])) *
                                       std::size_t(grid_->counts_[2]) +
                                   std::size_t(cell_[2])];

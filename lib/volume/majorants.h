@@ -1,4 +1,4 @@
-// lib/volume/majorants.h -- the greatest extinction by cells of space, and the walk of a ray through them.
+// lib/volume/majorants.h -- a grid of majorants (upper bounds of extinction), and the walk of a ray through its cells.
 #pragma once
 
 #include <array>
@@ -11,13 +11,14 @@
 namespace tempolux {
 
 /// Cells of equal size in a box of scene space, each with a majorant: an extinction [1/m] that no point of the cell
-/// exceeds. Frozen over a segment it makes each photon look at the same places in every frame.
+/// exceeds. Majorants that are frozen over a segment let each photon look up the same places in every frame.
 class MajorantGrid {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 21;
 
   MajorantGrid() = default;  ///< of nothing
-  /// Zeros. Counts are at least 1; throws std::invalid_argument for a box that is empty or more than kMostCells.
+  /// All majorants are zero. Counts are at least 1; throws std::invalid_argument for an empty box or more than
+  /// kMostCells.
   MajorantGrid(const Box3& box, const std::array<std::int32_t, 3>& counts);
 
   bool empty() const { return values_.empty(); }
@@ -30,12 +31,12 @@ class MajorantGrid {
     const std::size_t index = index_of(point);
     return index < values_.size() ? values_[index] : 0;
   }
-  /// Which of values() is that of a point; their number outside.
+  /// Index into values() of the cell that holds a point; the size of values() for a point outside.
   std::size_t index_of(Vec3 point) const;
   Box3d cell(std::int32_t x, std::int32_t y, std::int32_t z) const;
-  /// Lower bound of tentative collisions: cells above 0 are raised to `least` [1/m].
+  /// Raises cells above 0 to at least `least` [1/m], a lower bound for the number of tentative collisions.
   void raise_to(float least);
-  /// Mean length of a way through the box: 4 V / S of a convex body (Cauchy) [m].
+  /// Mean length of a chord through the box [m]: 4 V / S for a convex body (Cauchy).
   float mean_chord() const;
   std::string hash() const;
 
@@ -52,10 +53,9 @@ class MajorantGrid {
   std::vector<float> values_;
 };
 
-/// The cells that a ray passes, one after the other: a digital differential analyser. Amanatides & Woo, Eurographics
-/// 1987.
+/// Visits the cells that a ray passes, in order (a digital differential analyser: Amanatides & Woo, Eurographics 1987).
 ///
-/// Pieces join without gap or overlap, and reach from the box's entry to its exit or `length`, whichever is nearer.
+/// Pieces join without gap or overlap, from the entry into the box to the exit, or to `length` if that comes first.
 class MajorantWalk {
  public:
   struct Piece {
@@ -64,11 +64,11 @@ class MajorantWalk {
   };
   /// `direction` is unit; length may be infinite.
   MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length);
-  /// The next piece, which may be of no length; false at the end.
+  /// The next piece, whose length may be 0; false at the end.
   bool next(Piece& piece);
 
  private:
-  float crossing(int axis) const;  ///< t at which the present cell is left along this axis
+  float crossing(int axis) const;  ///< distance at which the ray leaves the present cell along this axis
   const MajorantGrid* grid_ = nullptr;
   Vec3 origin_, inverse_;
   std::array<std::int32_t, 3> cell_{}, step_{};

@@ -18,11 +18,12 @@ constexpr std::size_t kLongestLine = 1 << 16;
 std::string number(float value) {
   std::array<char, 32> text{};
   const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), value);  // shortest that reads back the same
+      // The shortest text that reads back as the same number.
+      std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
 }
 
-/// Lines of the file, with what a message needs.
+/// Reads the file line by line and keeps the line's number for messages.
 class Lines {
  public:
   explicit Lines(const std::string& path) : path_(path), in_(path) {
@@ -41,7 +42,7 @@ class Lines {
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(path_ + ": line " + std::to_string(number_) + ": " + what + "; make it again with scene-plan");
   }
-  /// Numbers of a line "KEY a b c".
+  /// Reads the numbers of a line "KEY a b c".
   template <class T>
   std::vector<T> values(const std::string& key, std::size_t count) {
     std::istringstream words(next(key.c_str()));

@@ -1,4 +1,4 @@
-// lib/volume/majorants_file.h -- frozen majorants as a file: formats/majorants/majorants.md.
+// lib/volume/majorants_file.h -- reads and writes frozen majorants: formats/majorants/majorants.md.
 #pragma once
 
 #include <string>
@@ -7,18 +7,18 @@
 
 namespace tempolux {
 
-/// Majorants of a segment and the frames for which they hold.
+/// Majorants and the frames for which they are valid.
 struct FrozenMajorants {
   int first_frame = 0, last_frame = 0;
   MajorantGrid grid;  ///< world space
 };
 
-/// Text of the file: the same numbers come back to the bit.
+/// Text of the file; numbers read back to the bit.
 std::string majorants_text(const FrozenMajorants& majorants);
 /// Throws InputError "FILE: line N: what; remedy".
 FrozenMajorants load_majorants(const std::string& path);
 
-/// The box moved by -origin: from world to scene space.
+/// Shifts the box by -origin: from world to scene space.
 MajorantGrid moved(const MajorantGrid& world, Vec3d origin);
 
 }  // namespace tempolux

@@ -20,7 +20,7 @@ Box3d transformed(const Affine& to_from, const Box3d& box) {
   return result;
 }
 
-/// The box in float32, rounded outwards.
+/// The box in float32, rounded outward.
 Box3 outwards(const Box3d& box) {
   Box3 result;
   for (int a = 0; a < 3; ++a) {
@@ -30,7 +30,7 @@ Box3 outwards(const Box3d& box) {
   return result;
 }
 
-/// Part of the line origin + t direction, 0 <= t <= length, within the box; false if there is none.
+/// The part of the line origin + t direction, 0 <= t <= length, inside the box; false if there is none.
 bool clip(const Box3d& box, Vec3d origin, Vec3d direction, double length, double& begin, double& end) {
   begin = 0;
   end = length;
@@ -91,7 +91,7 @@ double Medium::optical_depth(Vec3 origin, Vec3 direction, double length) const {
   const Vec3d from = index_from_scene_.point(Vec3d(origin)), along = index_from_scene_.direction(Vec3d(direction));
   double begin = 0, end = 0;
   if (!clip(grid_->support(), from, along, length, begin, end)) return 0;
-  // Pieces between the planes of whole numbers, on which the density is one cubic of t.
+  // The line is cut at the planes of whole coordinates; between them the density is a cubic in t.
   Vec3d next{INFINITY, INFINITY, INFINITY}, step{INFINITY, INFINITY, INFINITY};
   for (int a = 0; a < 3; ++a) {
     if (along[a] == 0) continue;
@@ -177,11 +177,11 @@ std::string Media::hash() const {
 }
 
 MajorantGrid majorant_cells(const Box3d& box, double finest_voxel) {
-  constexpr double kVoxels = 8;  // voxels along a cell: 16^3 cells on 128^3 voxels were fastest
+  constexpr double kVoxels = 8;  // voxels along a cell: 16^3 cells for 128^3 voxels were fastest
   const Box3 outer = outwards(box);
   const Vec3d size = Vec3d(outer.upper) - Vec3d(outer.lower);
   const double most = double(MajorantGrid::kMostCells);
-  // A cell larger than eight voxels where those would be too many.
+  // A cell is larger than eight voxels if there would be too many cells.
   double edge = std::max(kVoxels * finest_voxel, max_component(size) * 1e-6);
   std::array<std::int32_t, 3> counts{};
   for (;; edge *= 1.25) {
@@ -196,7 +196,7 @@ MajorantGrid majorant_cells(const Box3d& box, double finest_voxel) {
 void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants) {
   if (majorants.empty()) return;
   const auto [nx, ny, nz] = majorants.counts();
-  // A point on the border of two cells may be taken for either by rounding: a hair's breadth of both.
+  // Rounding may assign a point on a border to either cell, so both cells are widened by a small margin.
   const double hair =
       1e-5 * double(max_component(majorants.box().upper - majorants.box().lower)) / std::max({nx, ny, nz});
   parallel_chunks(std::size_t(nx) * std::size_t(ny), 16, [&, ny = ny, nz = nz](std::size_t first, std::size_t last) {

@@ -1,4 +1,4 @@
-// lib/volume/medium.h -- participating media of a frame: how much light they take out, and how it goes on.
+// lib/volume/medium.h -- the participating media of a frame: extinction, albedo and scattering.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace tempolux {
 
-/// What a density does to light.
+/// Optical properties of a density.
 struct MediumOptions {
   float sigma_t = 1;  ///< extinction of density 1 [1/m], >= 0
-  Rgb albedo{1.0f};   ///< share of the extinction that is scattered, each channel in [0, 1]
-  float g = 0;        ///< mean cosine of scattering (Henyey and Greenstein), in (-1, 1)
+  Rgb albedo{1.0f};   ///< scattered share of the extinction, each channel in [0, 1]
+  float g = 0;        ///< mean cosine of scattering (Henyey-Greenstein), in (-1, 1)
 };
 
-/// One medium: a density placed in scene space.
+/// One medium: a density in scene space.
 class Medium {
  public:
   /// `scene_from_index` must be invertible (std::invalid_argument).
@@ -29,21 +29,21 @@ class Medium {
 
   /// Extinction sigma_t at a point of scene space [1/m].
   float extinction(Vec3 point) const { return grid_->at(to_index(point)) * options_.sigma_t; }
-  /// Greatest extinction in a box of scene space, or more where the grid lies askew.
+  /// Greatest extinction [1/m] in a box of scene space; larger if the grid is rotated against the box.
   float largest_extinction(const Box3d& box) const;
-  /// Integral of the extinction over the way from `origin` by `length` m along the unit `direction`: exact for the
-  /// trilinear density up to rounding, as a cubic along each voxel has its integral from two points (Gauss and
-  /// Legendre).
+  /// Integral of the extinction over `length` m from `origin` along the unit `direction`. Exact for the trilinear
+  /// density up to rounding: in each voxel the density is a cubic, and Gauss-Legendre quadrature with two points
+  /// integrates a cubic exactly.
   double optical_depth(Vec3 origin, Vec3 direction, double length) const;
 
   const MediumOptions& options() const { return options_; }
   const VoxelGrid& grid() const { return *grid_; }
   const Affine& scene_from_index() const { return scene_from_index_; }
-  /// Scene-space box outside which there is nothing of it; empty if it is empty.
+  /// Scene-space box outside which the density is 0; empty if the medium is empty.
   const Box3d& bounds() const { return bounds_; }
   /// Length of the shortest edge of a voxel [m].
   double voxel_size() const;
-  /// Content: values, place, options.
+  /// Hash of values, place and options.
   std::string hash() const;
   Vec3 to_index(Vec3 point) const {
     return {dot(row_[0], point) + offset_.x, dot(row_[1], point) + offset_.y, dot(row_[2], point) + offset_.z};
@@ -52,25 +52,25 @@ class Medium {
  private:
   std::shared_ptr<const VoxelGrid> grid_;
   Affine scene_from_index_, index_from_scene_;
-  std::array<Vec3, 3> row_{};  ///< of index_from_scene, rounded
+  std::array<Vec3, 3> row_{};  ///< rows of index_from_scene, rounded
   Vec3 offset_;
   MediumOptions options_;
   Box3d bounds_;
 };
 
-/// All media of a frame. Where they overlap their extinctions add up. Thread-safe.
+/// All media of a frame. Where they overlap, extinctions add up. Thread-safe.
 class Media {
  public:
-  /// Majorants of these media alone.
+  /// Computes majorants for these media alone.
   explicit Media(std::vector<Medium> media);
-  /// `frozen`: majorants over a segment (frozen_majorants). Throws std::invalid_argument unless they hold for these
-  /// media.
+  /// `frozen`: majorants over a segment (frozen_majorants). Throws std::invalid_argument if they are no upper bound of
+  /// these media.
   Media(std::vector<Medium> media, MajorantGrid frozen);
 
   bool empty() const { return majorants_.empty(); }
   std::span<const Medium> all() const { return media_; }
   const MajorantGrid& majorants() const { return majorants_; }
-  /// MajorantGrid::raise_to; before any other thread knows of this.
+  /// MajorantGrid::raise_to; must be called before other threads use this object.
   void raise_majorants_to(float least) { majorants_.raise_to(least); }
   /// Sum of the extinctions [1/m].
   float extinction(Vec3 point) const {
@@ -78,13 +78,13 @@ class Media {
     for (const Medium& medium : media_) sum += medium.extinction(point);
     return sum;
   }
-  /// Which medium a collision at the point is with, drawn in proportion to extinction by u in [0, 1).
+  /// Chooses the medium of a collision at the point in proportion to extinction, with u in [0, 1).
   const Medium& collided(Vec3 point, float u) const;
   /// Sum of Medium::optical_depth.
   double optical_depth(Vec3 origin, Vec3 direction, double length) const;
-  /// Is any phase function not the same all around?
+  /// True if any phase function is anisotropic.
   bool directional() const;
-  /// Content of all media, not of the majorants.
+  /// Hash of all media, without the majorants.
   std::string hash() const;
 
  private:
@@ -92,11 +92,10 @@ class Media {
   MajorantGrid majorants_;
 };
 
-/// Cells for the majorants of media: box around them all, cells of eight voxels of the finest, at most kMostCells of
-/// them.
+/// A grid for the majorants of media: the box around all media, cells of eight voxels of the finest medium, at most
+/// kMostCells cells.
 MajorantGrid majorant_cells(const Box3d& box, double finest_voxel);
-/// Adds to each cell the greatest extinction that these media have in it together (sum of their maxima), if that is
-/// more than it holds.
+/// Raises each cell to the sum of the greatest extinctions that the media have in it, if that is larger.
 void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants);
 
 }  // namespace tempolux

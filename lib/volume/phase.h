@@ -1,6 +1,6 @@
-// lib/volume/phase.h -- which way light goes on after a collision: Henyey and Greenstein's phase function.
+// lib/volume/phase.h -- Henyey-Greenstein phase function.
 //
-// Forms of docs/methods/formulas.md: everything in 1 - cos, nothing divided by g, so that forward peaks and g = 0 keep
+// Formulas as in docs/methods/formulas.md: all in 1 - cos, without division by g, so that forward peaks and g = 0 keep
 // their digits.
 #pragma once
 
@@ -12,10 +12,10 @@
 
 namespace tempolux {
 
-inline constexpr float kLargestG = 1 - 1e-6f;  ///< |g| is taken as this at most
+inline constexpr float kLargestG = 1 - 1e-6f;  ///< larger |g| is clamped to this
 
-/// 1 - cos of the angle between the directions of flight before and after, of density pdf_hg; xi in [0, 1], 1 goes
-/// straight on.
+/// Draws 1 - cos of the angle between the directions of flight before and after, with density pdf_hg; xi in [0, 1],
+/// where 1 means straight on.
 inline float sample_hg_one_minus_cos(float g, float xi) {
   const float a = std::min(std::abs(g), kLargestG), one_minus_a = 1 - a;
   const float below = one_minus_a + 2 * a * xi;
@@ -23,8 +23,8 @@ inline float sample_hg_one_minus_cos(float g, float xi) {
   return std::clamp(g < 0 ? 2 - value : value, 0.0f, 2.0f);
 }
 
-/// Density per solid angle [1/sr] of going on at 1 - cos = one_minus_cos; the same as the phase function, its integral
-/// over the sphere is 1. |1 - cos| is best found as |a - b|^2 / 2 of the two unit directions of flight.
+/// Density [1/sr] of scattering at 1 - cos = one_minus_cos; equals the phase function, which integrates to 1 over the
+/// sphere. 1 - cos is best computed as |a - b|^2 / 2 from the two unit directions of flight.
 inline float pdf_hg(float g, float one_minus_cos) {
   const float a = std::min(std::abs(g), kLargestG), one_minus_a = 1 - a;
   const float m = g < 0 ? 2 - one_minus_cos : one_minus_cos;
@@ -34,7 +34,7 @@ inline float pdf_hg(float g, float one_minus_cos) {
 /// The same for two unit directions of flight.
 inline float pdf_hg(float g, Vec3 before, Vec3 after) { return pdf_hg(g, 0.5f * length2(after - before)); }
 
-/// Direction of flight after a collision of light that flew along `travel` (unit).
+/// Draws the direction of flight after a collision of light that travelled along `travel` (unit).
 inline Vec3 sample_hg(float g, Vec3 travel, Vec2 u) {
   const float m = sample_hg_one_minus_cos(g, u.x), sine = std::sqrt(std::max(0.0f, m * (2 - m))), phi = 2 * kPi * u.y;
   return normalize(Frame(travel).to_world({sine * std::cos(phi), sine * std::sin(phi), 1 - m}));

@@ -16,12 +16,14 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint64_t kMemory = 400u << 20;  ///< OpenVDB and its libraries take 150 MB of address space
-constexpr std::uint64_t kExpansion = 64;  ///< bytes in memory for one in the file: twice that of constant blocks in zip
-constexpr std::uint64_t kSlowest = 10u << 20;  ///< bytes of the file read in a second, at least
-constexpr std::size_t kMostTogether = 16;      ///< files read by one process: its start is then 3 ms a file
+/// Largest ratio of bytes in memory to bytes in the file: twice the ratio of constant blocks in zip.
+constexpr std::uint64_t kExpansion = 64;
+constexpr std::uint64_t kSlowest = 10u << 20;  ///< bytes per second that the process must read at least
+constexpr std::size_t kMostTogether = 16;      ///< files read by one process, whose start then costs 3 ms per file
 constexpr std::uint64_t kMostAhead =
     16u << 20;  ///< bytes of files read by one process; in memory up to kExpansion times as many
-constexpr std::int32_t kFarStep = 1 << 16;  ///< voxels: within half of it float32 resolves places to 1/256 of a voxel
+/// Voxels: within half of it float32 resolves positions to 1/256 of a voxel.
+constexpr std::int32_t kFarStep = 1 << 16;
 
 std::uint64_t size_of(const std::string& path) {
   struct stat status {};
@@ -30,7 +32,7 @@ std::uint64_t size_of(const std::string& path) {
   return std::uint64_t(status.st_size);
 }
 
-/// Takes pieces off the front of what the helper printed.
+/// Takes pieces off the front of the process' output.
 class Printed {
  public:
   Printed(const std::string& path, const std::vector<unsigned char>& bytes) : path_(path), bytes_(bytes) {}
@@ -47,9 +49,9 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
-/// Voxels far from index 0 get numbers near it, and the transform what that moves them by: float32 does not resolve
-/// places between voxels from 2^24 on. By whole multiples of kFarStep, so that the numbers of a sequence stay the same
-/// while its smoke moves on.
+/// Gives voxels far from index 0 numbers close to 0, and shifts the transform accordingly: from 2^24 on float32 does
+/// not resolve positions between voxels. The shift is a multiple of kFarStep, so that the numbers of a sequence stay
+/// the same while its smoke moves.
 void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   if (blocks.empty()) return;
   GridIndex low = blocks.front().origin;
@@ -57,15 +59,15 @@ void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
     for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], block.origin[a]);
   Vec3d moved{};
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t steps = (std::int64_t(low[a]) + kFarStep / 2) >> 16;  // to the nearest
+    const std::int64_t steps = (std::int64_t(low[a]) + kFarStep / 2) >> 16;  // rounded to nearest
     moved[int(a)] = double(steps * kFarStep);
-    for (VoxelBlock& block : blocks)  // those beyond 32 bits stay beyond what VoxelGrid takes
+    for (VoxelBlock& block : blocks)  // numbers beyond 32 bits stay outside VoxelGrid's range, which refuses them
       block.origin[a] = std::int32_t(std::min<std::int64_t>(block.origin[a] - steps * kFarStep, INT32_MAX - 7));
   }
   world_from_index.translation = world_from_index.point(moved);
 }
 
-/// The next volume; `last`: nothing may follow.
+/// Parses the next volume; with `last` nothing may follow.
 VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   VdbPipeHead head;
   printed.take(&head, sizeof head);
@@ -89,7 +91,7 @@ VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   return volume;
 }
 
-/// What tempolux-vdb says of these files; `bytes`: of all together, `largest`: of one.
+/// Runs tempolux-vdb for these files. `bytes`: size of all files together, `largest`: of the largest.
 ChildResult ask(std::span<const VdbName> names, std::uint64_t bytes, std::uint64_t largest, std::uint64_t max_memory) {
   std::string request;
   for (const VdbName& name : names) {
@@ -126,7 +128,7 @@ VdbVolume VdbSeries::read(const VdbName& name, std::uint64_t max_memory) {
   return *std::exchange(ahead_[at], std::nullopt);
 }
 
-/// Fills in as many of ahead_ from `first` on as one process may read; none where one of them is in trouble.
+/// Reads as many entries of ahead_ from `first` on as one process may read; none if one of them fails.
 void VdbSeries::read_together(std::size_t first, std::uint64_t max_memory) {
   std::uint64_t bytes = 0, largest = 0;
   std::size_t last = first;

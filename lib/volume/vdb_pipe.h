@@ -1,8 +1,8 @@
-// lib/volume/vdb_pipe.h -- what tempolux-vdb, which alone links OpenVDB, is asked and what it prints.
+// lib/volume/vdb_pipe.h -- input and output of the program tempolux-vdb, the only one that links OpenVDB.
 //
-// Asked on standard input, for each file: its path, a line feed, the grid's name (may be empty), a line feed.
-// Printed, for each: VdbPipeHead, the name's bytes, then a VoxelBlock for each block of 8^3 voxels that is not all 0.
-// In trouble: one line on standard error and exit code 2; what it read before has been printed.
+// Standard input, for each file: its path, a line feed, the grid's name (may be empty), a line feed. Standard output,
+// for each file: VdbPipeHead, the name's bytes, then a VoxelBlock for each block of 8^3 voxels that is not all 0. On
+// failure: one line on standard error and exit code 2; the output of earlier files is complete.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ struct VdbPipeHead {
   std::uint64_t block_count = 0;
   std::uint64_t name_size = 0;
 };
-/// With the argument `write` it makes a file instead: it is given this, the grid's name, and counts[0] x counts[1] x
-/// counts[2] colours of three float32, z fastest, and prints the file.
+/// With the argument `write` the program writes a file to standard output instead. Its input is this head, the grid's
+/// name, and counts[0] x counts[1] x counts[2] colours of three float32, z fastest.
 struct VdbWriteHead {
   std::array<char, 8> magic{'T', 'P', 'X', 'V', 'D', 'B', 'W', '\n'};
-  std::array<double, 3> voxel{}, first_centre{};  ///< m: edges of a voxel, centre of the first
+  std::array<double, 3> voxel{}, first_centre{};  ///< m: size of a voxel, and centre of the first one
   std::array<std::int32_t, 3> counts{};
   std::uint32_t reserved = 0;
   std::uint64_t name_size = 0;

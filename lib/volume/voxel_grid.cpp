@@ -11,7 +11,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::int32_t kFarthest = 1 << 28;  ///< an origin beyond: sums of places stay whole in 32 bits
+constexpr std::int32_t kFarthest = 1 << 28;  ///< limit of block origins, so that sums of coordinates fit into 32 bits
 constexpr const char* kTooFar =
     "its voxels lie too far apart; save its parts as grids of their own and give each as a volume";
 
@@ -62,7 +62,7 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
   for (std::size_t a = 0; a < 3; ++a) upper_[a] = last[a] + kBlock - 1;
   std::uint64_t count = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    first_block_[a] = first[a] / kBlock - 1;  // the one before it reads its first layer
+    first_block_[a] = first[a] / kBlock - 1;  // the block before it stores its first layer, too
     block_count_[a] = last[a] / kBlock - first_block_[a] + 1;
     count *= std::uint64_t(block_count_[a]);
     if (count > kMostBlocks) throw std::invalid_argument(kTooFar);
@@ -76,7 +76,7 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
   };
   std::uint32_t bricks = 0;
   const auto fill = [&](const GridIndex& origin, const GridIndex& from, const VoxelBlock& block) {
-    // Copies what of `block` lies in the brick of the block at `origin`.
+    // Copies the voxels of `block` that lie in the brick of the block at `origin`.
     GridIndex low, high;
     bool any = false;
     for (std::size_t a = 0; a < 3; ++a) {

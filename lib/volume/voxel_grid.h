@@ -1,4 +1,4 @@
-// lib/volume/voxel_grid.h -- a quantity at the integer places of a grid, trilinear between them.
+// lib/volume/voxel_grid.h -- values at integer coordinates of a grid, interpolated trilinearly.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// A place of a grid, or a block of it: whole numbers.
+/// Integer coordinates of a voxel, or of a block.
 using GridIndex = std::array<std::int32_t, 3>;
 
 /// 8^3 voxels as OpenVDB's leaves have them: the value of voxel origin + (x, y, z) is values[64 x + 8 y + z].
@@ -20,38 +20,39 @@ struct VoxelBlock {
   std::array<float, 512> values{};
 };
 
-/// Values >= 0 at integer places of index space, 0 at all that no block holds. Between the places trilinear, as
-/// OpenVDB's BoxSampler and Cycles read them: at half-way between two voxels the mean of both.
+/// Values >= 0 at integer coordinates of index space; 0 outside all blocks. Between the coordinates values are
+/// trilinear, as in OpenVDB's BoxSampler and in Cycles: half-way between two voxels the value is their mean.
 ///
-/// Blocks with nothing but zeros cost four bytes. Each other block keeps a copy of its neighbours' first layer (9^3
-/// values), so that the eight values of a look-up lie in one array.
+/// A block of zeros costs four bytes. Each other block also stores its neighbours' first layers (9^3 values), so that
+/// the eight values of a look-up lie in one array.
 class VoxelGrid {
  public:
   static constexpr int kBlock = 8;
-  /// Most entries of the table of blocks, empty ones included: 256 MB.
+  /// Largest number of entries in the table of blocks, empty ones included: 256 MB.
   static constexpr std::uint64_t kMostBlocks = std::uint64_t(1) << 26;
 
   VoxelGrid() = default;
-  /// Blocks in any order, each origin once. Throws std::invalid_argument for an origin that is no multiple of 8 or
-  /// beyond 2^28, a value that is not finite or below 0, two blocks at one place, more than kMostBlocks in the box
-  /// around them.
+  /// Blocks in any order, each origin once. Throws std::invalid_argument for an origin that is not a multiple of 8 or
+  /// beyond 2^28, a value that is negative or not finite, two blocks with one origin, or more than kMostBlocks in the
+  /// bounding box.
   explicit VoxelGrid(const std::vector<VoxelBlock>& blocks);
 
   bool empty() const { return bricks_.empty(); }
   /// Value of one voxel.
   float voxel(const GridIndex& at) const;
-  /// Value at a place of index space.
+  /// Value at a position of index space.
   float at(Vec3 place) const;
-  /// Least and greatest voxel (inclusive) of the blocks that are not empty; lower > upper if all are.
+  /// Smallest and largest voxel (inclusive) of the blocks that are not empty; lower > upper if all are empty.
   const GridIndex& lower() const { return lower_; }
   const GridIndex& upper() const { return upper_; }
-  /// Index-space box outside which at() is 0: from one before the first voxel above 0 to one behind the last.
+  /// Index-space box outside which at() is 0: from one before the first voxel above 0 to one after the last.
   Box3d support() const;
-  /// Greatest value that at() has in a box of index space (both ends belong to it). Looks at each voxel.
+  /// Largest value of at() in a closed box of index space. Visits each voxel.
   float largest(const Box3d& box) const;
   float largest() const { return largest_; }
   std::size_t byte_count() const;
-  /// Hash of all voxels above 0 with their places. Equal content has an equal hash, however it is cut into blocks.
+  /// Hash of all voxels above 0 with their coordinates. Equal content gives an equal hash, however it is cut into
+  /// blocks.
   const std::string& hash() const { return hash_; }
 
  private:
@@ -62,8 +63,8 @@ class VoxelGrid {
   std::uint32_t brick(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
   GridIndex first_block_{}, block_count_{};
-  std::vector<std::uint32_t> table_;  ///< by block, z fastest
-  std::vector<float> bricks_;         ///< kBrickSize for each, z fastest
+  std::vector<std::uint32_t> table_;  ///< brick number by block, z fastest
+  std::vector<float> bricks_;         ///< kBrickSize values for each brick, z fastest
   GridIndex lower_{1, 1, 1}, upper_{0, 0, 0};
   Box3d support_;
   float largest_ = 0;

@@ -6,7 +6,7 @@ namespace tempolux {
 namespace {
 
 constexpr int kGrid = 32;
-constexpr double kJump = 0.25;  // of the picture's width
+constexpr double kJump = 0.25;  // share of the picture's width
 
 bool within(const std::optional<RasterPoint>& at, const FrameCamera& camera) {
   return at && at->x >= 0 && at->y >= 0 && at->x < camera.width() && at->y < camera.height();

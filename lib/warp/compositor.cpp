@@ -6,14 +6,14 @@
 namespace tempolux {
 namespace {
 
-/// a += w (b - c), over a stride, which is a multiple of 8. Sums are written so: equal colours give their bits,
-/// whatever the weights.
+/// a += w (b - c), over a stride, which is a multiple of 8. With differences equal colours keep their bits, whatever
+/// the weights.
 void add_difference(float* a, float w, const float* b, const float* c, std::size_t stride) {
   for (std::size_t i = 0; i < stride; i += 8)
     for (std::size_t j = 0; j < 8; ++j) a[i + j] += w * (b[i + j] - c[i + j]);
 }
 
-/// The weighted mean of a key's pixels.
+/// The weighted mean of the colours of a key's pixels.
 void mean_of(const KeyFrame& key, const Taps& taps, std::size_t stride, float* mean) {
   const float* first = key.colour(taps.pixel[0]);
   std::copy_n(first, stride, mean);
@@ -26,7 +26,7 @@ void mean_of(const KeyFrame& key, const Taps& taps, std::size_t stride, float* m
 Compositor::Compositor(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options)
     : target_(target), keys_(keys), options_(options), stride_(keys[0].view->key().stride()) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    // Nearness in time, linear between two keys: each counts by how far away the other one is.
+    // Weight by distance in time, linear between two keys: each key's weight is the other key's distance over the sum.
     const double other = keys.size() < 2 ? 1 : keys[1 - k].frames_away, sum = keys.size() < 2 ? 1 : both_away();
     nearness_[k] = float(sum > 0 ? other / sum : 0.5);
     stays_[k] = !keys[k].cut_off && keys[k].view->same_camera();
@@ -47,8 +47,9 @@ void Compositor::start(ComposedPixel& pixel) const {
   pixel.missing = pixel.undersampled = pixel.resampled = false;
 }
 
-/// A pixel around which key and target show the same at the same place is the key's to the bit, edges and all.
-bool Compositor::stands(std::size_t p, const KeyView& view) const {
+/// True if the pixel can be copied from the key to the bit: target and key show the same at the same place in the pixel
+/// and its neighbours.
+bool Compositor::shows_the_same(std::size_t p, const KeyView& view) const {
   const SeenSurfaces &here = *target_.seen, &there = view.key().seen();
   const int x = int(p % std::size_t(here.width)), y = int(p / std::size_t(here.width));
   for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, here.height - 1); ++ny)
@@ -62,22 +63,22 @@ bool Compositor::stands(std::size_t p, const KeyView& view) const {
   return true;
 }
 
-bool Compositor::take_what_stands(std::size_t p, ComposedPixel& pixel) const {
-  int standing = 0;
+bool Compositor::copy_unmoved(std::size_t p, ComposedPixel& pixel) const {
+  int unmoved = 0;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
-    if (!stays_[k] || !stands(p, *keys_[k].view)) continue;
+    if (!stays_[k] || !shows_the_same(p, *keys_[k].view)) continue;
     const float* colour = keys_[k].view->key().colour(p);
     std::copy_n(colour, stride_, pixel.of_key[k].begin());
     pixel.parts[k] = 1;
-    // a + w (b - a): equal keys give their bits.
+    // a + w (b - a): equal keys keep their bits.
     for (std::size_t c = 0; c < stride_; ++c)
-      pixel.colour[c] = standing == 0 ? colour[c] : pixel.colour[c] + nearness_[k] * (colour[c] - pixel.colour[c]);
-    ++standing;
+      pixel.colour[c] = unmoved == 0 ? colour[c] : pixel.colour[c] + nearness_[k] * (colour[c] - pixel.colour[c]);
+    ++unmoved;
   }
-  return standing > 0;
+  return unmoved > 0;
 }
 
-/// Weights of the keys that show point i; false: none does.
+/// Computes the weights of the keys that show point i; false if no key shows it.
 bool Compositor::weigh(const LookedUp& points, std::size_t i, ComposedPixel& pixel,
                        std::array<float, 2>& weight) const {
   bool sharp = false, any = false;
@@ -100,7 +101,7 @@ bool Compositor::weigh(const LookedUp& points, std::size_t i, ComposedPixel& pix
 
 void Compositor::centre(std::size_t p, const LookedUp& points, std::size_t i, ComposedPixel& pixel) const {
   start(pixel);
-  if (take_what_stands(p, pixel)) return;
+  if (copy_unmoved(p, pixel)) return;
   pixel.resampled = true;
   std::array<float, 2> weight{};
   if (!weigh(points, i, pixel, weight)) {
@@ -118,7 +119,7 @@ void Compositor::centre(std::size_t p, const LookedUp& points, std::size_t i, Co
 
 void Compositor::mean(std::size_t p, const LookedUp& points, ComposedPixel& pixel) const {
   start(pixel);
-  if (take_what_stands(p, pixel)) return;
+  if (copy_unmoved(p, pixel)) return;
   pixel.resampled = true;
   for (float* sums : {pixel.colour.data(), pixel.square.data(), pixel.of_key[0].data(), pixel.of_key[1].data()})
     std::fill_n(sums, stride_, 0.0f);

@@ -1,4 +1,4 @@
-// lib/warp/compositor.h -- what the keys together give for a pixel.
+// lib/warp/compositor.h -- composes a target pixel from the keys.
 #pragma once
 
 #include <array>
@@ -9,39 +9,39 @@
 
 namespace tempolux {
 
-/// What the keys give for one pixel.
+/// The composed colour of one pixel.
 struct ComposedPixel {
   alignas(32) std::array<float, kMostChannels> colour;                 ///< composed
-  alignas(32) std::array<std::array<float, kMostChannels>, 2> of_key;  ///< by each key alone
-  alignas(32) std::array<float, kMostChannels> square;  ///< of several positions: mean square of what they show
-  std::array<int, 2> parts{};                           ///< how many positions it has given
+  alignas(32) std::array<std::array<float, kMostChannels>, 2> of_key;  ///< from each key alone
+  alignas(32) std::array<float, kMostChannels> square;  ///< mean of the squared colour over several positions
+  std::array<int, 2> parts{};                           ///< by key: number of positions the key has given
   std::array<LookUp, 2> failed{LookUp::found, LookUp::found};
-  bool missing = false;  ///< a position that no key gives
+  bool missing = false;  ///< true if no key shows one of the positions
   bool undersampled = false, resampled = false;
 };
 
 /// Points of the target, looked up in all keys.
 struct LookedUp {
-  WantedPoints wanted;  ///< count, at, face: the caller's
+  WantedPoints wanted;  ///< count, at and face are set by the caller
   std::array<FoundPoints, 2> found;
 };
 
 class Compositor {
  public:
-  /// All references outlive this.
+  /// All references must outlive this object.
   Compositor(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options);
 
   void look_up(LookedUp& points) const;
-  /// Pixel p of the one position points[i], its centre.
+  /// Composes pixel p from one position, its centre, which is points[i].
   void centre(std::size_t p, const LookedUp& points, std::size_t i, ComposedPixel& pixel) const;
-  /// Pixel p as the mean of all positions.
+  /// Composes pixel p as the mean of all positions.
   void mean(std::size_t p, const LookedUp& points, ComposedPixel& pixel) const;
 
  private:
   double both_away() const { return keys_[0].frames_away + keys_[1].frames_away; }
   void start(ComposedPixel& pixel) const;
-  bool stands(std::size_t p, const KeyView& view) const;
-  bool take_what_stands(std::size_t p, ComposedPixel& pixel) const;
+  bool shows_the_same(std::size_t p, const KeyView& view) const;
+  bool copy_unmoved(std::size_t p, ComposedPixel& pixel) const;
   bool weigh(const LookedUp& points, std::size_t i, ComposedPixel& pixel, std::array<float, 2>& weight) const;
   void add(const float* colour, float* sum) const;
 

@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-/// Where points are in the neighbouring frame.
+/// Finds the points of this frame in a neighbouring frame.
 class Neighbour {
  public:
   Neighbour(const SceneView& here, const NeighbourView& there)
@@ -25,7 +25,8 @@ class Neighbour {
     match_surfaces();
   }
 
-  /// The point in the neighbour's camera space; nothing if it is not there. Infinitely far: its direction.
+  /// The point in the neighbour's camera space; nothing if the point does not exist there. For a point at infinity, its
+  /// direction.
   std::optional<Vec3d> follow(std::size_t pixel, Vec3d at) const {
     const std::uint32_t object = here_.seen().object[pixel];
     if (object == kNoObject) return still_.direction(at);
@@ -48,7 +49,7 @@ class Neighbour {
   const FrameCamera& camera() const { return *there_.camera; }
 
  private:
-  /// Surfaces of this frame by those of the other: the same rank among those of the same node.
+  /// Assigns surfaces of this frame to those of the other: equal rank among the surfaces of one node.
   void match_surfaces() {
     std::map<std::uint32_t, std::vector<const Surface*>> by_node;
     for (const Surface& surface : there_.frame->surfaces) by_node[surface.node].push_back(&surface);

@@ -1,4 +1,5 @@
-// lib/warp/flow_of_view.h -- pixel flow of a view, from the scene at its frame and at the two around it.
+// lib/warp/flow_of_view.h -- computes the pixel flow of a view from the scene at its frame and at the two neighbouring
+// frames.
 #pragma once
 
 #include "lib/image/pixel_flow.h"
@@ -13,12 +14,12 @@ struct NeighbourView {
   const FrameCamera* camera = nullptr;
 };
 
-/// Flow as formats/flow/flow.md has it. Points of rigid objects follow the object's transform in double precision,
-/// those of deforming ones their triangle's corners; what is infinitely far away turns with the camera. fps: frames per
+/// Flow as in formats/flow/flow.md. Points of rigid objects follow the object's transform in double precision; points
+/// of deforming objects follow their triangle's corners; points at infinity turn with the camera. fps: frames per
 /// second.
 PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const NeighbourView& previous, double fps);
 
-/// Degrees per second of a point seen in directions a and b (camera space) one frame apart.
+/// Angular speed, degrees per second, of a point seen in directions a and b (camera space) one frame apart.
 double angular_speed(Vec3d a, Vec3d b, double fps);
 
 }  // namespace tempolux

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// Rows of a row-vector matrix as an affine transform of column vectors.
+/// Converts a row-vector matrix to an affine transform of column vectors.
 Affine affine_from(const std::array<double, 16>& m) {
   Affine affine;
   for (std::size_t i = 0; i < 3; ++i) affine.row[i] = {m[i], m[4 + i], m[8 + i]};
@@ -17,7 +17,7 @@ Affine affine_from(const std::array<double, 16>& m) {
   return affine;
 }
 
-/// A column of a row-vector matrix: what its component makes of (x, y, z, 1).
+/// One column of a row-vector matrix: the linear form of (x, y, z, 1) that gives this component.
 struct Form {
   Vec3d factors;
   double shift = 0;
@@ -25,7 +25,7 @@ struct Form {
 
 Form column(const std::array<double, 16>& m, std::size_t c) { return {{m[c], m[4 + c], m[8 + c]}, m[12 + c]}; }
 
-/// The same form of points that `from` brings here first.
+/// The form of points that `from` transforms first.
 Form after(const Form& form, const Affine& from) {
   const Vec3d& f = form.factors;
   return {from.row[0] * f.x + from.row[1] * f.y + from.row[2] * f.z, dot(f, from.translation) + form.shift};
@@ -41,7 +41,7 @@ FrameCamera::FrameCamera(const std::array<double, 16>& world_to_camera, const st
   const Form x = after(column(world_to_ndc, 0), world_from_camera_);
   const Form y = after(column(world_to_ndc, 1), world_from_camera_);
   Form w = after(column(world_to_ndc, 3), world_from_camera_);
-  // What is 0 in exact arithmetic is made 0: w is z, or a constant.
+  // Rounding errors become exact zeros: w is z, or a constant.
   const double scale = std::max({std::abs(w.factors.x), std::abs(w.factors.y), std::abs(w.factors.z)});
   const bool flat = !(scale > 1e-6 * std::abs(w.shift));
   if (flat) w.factors = {};
@@ -70,7 +70,7 @@ FrameCamera::FrameCamera(const std::array<double, 16>& world_to_camera, const st
 }
 
 Vec3d FrameCamera::solve(RasterPoint at, double depth) const {
-  // (x . p + x_shift) = at.x (w . p + w_shift), and the same for y, with p.z = depth.
+  // Solves (x . p + x_shift) = at.x (w . p + w_shift), and the same for y, with p.z = depth.
   const double a = x_.x - at.x * w_.x, b = x_.y - at.x * w_.y;
   const double c = y_.x - at.y * w_.x, d = y_.y - at.y * w_.y;
   const double e = at.x * (w_.z * depth + w_shift_) - x_.z * depth - x_shift_;

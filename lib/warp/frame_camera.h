@@ -1,4 +1,4 @@
-// lib/warp/frame_camera.h -- the camera of a frame, from its standard attributes: points to pixels and back.
+// lib/warp/frame_camera.h -- a frame's camera from its standard EXR attributes: projects points to pixels and back.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@
 
 namespace tempolux {
 
-/// Where a point is in a picture.
+/// A position in a picture.
 struct RasterPoint {
   double x = 0, y = 0;  ///< pixels, y down; pixel centres at +0.5
 };
 
 /// A camera with a picture size. Camera space is that of the EXR attribute worldToCamera: +x right, +y up, +z into the
-/// picture, so z is the channel Z. The projection may be any that maps lines to lines: perspective, orthographic,
+/// picture, so z is the channel Z. Any projection that maps lines to lines is allowed: perspective, orthographic,
 /// shifted.
 class FrameCamera {
  public:
-  /// From worldToCamera and worldToNDC as formats/frames/frames.md has them. Throws std::invalid_argument if either
-  /// cannot be undone.
+  /// From worldToCamera and worldToNDC as in formats/frames/frames.md. Throws std::invalid_argument if either is not
+  /// invertible.
   FrameCamera(const std::array<double, 16>& world_to_camera, const std::array<double, 16>& world_to_ndc, int width,
               int height);
 
@@ -31,49 +31,50 @@ class FrameCamera {
   int height() const { return height_; }
   const Affine& camera_from_world() const { return camera_from_world_; }
   const Affine& world_from_camera() const { return world_from_camera_; }
-  /// World space; of an orthographic camera some point on the plane that depth is counted from.
+  /// World space. For an orthographic camera, some point of the plane from which depth is counted.
   Vec3d eye() const { return world_from_camera_.translation; }
 
-  /// Nothing if the point (camera space) is not in front of a perspective camera.
+  /// Position of a point (camera space). Nothing if the point is not in front of a perspective camera.
   std::optional<RasterPoint> project(Vec3d point) const {
     const double w = dot(w_, point) + w_shift_;
     if (!(w > 0)) return std::nullopt;
     return RasterPoint{(dot(x_, point) + x_shift_) / w, (dot(y_, point) + y_shift_) / w};
   }
-  /// The same; not a number if the point is not in front.
+  /// The same; NaN if the point is not in front.
   RasterPoint project_or_nan(Vec3d point) const {
     const double w = dot(w_, point) + w_shift_, known = w > 0 ? w : NAN;
     return {(dot(x_, point) + x_shift_) / known, (dot(y_, point) + y_shift_) / known};
   }
-  /// Where what lies infinitely far away in this direction (camera space) is seen.
+  /// Position of a point at infinity in this direction (camera space).
   std::optional<RasterPoint> project_direction(Vec3d direction) const {
     const double w = dot(w_, direction);
     if (!(w > 0)) return std::nullopt;
     return RasterPoint{dot(x_, direction) / w, dot(y_, direction) / w};
   }
-  /// The point (camera space) that is seen at `at` in this depth.
+  /// The point (camera space) at position `at` and this depth.
   Vec3d unproject(RasterPoint at, double depth) const {
     if (!axes_apart_) return solve(at, depth);
     const double w = w_.z * depth + w_shift_;
     return {(at.x * w - x_.z * depth - x_shift_) * per_x_, (at.y * w - y_.z * depth - y_shift_) * per_y_, depth};
   }
-  /// The direction (camera space, z = 1) of what a perspective camera sees there.
+  /// The direction (camera space, z = 1) in which a perspective camera sees the position.
   Vec3d direction(RasterPoint at) const { return unproject(at, 1); }
 
-  /// Depth does not shrink what is seen.
+  /// True if distant objects look as large as close ones.
   bool orthographic() const { return w_.z == 0; }
-  /// Area of surface that a pixel shows, m^2 up to a factor of this picture alone: point and normal in camera space.
-  /// With d the distance, c the cosine to the normal and g the angle to the axis it is d^2 cos^3 g / c = z^3 / |n . p|.
+  /// Area of the surface that a pixel shows, m^2 times a constant of this picture. Point and normal are in camera
+  /// space. With distance d, cosine c to the normal and angle g to the axis, the area is d^2 cos^3 g / c = z^3 / |n .
+  /// p|.
   double area_of_pixel(Vec3d point, Vec3d normal) const {
     const double area = pixel_width_ * pixel_width_;
     if (orthographic()) return area / std::max(std::abs(normal.z), 1e-3);
     return area * point.z * point.z * point.z / std::max(std::abs(dot(normal, point)), 1e-3 * length(point));
   }
-  /// |n . r| of a surface, both in camera space, r the unit vector of the ray.
+  /// |n . r| of a surface, in camera space; r is the unit vector of the ray.
   double facing(Vec3d point, Vec3d normal) const {
     return orthographic() ? std::abs(normal.z) : std::abs(dot(normal, point)) / length(point);
   }
-  /// Width of a pixel at depth 1 (perspective) or at any (orthographic), m.
+  /// Width of a pixel, m: at depth 1 (perspective) or at any depth (orthographic).
   double pixel_width() const { return pixel_width_; }
 
   bool operator==(const FrameCamera&) const = default;
@@ -87,12 +88,12 @@ class FrameCamera {
   Vec3d x_, y_, w_;
   double x_shift_ = 0, y_shift_ = 0, w_shift_ = 0;
   double pixel_width_ = 0;
-  bool axes_apart_ = false;  ///< x and y of the raster come from x and y alone: no solving
+  bool axes_apart_ = false;  ///< raster x depends on x and depth alone, y on y and depth, so unproject need not solve
   double per_x_ = 0, per_y_ = 0;
 };
 
-/// The camera that a frame says it was seen by. Throws InputError, beginning with `name`, that says which attribute is
-/// missing or cannot be undone.
+/// The camera from a frame's attributes. Throws InputError, beginning with `name`, if an attribute is missing or not
+/// invertible.
 FrameCamera camera_of(const Image& image, const std::string& name);
 
 }  // namespace tempolux

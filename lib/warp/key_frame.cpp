@@ -34,7 +34,7 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
   for (const auto& [channel_name, channel] : channels) names_.push_back(channel_name);
   stride_ = (names_.size() + 7) / 8 * 8;
   colour_ = std::make_unique_for_overwrite<float[]>(image.pixel_count() * stride_);
-  constexpr std::size_t kTogether = 256;  // pixels whose colours stay in the first-level cache
+  constexpr std::size_t kTogether = 256;  // pixels whose colours fit into the first-level cache
   parallel_chunks(image.pixel_count(), 16 * kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t first = begin; first < end; first += kTogether) {
       const std::size_t last = std::min(first + kTogether, end);

@@ -5,8 +5,8 @@
 namespace tempolux {
 namespace {
 
-/// Pixels from a pixel's centre within which a position is that pixel: interpolation could change it by less than a
-/// thousandth of its difference to its neighbour, and what stands keeps its bits.
+/// Distance in pixels from a pixel's centre within which a position counts as the centre. Interpolation could change
+/// the colour by less than a thousandth of the difference to the neighbour, and unmoved pixels keep their bits.
 constexpr double kSamePixel = 1e-3;
 
 }  // namespace
@@ -14,7 +14,7 @@ constexpr double kSamePixel = 1e-3;
 KeyView::KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target,
                  const ObjectMotions& key_from_target)
     : key_(key), camera_(camera), target_(target), motions_(key_from_target), same_camera_(camera == target) {
-  // Composed in double, camera to camera: the difference of the cameras is taken before any point is added to it.
+  // Composed camera to camera, in double: world coordinates may be large, the difference of two cameras is small.
   still_ = same_camera_ ? Affine{} : camera.camera_from_world() * target.world_from_camera();
   if (motions_.all_still()) return;
   moved_.resize(motions_.count(), still_);
@@ -73,7 +73,7 @@ void KeyView::place_one(const WantedPoints& wanted, std::size_t i, Places& place
   places.face[i] = {infinite ? INFINITY : float(there.z), point.object, point.normal};
   places.facing[i] = places.magnification[i] = 1;
   if (infinite) return;
-  Vec3d normal{0, 0, 1};  // in the key's camera space; if none is known, towards the camera
+  Vec3d normal{0, 0, 1};  // in the key's camera space; if unknown, towards the camera
   if (length2(point.normal) > 0) {
     if (moves && motions_.of(point.object).kind == ObjectMotion::Kind::moved)
       places.face[i].normal = Vec3(normalize(motions_.of(point.object).other_from_here.normal(Vec3d(point.normal))));
@@ -117,7 +117,7 @@ LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolera
   const int x0 = int(std::floor(cx)), y0 = int(std::floor(cy));
   const float fx = float(cx - x0), fy = float(cy - y0);
   const int nx = x0 + (fx >= 0.5f), ny = y0 + (fy >= 0.5f);
-  const bool inside = nx < width && ny < height;  // nx, ny >= 0 as the position lies in the picture
+  const bool inside = nx < width && ny < height;  // nx and ny are not negative, since the position lies in the picture
   const bool nearest_shows = inside && shows(index(nx, ny));
 
   if (nearest_shows && key_.whole(index(nx, ny))) {
@@ -127,7 +127,7 @@ LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolera
       taps.weight[0] = 1;
       return LookUp::found;
     }
-    // The other three are among the 8 around a whole pixel: they show its face.
+    // The other three pixels are neighbours of a whole pixel, so they show its face.
     if (x0 >= 0 && y0 >= 0 && x0 + 1 < width && y0 + 1 < height) {
       const std::uint32_t p = index(x0, y0), q = p + std::uint32_t(width);
       if (key_.four_whole(p)) {

@@ -1,4 +1,4 @@
-// lib/warp/look_up.h -- finding in a key what another picture shows.
+// lib/warp/look_up.h -- finds in a key the points that another picture shows.
 #pragma once
 
 #include <array>
@@ -10,59 +10,60 @@
 
 namespace tempolux {
 
-/// What became of a look-up; of several keys' failures the last of this list says most.
+/// Result of a look-up. If several keys fail, the cause that comes last in this list is reported.
 enum class LookUp : std::uint8_t {
   found,
-  outside,    ///< not within the key's picture, or behind it
-  hidden,     ///< within it, but the key shows something else there
-  deforming,  ///< of a surface that has another shape in the key
-  edge,       ///< the key shows it, but only in pixels that show other surfaces too
+  outside,    ///< outside the key's picture, or behind its camera
+  hidden,     ///< inside the picture, but the key shows another surface there
+  deforming,  ///< on a surface that has another shape in the key
+  edge,       ///< the key shows the point only in pixels that show other surfaces, too
 };
 
-/// Pixels of a key whose colours, so weighted, stand for a point. Weights sum to 1.
+/// Weighted pixels of a key whose mean colour is the point's colour. Weights sum to 1.
 struct Taps {
   int count;
   std::array<std::uint32_t, 4> pixel;
   std::array<float, 4> weight;
 };
 
-/// Points of the target that are looked for together; arrays by point.
+/// Points of the target that are looked up together; arrays by point.
 struct WantedPoints {
   static constexpr std::size_t kMost = 64;
   std::size_t count = 0;
-  std::array<RasterPoint, kMost> at;  ///< where in the target
-  std::array<FacePoint, kMost> face;  ///< what it shows there
-  std::array<double, kMost> x, y, z;  ///< the point in its camera's space; if it is infinitely far away, its direction
+  std::array<RasterPoint, kMost> at;  ///< position in the target picture
+  std::array<FacePoint, kMost> face;  ///< the surface there
+  std::array<double, kMost> x, y, z;  ///< the point in the target camera's space; its direction, if it is at infinity
   std::array<double, kMost> area;     ///< FrameCamera::area_of_pixel() there
-  bool infinite = false;              ///< is any of them
+  bool infinite = false;              ///< true if any of the points is at infinity
 
-  /// Fills x, y, z, area and infinite from at and face, as `camera` sees them.
+  /// Computes x, y, z, area and infinite from `at` and `face`.
   void place(const FrameCamera& camera);
 };
 
-/// What a key has of them.
+/// Results of a look-up in one key; arrays by point.
 struct FoundPoints {
   std::array<LookUp, WantedPoints::kMost> result;
   std::array<Taps, WantedPoints::kMost> taps;
   std::array<float, WantedPoints::kMost>
-      magnification;  ///< area of target pixels per pixel of the key (docs/methods/formulas.md)
+      magnification;  ///< area of target pixels per area of the key's pixel (docs/methods/formulas.md)
 };
 
-/// One key as a target camera at another frame makes use of it.
+/// One key, seen from a target camera at another frame.
 class KeyView {
  public:
-  /// camera: the key's own, or more exactly than its attributes say. key_from_target: motions of objects from the
-  /// target's frame to the key's. All references outlive this.
+  /// `camera` is the key's own camera, or a more exact one than its attributes give. `key_from_target`: motions of
+  /// objects from the target's frame to the key's. All references must outlive this object.
   KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target,
           const ObjectMotions& key_from_target);
 
-  /// Colour for points of the target. Only
-  /// whole pixels that show the same face count. Between pixel centres colour is linear; where some of the four around
-  /// are of no use, the others share their weight; where all are, the nearest of the 16 around is taken. A position
-  /// within kSamePixel of a centre is that pixel.
+  /// Finds the colour of target points. Only whole pixels that show the same face count. Between pixel centres colour
+  /// is interpolated linearly. If some of the four surrounding pixels do not count, the others share their weight; if
+  /// none counts, the nearest of the 16 surrounding pixels that does is taken. A position within kSamePixel of a centre
+  /// is that pixel.
   void find(const WantedPoints& wanted, FoundPoints& found) const;
 
-  /// Does the target see this pixel exactly as the key did: same camera, and the object where it was?
+  /// True if the target sees this object's pixels exactly as the key does: the same camera, and the object has not
+  /// moved.
   bool sees_the_same(std::uint32_t object) const {
     return same_camera_ && motions_.of(object).kind == ObjectMotion::Kind::still;
   }
@@ -71,25 +72,26 @@ class KeyView {
   const ObjectMotions& motions() const { return motions_; }
 
  private:
-  /// Where points are in the key, and what should be seen there.
+  /// Positions of points in the key, and the surfaces expected there.
   struct Places {
-    std::array<double, WantedPoints::kMost> x, y;  ///< raster; not a number: not in front of the camera
+    std::array<double, WantedPoints::kMost> x, y;  ///< raster position; NaN: not in front of the camera
     std::array<double, WantedPoints::kMost> magnification, facing;
-    std::array<FacePoint, WantedPoints::kMost> face;  ///< in the key's world
+    std::array<FacePoint, WantedPoints::kMost> face;  ///< in world space at the key's frame
   };
-  /// Looks up points that stand still and are not infinitely far away, all together.
+  /// Places static points that are not at infinity, all together.
   void place(const WantedPoints& wanted, Places& places) const;
-  /// Looks up any point.
+  /// Places any point.
   void place_one(const WantedPoints& wanted, std::size_t i, Places& places) const;
-  /// At a position of the key, counted in pixels from the centre of its first: of pixels that show the face.
+  /// Gathers the pixels that show the face around a position of the key, counted in pixels from the first pixel's
+  /// centre.
   LookUp gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const;
 
   const KeyFrame& key_;
   const FrameCamera &camera_, &target_;
   const ObjectMotions& motions_;
   bool same_camera_;
-  Affine still_;               ///< key camera from target camera, of what does not move
-  std::vector<Affine> moved_;  ///< the same by object, of those that do; empty: nothing moves
+  Affine still_;               ///< key camera from target camera, for static objects
+  std::vector<Affine> moved_;  ///< the same by object, for moving ones; empty: nothing moves
 };
 
 }  // namespace tempolux

@@ -8,9 +8,9 @@
 namespace tempolux {
 namespace {
 
-// Beyond which a difference is not noise: three, and half as much again as interpolated pixels share their neighbours'
-// noise: linear interpolation leaves each (2/3)^2 of the variance on the average, and the mean over all of them the
-// whole.
+// Number of standard errors above which a difference is not noise: 3, times 1.5 since interpolated pixels share the
+// noise of their neighbours. Linear interpolation leaves each pixel (2/3)^2 of the variance on average, but the
+// variance of a mean over many pixels stays.
 constexpr double kStandardErrors = 3 * 1.5;
 constexpr int kReach = 2;  // pixels on each side over which light is averaged
 
@@ -57,7 +57,7 @@ void Masking::mark_seen_gloss(const std::vector<std::vector<float>>& colour, std
   const auto dark = [](const std::vector<float>& plane) {
     return std::all_of(plane.begin(), plane.end(), [](float e) { return e == 0; });
   };
-  if (std::all_of(error.begin(), error.end(), dark)) return;  // nothing shines: no viewer is asked
+  if (std::all_of(error.begin(), error.end(), dark)) return;  // a black picture has no visible error
   GlossInDoubt doubt{{}, std::move(error), std::vector<std::uint8_t>(why.size())};
   for (std::size_t c = 0; c < 3; ++c) doubt.picture[c] = colour[std::size_t(rgb_[c])];
   for (std::size_t p = 0; p < why.size(); ++p) doubt.counted[p] = why[p] == 0;
@@ -89,7 +89,8 @@ std::size_t Masking::edge_positions(Spread at, std::size_t count, Spread around)
   for (std::size_t c = 0; c < 3; ++c) {
     const double mean = double(at.mean[c]);
     const double off =
-        std::max(0.0, double(around.square[c]) - 2 * mean * double(around.mean[c]) + mean * mean);  // of the centres
+        // variance of the colours at the pixel centres
+        std::max(0.0, double(around.square[c]) - 2 * mean * double(around.mean[c]) + mean * mean);
     variance = std::max({variance, double(at.square[c]) - mean * mean, off * kCentres / kBeyond / (2 * double(count))});
   }
   if (!(variance > 0)) return 1;
@@ -118,12 +119,12 @@ void Masking::mark_changed_light(const std::array<std::vector<float>, 2>& light,
       for (int x = 0; x < width; ++x) {
         const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
         if (!given(0, p) || !given(1, p)) {
-          // One key alone: nothing says that its light is that of this frame.
+          // A pixel from one key alone: nothing shows that its light is the target frame's light.
           for (std::size_t k = 0; k < keys_.size(); ++k)
             if (given(k, p) && keys_[k].light_may_differ) why[p] |= formats::why_changed_light;
           continue;
         }
-        // Mean and standard error of the difference over the pixels around that both keys give.
+        // Mean and standard error of the keys' difference over the surrounding pixels that both keys give.
         double sum = 0, squares = 0, both = 0;
         int n = 0;
         for (int ny = std::max(y - kReach, 0); ny <= std::min(y + kReach, height - 1); ++ny)

@@ -1,4 +1,4 @@
-// lib/warp/masking.h -- which warped pixels are not to be trusted although keys give them.
+// lib/warp/masking.h -- decides which warped pixels must be traced although keys give them.
 #pragma once
 
 #include <array>
@@ -13,46 +13,46 @@ namespace tempolux {
 
 class Masking {
  public:
-  /// All references outlive this.
+  /// All references must outlive this object.
   Masking(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options,
           const std::vector<std::string>& names);
 
-  /// Causes of a pixel that is not the same in target and key: slow, specular. candidates: of both keys, or nullptr if
-  /// one does not give the whole pixel.
+  /// Causes (slow, specular) to mask a pixel that is not the same in target and key. `first` and `second` are the
+  /// candidates of both keys; nullptr if a key does not give the whole pixel.
   std::uint32_t of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const;
 
-  /// Is what the keys differ by in specular light to be judged by WarpTarget::see_gloss?
+  /// True if WarpTarget::see_gloss decides about differences between the keys' specular light.
   bool judges_gloss() const { return specular_[0] >= 0 && keys_.size() == 2 && target_.see_gloss != nullptr; }
-  /// R, G, B of what they differ by.
+  /// Writes the keys' difference in specular light as R, G, B.
   void note_gloss(const float* first, const float* second, std::array<float, 3>& error) const {
     for (std::size_t c = 0; c < 3; ++c) error[c] = first[specular_[c]] - second[specular_[c]];
   }
-  /// Masks pixels where a viewer would see it.
+  /// Masks pixels in which a viewer would see the error of specular light.
   void mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error,
                        std::vector<std::uint32_t>& why) const;
-  /// Do the keys agree about a pixel that is composed of several surfaces?
+  /// True if the keys agree about a pixel that is composed of several surfaces.
   bool edge_agrees(const float* first, const float* second) const;
 
-  /// Mean and mean square of what is seen at several positions.
+  /// Mean and mean square of the colours at several positions.
   struct Spread {
     std::array<float, 3> mean{}, square{};  ///< R, G, B
   };
   Spread spread(const float* mean, const float* square) const;
-  /// At how many positions a pixel composed of several surfaces must be known for its error to be
-  /// WarpOptions::edge_share of its light: n positions in rows and columns of their own err by sigma n^(-5/6)
-  /// (docs/pixels.md), sigma the standard deviation of what they show. `at`: of the `count` positions tried. What they
-  /// all missed has a share of 1 / (2 count), about; how it differs is estimated from the centres of the 3 x 3 pixels
-  /// `around`, of which an edge leaves a third on its other side.
+  /// Number of positions at which a pixel composed of several surfaces must be looked up so that its error is
+  /// WarpOptions::edge_share of its light. n positions that share no row and no column err by sigma n^(-5/6)
+  /// (docs/pixels.md), where sigma is the standard deviation of the colours. `at`: spread of the `count` positions
+  /// tried. A surface that all of them missed has a share of about 1 / (2 count); its difference in colour is estimated
+  /// from the centres of the 3 x 3 pixels (`around`), of which an edge leaves a third on its other side.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 
-  /// Does any key show what other light may shine upon? Else mark_changed_light() has nothing to do.
+  /// True if the light may differ on any surface that a key shows; else mark_changed_light() has nothing to do.
   bool light_may_differ() const;
-  /// Marks pixels around which the two keys' light differs, and those that one key alone gives if its light may not be
-  /// the target's. light: by key and pixel, luminance of what it gives; < 0: it does not give the whole pixel.
+  /// Masks pixels around which the two keys' light differs, and pixels given by one key alone whose light may differ
+  /// from the target's. `light`: by key and pixel, the luminance; < 0 if the key does not give the whole pixel.
   void mark_changed_light(const std::array<std::vector<float>, 2>& light, std::vector<std::uint32_t>& why) const;
 
   float luminance_of(const float* colour) const;
-  /// R, G, B of a colour.
+  /// Writes R, G, B of a colour.
   void note_light(const float* colour, std::array<float, 3>& rgb) const {
     for (std::size_t c = 0; c < 3; ++c) rgb[c] = colour[rgb_[c]];
   }
@@ -63,7 +63,7 @@ class Masking {
   const WarpTarget& target_;
   std::span<const WarpKey> keys_;
   const WarpOptions& options_;
-  std::array<int, 3> rgb_{-1, -1, -1}, specular_{-1, -1, -1};  ///< where the channels are; -1: absent
+  std::array<int, 3> rgb_{-1, -1, -1}, specular_{-1, -1, -1};  ///< indices of the channels; -1: absent
   float dark_ = 0;                                             ///< a tenth of the keys' mean luminance
 };
 

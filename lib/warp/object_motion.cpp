@@ -8,10 +8,10 @@
 namespace tempolux {
 namespace {
 
-/// Shapes count as the same if no vertex differs by more than this share of the shape's size: rounding to float32.
+/// Two shapes count as the same if no vertex differs by more than this share of the shape's size: rounding of float32.
 constexpr float kSameShape = 4e-6f;
 
-/// Is the shape `there` what `move` (scene space to scene space) makes of `here`?
+/// True if `move` (scene space to scene space) transforms the shape `here` into `there`.
 bool moved_alike(const Surface& here, const Surface& there, const Affine& move) {
   if (here.positions.size() != there.positions.size()) return false;
   Box3 box;
@@ -22,14 +22,14 @@ bool moved_alike(const Surface& here, const Surface& there, const Affine& move) 
   return true;
 }
 
-/// Surfaces by node, in the order in which the frame has them.
+/// Surfaces by node, in the frame's order.
 std::map<std::uint32_t, std::vector<const Surface*>> by_node(const SceneFrame& frame) {
   std::map<std::uint32_t, std::vector<const Surface*>> nodes;
   for (const Surface& surface : frame.surfaces) nodes[surface.node].push_back(&surface);
   return nodes;
 }
 
-/// Scene spaces of two segments may have different origins: the same transform, scene to scene.
+/// Converts a world transform to scene space; the scene spaces of two segments may have different origins.
 Affine in_scene_space(const Affine& world_to_world, Vec3d here_origin, Vec3d other_origin) {
   Affine move = world_to_world;
   move.translation = world_to_world.point(here_origin) - other_origin;
@@ -56,7 +56,7 @@ ObjectMotion motion_of(const std::vector<const Surface*>& here, const std::vecto
       if (!moved_alike(*here[s], *other[s], scene_move)) return false;
     return true;
   };
-  if (all_moved_by(Affine{})) return {Kind::still, {}};  // a skin holds it where it is, wherever its node goes
+  if (all_moved_by(Affine{})) return {Kind::still, {}};  // a skin keeps the vertices in place, wherever the node moves
   if (all_moved_by(move)) return {Kind::moved, move};
   return {Kind::deforming, {}};
 }

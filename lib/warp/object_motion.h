@@ -1,4 +1,4 @@
-// lib/warp/object_motion.h -- how each object of the scene is moved between two frames.
+// lib/warp/object_motion.h -- finds how each object of the scene moves between two frames.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,28 @@
 
 namespace tempolux {
 
-/// What happens to an object from one frame to another.
+/// The motion of an object from one frame to another.
 struct ObjectMotion {
   enum class Kind : std::uint8_t {
     still,      ///< its points stay where they are
-    moved,      ///< by one affine transform
-    deforming,  ///< each point by its own way (morph targets, skins, or a transform that cannot be undone)
-    absent,     ///< not there in the other frame
+    moved,      ///< moved by one affine transform
+    deforming,  ///< each point moves separately (morph targets, skins, or a transform that is not invertible)
+    absent,     ///< the object does not exist in the other frame
   } kind = Kind::still;
-  Affine other_from_here;  ///< world to world; the identity unless moved
+  Affine other_from_here;  ///< world to world; the identity unless `moved`
 };
 
-/// Motions of all objects between two frames of one scene, by id.object. Objects are moved by their nodes; a shape that
-/// deforms is `moved` (or still) between frames at which it has the same shape.
+/// Motions of all objects between two frames of one scene, by id.object. Objects move with their nodes. A deforming
+/// shape counts as `moved` or `still` between two frames at which it has the same shape.
 class ObjectMotions {
  public:
-  /// Nothing moves.
+  /// No object moves.
   ObjectMotions() = default;
   ObjectMotions(const SceneFrame& here, const SceneFrame& other);
 
-  /// An object that the scene does not have, and nothing (kNone), stand still.
+  /// Motion of an object. Objects that the scene does not have, and kNone, are still.
   const ObjectMotion& of(std::uint32_t object) const { return object < motions_.size() ? motions_[object] : still_; }
-  /// Objects from this number on are unknown.
+  /// Number of objects; objects from this number on are still.
   std::size_t count() const { return motions_.size(); }
   bool all_still() const { return all_still_; }
 

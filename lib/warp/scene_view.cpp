@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kTogether = 8;  // a packet of rays
+constexpr std::size_t kTogether = 8;  // rays in a packet
 
 }  // namespace
 
@@ -40,7 +40,8 @@ FacePoint SceneView::point_of(const Hit& hit, const Ray& ray) const {
   if (hit.surface == kNone) return {INFINITY, kNoObject, {}};
   SurfacePoint point = tracer_.surface_point(hit);
   const RayCone cone = view_.cone();
-  const SurfaceMaterial material(tracer_.frame(), point, cone.width + cone.spread * hit.t);  // bends the normal
+  // a normal map bends the normal
+  const SurfaceMaterial material(tracer_.frame(), point, cone.width + cone.spread * hit.t);
   const Vec3 normal = dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal;
   return {float(view_.depth(point.position)), point.object, normal};
 }

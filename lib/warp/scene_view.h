@@ -1,4 +1,4 @@
-// lib/warp/scene_view.h -- what a camera sees of the scene at a frame: at pixel centres and between them.
+// lib/warp/scene_view.h -- the surfaces that a camera sees at a frame, at pixel centres and between them.
 #pragma once
 
 #include <span>
@@ -12,22 +12,22 @@ namespace tempolux {
 
 class SceneView {
  public:
-  /// Both outlive this. Traces a ray through the centre of each pixel.
+  /// Traces a ray through the centre of each pixel. Both references must outlive this object.
   SceneView(const Tracer& tracer, const CameraView& view);
 
   const FrameCamera& camera() const { return camera_; }
   const SeenSurfaces& seen() const { return seen_; }
-  /// What was hit, by pixel.
+  /// The hits by pixel.
   const std::vector<Hit>& hits() const { return hits_; }
   const SceneFrame& frame() const { return tracer_.frame(); }
 
-  /// The same for any raster positions, points[i] of at[i].
+  /// The surfaces at any raster positions: points[i] belongs to at[i].
   void look(std::span<const RasterPoint> at, FacePoint* points) const;
 
-  /// One entry a pixel. 1: the material has a lobe that mirrors, shines or lets through.
+  /// One entry per pixel; 1: the material has a specular or transmitting lobe.
   std::vector<std::uint8_t> gloss() const;
 
-  /// Those of the groups Z, N and id that are named, with the bits of frame-render's data channels.
+  /// Adds the groups (Z, N, id) that are named, with the bits of frame-render's data channels.
   void add_channels(const std::vector<std::string>& groups, Image& image) const;
 
  private:

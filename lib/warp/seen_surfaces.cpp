@@ -9,13 +9,13 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNothingDepth = 1e10f;  // what Blender writes where nothing is
+constexpr float kNothingDepth = 1e10f;  // depth that Blender writes where no surface is
 
 FacePoint point_at(const SeenSurfaces& seen, std::size_t p) {
   return {seen.depth[p], seen.object_at(p), seen.normal_at(p)};
 }
 
-/// |n . r| of a surface seen at a raster position; 1 if its normal is not known.
+/// |n . r| of a surface seen at a raster position; 1 if its normal is unknown.
 float facing(const FrameCamera& camera, Vec3 normal, double x, double y) {
   if (!(length2(normal) > 0)) return 1;
   const Vec3 n = Vec3(camera.camera_from_world().direction(Vec3d(normal)));
@@ -29,10 +29,10 @@ std::string pixel_of(const std::string& name, const std::string& channel, std::s
          std::to_string(p / std::size_t(width)) + "): ";
 }
 
-/// N of a pixel with length 1, or 0: not known. Other programs filter normals, and write any length.
+/// A pixel's N with length 1; 0 if unknown. Other programs filter normals and write any length.
 Vec3 unit_normal(Vec3 n) {
   const float length2_of = length2(n);
-  if (std::abs(length2_of - 1) < 1e-3f) return n;  // ours: its bits
+  if (std::abs(length2_of - 1) < 1e-3f) return n;  // N from frame-render keeps its bits
   const Vec3d wide(n);
   const double size = length(wide);
   return size > 0 ? Vec3(wide / size) : Vec3{};
@@ -49,13 +49,13 @@ std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCame
       for (std::size_t x = 0; x < width; ++x, ++p)
         tolerance[p] = depth_tolerance(angle, facing(camera, seen.normal_at(p), double(x) + 0.5, double(y) + 0.5));
   });
-  // A bit for each neighbour that shows another face: right, and the three below.
+  // One bit for each neighbour that shows another face: right, and the three below.
   std::vector<std::uint8_t> ends(seen.pixel_count());
   parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t y = first, p = first * width; y < last; ++y)
       for (std::size_t x = 0; x < width; ++x, ++p) {
         const FacePoint here = point_at(seen, p);
-        // The larger tolerance of the two: the same answer from either side.
+        // The larger of the two tolerances, so that both directions give the same answer.
         const auto differs = [&](std::size_t q) {
           return !same_face(here, point_at(seen, q), std::max(tolerance[p], tolerance[q]));
         };

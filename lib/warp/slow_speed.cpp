@@ -6,9 +6,9 @@
 namespace tempolux {
 namespace {
 
-constexpr double kDrift = 0.15;      // degrees/s: an eye that rests still moves so fast over the picture
-constexpr double kUsefulBand = 0.9;  // of the display's highest frequency
-constexpr double kFastest = 80;      // degrees/s: beyond, eyes do not follow and see hardly anything
+constexpr double kDrift = 0.15;      // degrees/s: drift of a resting eye over the picture
+constexpr double kUsefulBand = 0.9;  // share of the display's highest frequency
+constexpr double kFastest = 80;      // degrees/s: faster patterns are not followed and hardly visible
 
 double sensitivity(double frequency, double speed) {
   constexpr double c0 = 1.14, c1 = 0.67, c2 = 1.7;
@@ -19,7 +19,7 @@ double sensitivity(double frequency, double speed) {
 }  // namespace
 
 double highest_visible_frequency(double retinal_speed) {
-  // Sensitivity falls from its peak on, below 1 at some multiple of it.
+  // Sensitivity falls above its peak and is below 1 at some multiple of the peak's frequency.
   double low = 45.9 / (2 * std::numbers::pi * 0.67 * (1.7 * retinal_speed + 2)), high = low;
   while (sensitivity(high, retinal_speed) > 1) high *= 2;
   for (int i = 0; i < 60; ++i) {
@@ -31,7 +31,8 @@ double highest_visible_frequency(double retinal_speed) {
 
 double slow_speed(double pixels_per_degree) {
   const double band = kUsefulBand * pixels_per_degree / 2;
-  double low = kDrift, high = kFastest;  // of an eye that does not follow, speed over the retina is that of the pattern
+  // For an eye that does not follow, the speed over the retina is the pattern's speed
+  double low = kDrift, high = kFastest;
   if (highest_visible_frequency(low) <= band) return kDrift;
   if (highest_visible_frequency(high) > band) return kFastest;
   for (int i = 0; i < 60; ++i) {

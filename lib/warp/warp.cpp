@@ -11,17 +11,17 @@
 namespace tempolux {
 namespace {
 
-/// Positions within a pixel that an edge is composed from: at first kParts, at most kMostParts where its surfaces
-/// differ much.
+/// Positions inside a pixel from which an edge is composed: kParts at first, up to kMostParts if its surfaces differ
+/// much.
 constexpr std::size_t kParts = 8, kMostParts = 64;
 
-/// The first n points, n a power of two, of n rows and n columns, each met once (Hammersley's points), n = 8 to 64.
+/// n positions (n a power of two from 8 to 64) with one in each of n rows and n columns: Hammersley's points.
 std::span<const RasterPoint> part_positions(std::size_t n) {
   static const auto all = [] {
     std::array<std::array<RasterPoint, kMostParts>, 4> sets{};
     for (std::size_t set = 0, count = kParts; set < sets.size(); ++set, count *= 2)
       for (std::size_t i = 0; i < count; ++i) {
-        std::size_t mirrored = 0;  // the bits of i from the last to the first
+        std::size_t mirrored = 0;  // the bits of i in reverse order
         for (std::size_t bit = 1; bit < count; bit *= 2) mirrored = 2 * mirrored + ((i & bit) != 0);
         sets[set][i] = {(double(i) + 0.5) / double(count), (double(mirrored) + 0.5) / double(count)};
       }
@@ -41,7 +41,7 @@ std::uint32_t why_missing(const ComposedPixel& pixel) {
   }
 }
 
-/// RGB as the float32 sum of the layers, in their order, where all of them are there; see frames.md 2.
+/// Recomputes RGB as the float32 sum of the layers, in their order, if all layers are there; see frames.md 2.
 class LayerSum {
  public:
   explicit LayerSum(const std::vector<std::string>& names) {
@@ -61,7 +61,7 @@ class LayerSum {
     for (const int part : parts_[c]) sum += colour[part];
     return sum;
   }
-  /// Do the layers make up all of RGB in every pixel of the key?
+  /// True if the layers sum up to RGB in every pixel of the key.
   bool complete_in(const KeyFrame& key) const {
     if (parts_[0].size() < 2) return false;
     for (std::size_t p = 0; p < key.seen().pixel_count(); ++p)
@@ -78,7 +78,7 @@ class LayerSum {
   std::array<std::vector<int>, 3> parts_;
 };
 
-/// Colours of consecutive pixels, on their way to arrays by channel.
+/// Colours of consecutive pixels, before they are stored by channel.
 struct Strip {
   std::array<std::array<float, kMostChannels>, WantedPoints::kMost> colour;
   std::array<std::array<std::array<float, kMostChannels>, WantedPoints::kMost>, 2> of_key;
@@ -89,7 +89,7 @@ struct Strip {
   }
 };
 
-/// One frame in the making.
+/// The state of warping one frame.
 class Warping {
  public:
   Warping(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options, WarpedFrame& frame)
@@ -133,7 +133,7 @@ class Warping {
   }
 
  private:
-  /// What the pixels' centres show. Pixels without an edge are that.
+  /// Composes pixels from their centres; pixels without an edge are finished.
   void centres(std::size_t first, std::size_t last, LookedUp& points, ComposedPixel& pixel, Strip& strip) {
     const SeenSurfaces& seen = *target_.seen;
     points.wanted.count = last - first;
@@ -156,7 +156,7 @@ class Warping {
     }
   }
 
-  /// A pixel composed of what is seen at several positions in it, as many as its surfaces differ much.
+  /// Composes a pixel with an edge from several positions; the more its surfaces differ, the more positions.
   void edge(std::size_t p, LookedUp& points, ComposedPixel& pixel) {
     const std::size_t x = p % width_, y = p / width_;
     const Masking::Spread around = spread_around(x, y);
@@ -180,7 +180,7 @@ class Warping {
     }
   }
 
-  /// Mean and mean square of the centres of the 3 x 3 pixels around.
+  /// Mean and mean square of the colours at the centres of the 3 x 3 pixels around.
   Masking::Spread spread_around(std::size_t x, std::size_t y) const {
     Masking::Spread spread;
     float n = 0;
@@ -198,8 +198,8 @@ class Warping {
     return spread;
   }
 
-  /// Is it to be traced, and why? count: of positions; known: enough of them. Layers are summed, and a key that does
-  /// not give the whole pixel is taken to give what was composed.
+  /// Decides whether the pixel is masked, and why. `count`: number of positions; `known`: they suffice. Sums the
+  /// layers. A key that does not give the whole pixel counts as if it gave the composed colour.
   void judge(std::size_t p, ComposedPixel& pixel, int count, bool known) {
     if (summed_) layers_.set(pixel.colour.data());
     std::array<const float*, 2> given{};
@@ -233,10 +233,10 @@ class Warping {
   LayerSum layers_;
   Masking masking_;
   bool summed_ = false;
-  std::vector<std::uint8_t> edge_;             ///< 1: composed of several positions
-  std::vector<std::array<float, 3>> centres_;  ///< R, G, B of what each pixel's centre shows
+  std::vector<std::uint8_t> edge_;             ///< 1: composed from several positions
+  std::vector<std::array<float, 3>> centres_;  ///< R, G, B at each pixel's centre
   std::array<std::vector<float>, 3> gloss_;    ///< GlossInDoubt::error
-  std::array<std::vector<float>, 2> light_;    ///< by key, see Masking::mark_changed_light
+  std::array<std::vector<float>, 2> light_;    ///< by key; see Masking::mark_changed_light
 };
 
 }  // namespace

@@ -49,7 +49,7 @@ IDEAS = (
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
     Idea("more photons", "up to 16 times as many photon paths where few of them arrive", "photons",
-         (("lib/plan/decide.cpp", "look.paths = lights_.has_distant() && rough.places > 0 ?", "look.paths = rough.places > 1000000000 ?"),)),
+         (("lib/plan/decide.cpp", "lights_.has_distant() && rough.places > 0 ? photon_paths(", "rough.places > 1000000000 ? photon_paths("),)),
     Idea("points by importance", "points lie where cameras look", "points",
          (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
     Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",

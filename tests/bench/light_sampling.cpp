@@ -68,7 +68,7 @@ void measure(const char* name, const LightScene& scene, bool last) {
     auto start = std::clock();
     for (const Query& q : queries) {
       LightSample s;
-      if (lights.sample(q.point, {0, 0, 1}, q.u_choice, q.u, s)) sum += double(s.radiance.r * s.wi.z);
+      if (lights.sample(q.point, {0, 0, 1}, q.u_choice, q.u, s)) sum += double(s.facing_irradiance.r * s.wi.z);
     }
     best = std::min(best, seconds_since(start) / kCount);
     if (lights.slots()[0].kind != EmissionSlot::Kind::triangle) continue;

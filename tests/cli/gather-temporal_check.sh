@@ -203,7 +203,6 @@ refuses 'hold all of the light' temporal --frame 1 --points low.0001.irradpoints
 refuses 'hold the low part of the light alone' temporal --frame 1 $points --previous divided/s.0000.radsamples -o refused --cache refused.c
 refuses 'give the whole' temporal --frame 1 --points low.0001.irradpoints -o refused --cache refused.c
 refuses 'a run without --high' temporal --frame 1 $points --high-samples 10 -o refused --cache refused.c
-refuses "is in the frame's points" temporal --frame 1 $points --dynamic d.photons -o refused --cache refused.c
 refuses 'several frames need a pattern' temporal --frames 0-1 --points low.####.irradpoints --high high.0000.irradpoints -o s.####.radsamples --cache c.####.irradcache
 refuses '0.5 not in' temporal --frame 1 $points --age-weight 0.5 -o refused --cache refused.c
 exit $failed

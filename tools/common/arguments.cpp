@@ -19,7 +19,7 @@ constexpr std::size_t kMaxFrames = 1'000'000;
   throw InputError("'" + std::string(text) + "': " + why);
 }
 
-/// Takes an integer off the front of `rest`.
+/// Reads an integer from the front of `rest`, and removes it.
 int take_frame(std::string_view& rest, std::string_view whole) {
   int value = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
@@ -51,11 +51,12 @@ void append_item(std::string_view item, std::string_view whole, std::vector<int>
     bad(whole, "more than 10^6 frames");
   for (int i = 0; i <= distance; i += others ? 1 : step) {
     if (!others || i % step != 0) frames.push_back(last >= first ? first + i : first - i);
-    if (distance - i < step && !others) break;  // i + step could pass the end of int
+    if (distance - i < step && !others) break;  // i + step could exceed the range of int
   }
 }
 
-/// Digits of a printf pattern at pattern[at] == '%': its end and minimal width; end == at if it is none.
+/// The number field of a printf pattern at pattern[at] == '%': its end and minimal width; end == at if there is no
+/// field.
 struct Field {
   std::size_t end = 0;
   int width = 0;
@@ -80,7 +81,7 @@ std::string digits_of(int frame, int width, bool zeros) {
   return text;
 }
 
-/// value of "12", "1.5" times `factor`, exactly; false if it is not whole or reaches 2^63.
+/// Computes "12" or "1.5" times `factor` exactly; false if the result is not whole or reaches 2^63.
 bool scaled(std::string_view digits, std::uint64_t factor, std::uint64_t& value) {
   constexpr std::uint64_t kLimit = std::uint64_t{1} << 63;
   const std::size_t point = digits.find('.');

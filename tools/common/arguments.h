@@ -1,4 +1,4 @@
-// tools/common/arguments.h -- what stands on a command line, as values: frames, names, counts, sizes, lists.
+// tools/common/arguments.h -- parses values on a command line: frames, names, counts, sizes, lists.
 #pragma once
 
 #include <array>
@@ -13,16 +13,16 @@ namespace tempolux::tools {
 /// Throws InputError if malformed, empty, beyond +-10^8, or of more than 10^6 frames.
 std::vector<int> parse_frames(const std::string& text);
 
-/// A name with the frame put in: a run of n '#' is the number in at least n digits, "%d", "%4d" and "%04d"
-/// are as in printf, "%%" is a per cent sign. All patterns of the name are filled, those of folders too; a
-/// name without one comes back as it is. Throws InputError for any other use of '%'.
+/// A name with the frame number inserted: a run of n '#' becomes the number with at least n digits; "%d", "%4d" and
+/// "%04d" are as in printf; "%%" is a per cent sign. All patterns in the name are replaced, also in folders; a name
+/// without a pattern stays. Throws InputError for any other use of '%'.
 std::string frame_name(const std::string& pattern, int frame);
 bool has_frame_pattern(const std::string& pattern);
 
 /// "250000", "10k", "1.5M", "1G": decimal factors 10^3, 10^6, 10^9; must come out whole and below 2^63.
 /// Throws InputError.
 std::uint64_t parse_count(const std::string& text);
-/// The shortest text that parse_count turns into `count`.
+/// The shortest text that parse_count converts to `count`.
 std::string format_count(std::uint64_t count);
 /// "512", "64KiB", "1.5GiB"; K, M, G, T and KB, MB, GB, TB are 1024^n too. Throws InputError.
 std::uint64_t parse_bytes(const std::string& text);
@@ -33,8 +33,8 @@ void parse_size(const std::string& text, int& width, int& height);
 /// "0.2,0.3,0.5" or "1" for all three: finite, from 0 to 1e30. Throws InputError.
 std::array<float, 3> parse_color(const std::string& text);
 
-/// "direct,caustic": words of `allowed`, at least one, none twice; returned in the order of `allowed`, so
-/// that equal sets are equal lists. Throws InputError naming the unknown word and the words there are.
+/// A list such as "direct,caustic": words of `allowed`, at least one, none twice. Returned in the order of `allowed`,
+/// so that equal sets are equal lists. Throws InputError naming the unknown word and the allowed words.
 std::vector<std::string> parse_list(const std::string& text, const std::vector<std::string>& allowed);
 
 }  // namespace tempolux::tools

@@ -1,4 +1,4 @@
-// What a run says about itself to later runs: its line of history and its make rule.
+// tools/common/history.cpp -- a run's line of history, and its rule for make.
 #include <algorithm>
 #include <string>
 
@@ -7,7 +7,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// A word as a shell would need it; control characters, which could fake lines, become '?'.
+/// Quotes a word for a shell; control characters, which could fake lines, become '?'.
 std::string quoted(const std::string& word) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -30,7 +30,7 @@ std::string without_folder(const std::string& name) {
   return name.substr(begin, end + 1 - begin);
 }
 
-/// The longest common name: "photons" of "-n,--photons".
+/// The longest name of an option: "photons" for "-n,--photons".
 std::string option_name(const CLI::Option& option) {
   if (!option.get_lnames().empty()) return "--" + option.get_lnames().front();
   return "-" + option.get_snames().front();
@@ -42,7 +42,7 @@ bool has_name(const CLI::Option& option, const std::string& name) {
 
 bool is_positional(const CLI::Option& option) { return option.get_lnames().empty() && option.get_snames().empty(); }
 
-/// A file name in a make rule.
+/// Escapes a file name for a rule of make.
 std::string make_word(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -59,7 +59,7 @@ std::string Tool::history_line(std::optional<int> frame) const {
   std::string line = "tempolux " TEMPOLUX_VERSION " " + state_->name;
   const auto add = [&](const CLI::Option& option) {
     for (const std::string& value : option.results()) {
-      const bool named = has_frame_pattern(value) || value.find("%%") != std::string::npos;  // "10%" is no name
+      const bool named = has_frame_pattern(value) || value.find("%%") != std::string::npos;  // "10%" is not a pattern
       line += " " + quoted(without_folder(frame && named ? frame_name(value, *frame) : value));
     }
   };

@@ -1,13 +1,13 @@
-// tools/common/keep_memory.h -- memory that is freed is used again.
+// tools/common/keep_memory.h -- keeps freed memory for later allocations.
 #pragma once
 
 #include <malloc.h>
 
 namespace tempolux::tools {
 
-/// Arrays of the size of pictures come and go in tools that work on one picture after the other. By default each is
-/// given back to the system and comes anew, cleared, page by page: half of the time of such a tool
-/// (docs/methods/st-filter.md 8). From here on the process keeps what it has. GNU's malloc; another one ignores it.
+/// Keeps freed memory in the process from now on. Tools that process pictures one after the other allocate and free
+/// arrays of a picture's size. By default malloc returns each array to the system, which clears its pages again: half
+/// of such a tool's time (docs/methods/st-filter.md 8). Affects GNU's malloc only.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   ::mallopt(M_MMAP_MAX, 0);

@@ -1,4 +1,4 @@
-// tools/common/manual.cpp
+// tools/common/manual.cpp -- writes man pages, Markdown pages and bash completion.
 #include "tools/common/manual.h"
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// Text as roff prints it unchanged: backslash and hyphen escaped, no control line.
+/// Escapes text for roff: backslashes, hyphens and control lines.
 std::string roff(const std::string& text) {
   std::string out = !text.empty() && (text[0] == '.' || text[0] == '\'') ? "\\&" : "";
   for (const char c : text) {
@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// Options, positional ones apart, that --help shows.
+/// The options that --help shows, without (or only) positional arguments.
 std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional) {
   std::vector<const CLI::Option*> options;
   for (const CLI::Option* option : app.get_options())
@@ -64,7 +64,7 @@ std::string entry(const CLI::Option& option) {
   return ".TP\n" + head + "\n" + what_it_does(option) + "\n";
 }
 
-/// "Trace photons." as it stands after a name: "trace photons".
+/// "Trace photons." as it follows a name: "trace photons".
 std::string as_part_of_a_line(std::string text) {
   if (!text.empty() && text.back() == '.') text.pop_back();
   if (!text.empty()) text[0] = char(std::tolower(static_cast<unsigned char>(text[0])));
@@ -101,7 +101,7 @@ std::string see_also(const char* tools) {
   return out + "\n";
 }
 
-/// Text as Markdown prints it unchanged; names of pages of this tree become links, from docs/tools.
+/// Escapes text for Markdown; names of pages of this tree become links from docs/tools.
 std::string markdown(const std::string& text) {
   std::string out, word;
   const auto end_word = [&] {
@@ -141,7 +141,7 @@ std::string markdown_entry(const CLI::Option& option) {
   return "| " + head + " | " + text + " | " + (preset.empty() ? "" : "`" + preset + "`") + " |\n";
 }
 
-/// The words of "UNITS:{raw,spec}".
+/// The words of an option of type "UNITS:{raw,spec}".
 std::string words_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{'), close = type.find('}');

@@ -1,4 +1,4 @@
-// tools/common/manual_texts.cpp -- what the man pages say beyond the options.
+// tools/common/manual_texts.cpp -- texts of the man pages besides options.
 #include "tools/common/manual.h"
 
 namespace tempolux::tools {
@@ -6,15 +6,12 @@ namespace {
 
 constexpr ManualText kTexts[] = {
     {"scene-plan",
-     "Reads a glTF scene and a range of frames, evaluates them, and says which stages of the pipeline have work and by "
-     "which fact, which frames share their light, and what has changed since the last time: make includes its "
-     "plan.mk.\n"
+     "Reads a glTF scene and a range of frames, evaluates them, and decides which stages of the pipeline have work and "
+     "why, which frames share their light, and what has changed since the last run. make includes its plan.mk.\n"
      "\n"
-     "State files are rewritten only when their content differs, so that moving the camera traces no photon again. "
-     "Pilots of some "
-     "tenths of a second decide how indirect light is found (--indirect), and where something moves how far a frame's "
-     "light follows "
-     "from that of what stands (--moving).",
+     "State files are rewritten only when their content differs, so moving the camera traces no photon again. Pilots "
+     "of some tenths of a second decide how indirect light is found (--indirect) and which parts of a frame's light "
+     "follow from the static light (--moving).",
      "plan/plan.mk: make variables (formats/plan/plan.md)\n"
      "plan/plan.json: the same for people and scripts\n"
      "state/*: view files, majorants, what was decided for each segment, and what files of others looked like",
@@ -22,15 +19,12 @@ constexpr ManualText kTexts[] = {
      "less plan/plan.json",
      "photon-trace irradcache-build frame-render"},
     {"photon-trace",
-     "Starts photon paths at the lights of a scene and records where they arrive, with flux, normal, object and kind "
-     "of "
-     "path. All that leaves the lights is stored, absorbed or escaped, and the file's end says how much of each.\n"
+     "Starts light paths at the lights of a scene and records where they arrive, with flux, normal, object and kind. "
+     "All emitted flux is stored, absorbed or escapes, and the end of the file has the sum of each.\n"
      "\n"
-     "--map static traces the scene without what moves in the frame's segment, once for all its frames; --map dynamic "
-     "then "
-     "traces what movers change at a frame, with sign, of the paths they touch alone. Static and dynamic map together "
-     "are "
-     "the global one, photon by photon (docs/methods/dynamic.md).",
+     "--map static traces the scene without movers, once for all frames of a segment. --map dynamic then traces the "
+     "touched paths of a frame and writes the signed change that the movers make. The sum of static and dynamic map is "
+     "the global map, photon by photon (docs/methods/dynamic.md).",
      ".photons: photons in blocks with checksums (formats/photons/photons.md)\n"
      ".paths: which paths movers can touch, and when (formats/paths/paths.md)",
      "photon-trace room.glb --frame 12 --photons 200k --kinds caustic,indirect -o 12.photons\n"
@@ -51,13 +45,11 @@ constexpr ManualText kTexts[] = {
      "p.0012.photons --refine 30k -o more.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
-     "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "
-     "brightness: cells of a grid keep so much light as --energy or --limit allows, and of every record there the same "
-     "share goes to the high part, which can then be sampled like lamps. Or by kind of path: --kind. Cells are added "
-     "up "
-     "without rounding, so neither the order of the records nor blocks nor threads matter. Photons from a pipe are "
-     "kept "
-     "in a temporary file beside the low part, as they are read twice.",
+     "Divides the light of photons or irradiance points into two files whose sum is the whole to the last bit. By "
+     "brightness: cells of a grid keep light up to a limit (--energy or --limit), and the same share of every record "
+     "in a cell goes to the high part, which can then be sampled explicitly, like lights. Or by kind of light path: "
+     "--kind. Cells are summed without rounding, so the order of records, blocks and threads do not matter. Photons "
+     "from a pipe are read twice, so they are stored in a temporary file next to the low part.",
      ".photons: read and written (formats/photons/photons.md)\n"
      ".irradpoints: read and written (formats/irradpoints/irradpoints.md)",
      "photonmap-split 12.irradpoints --low low.irradpoints --high high.irradpoints\n"
@@ -80,23 +72,18 @@ constexpr ManualText kTexts[] = {
      "photon-trace frame-render tempolux-info"},
     {"gather-temporal",
      "Gathers indirect light in records whose samples of incoming radiance are kept from frame to frame. The first "
-     "frame of a "
-     "segment is gathered as irradcache-build does it. In a later one a sample is traced again only where something "
-     "moves in its way, or "
-     "where the light of the surface it met is another; some more get a new direction, drawn by age; all others take "
-     "what the "
-     "irradiance points of the frame say. New records are placed where those kept do not reach.\n"
+     "frame of a segment is gathered as irradcache-build does it. In later frames a sample is traced again only if "
+     "something moves across its ray, or if the light of the surface it hit has changed; some further samples, drawn "
+     "by age, get a new direction; all others follow the irradiance points of the frame. New records are placed where "
+     "the kept ones do not reach.\n"
      "\n"
-     "A range of frames keeps the samples in memory and writes those of each frame; --resume goes on after the last "
-     "one that is whole. Each frame alone, "
-     "with --previous, gives the same files. Points of all frames must be made with the same options: those on what "
-     "stands have the "
-     "same places then.\n"
+     "A range of frames keeps the samples in memory and writes those of each frame; --resume continues after the last "
+     "frame whose files are complete. Single frames with --previous give the same files. Points of all frames must be "
+     "made with the same options: points on static surfaces then have the same places.\n"
      "\n"
      "gather-temporal density SCENE --photons FILE -o FILE makes light textures from the photons of many frames "
-     "instead: each element of the surfaces takes "
-     "those of as many frames before and after as its light stands still (docs/methods/density.md). Its options: "
-     "gather-temporal density --help.",
+     "instead: each element of the surfaces uses as many frames before and after as its light stays constant "
+     "(docs/methods/density.md). Its options: gather-temporal density --help.",
      ".irradpoints: light on all surfaces, read (formats/irradpoints/irradpoints.md)\n"
      ".radsamples: records with their samples (formats/radsamples/radsamples.md)\n"
      ".irradcache: the records of a frame (formats/irradcache/irradcache.md)\n"
@@ -115,14 +102,12 @@ constexpr ManualText kTexts[] = {
      "frame-render room.glb --frames 0-47 --size 640x360 --meshirrad d.####.meshirrad -o f.####.exr",
      "irradcache-build frame-render tempolux-info"},
     {"frame-render",
-     "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
-     "cache or estimated from photons, caustics from photons; or everything is path traced, which is unbiased and "
-     "slow. What no file tells paths find: without photons they look for caustics, where a record is missing one ray "
-     "of "
-     "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too. Light that "
-     "one sample "
-     "alone claims for its pixel is spread over the pixels around, without a change of any layer's sum, but in path "
-     "tracing.",
+     "Traces the pixels of a frame. Direct light is sampled at the lights; indirect light is read from an irradiance "
+     "cache or estimated from photons, caustic light from photons. With path tracing camera paths find all light, "
+     "which is unbiased and slow. Camera paths find light that the files lack: without photons they find caustic "
+     "light; without a record a ray over the hemisphere finds indirect light and ends at the points, if there are any. "
+     "Points alone suffice, too. Light that a single sample found is spread over the surrounding pixels without "
+     "changing any layer's sum; path tracing does not spread.",
      "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
      "# Caustic light where something moves: of what stands, and what movers change.\n"
@@ -139,13 +124,10 @@ constexpr ManualText kTexts[] = {
      "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",
      "irradcache-build aqm-compare tempolux-info"},
     {"ibr-warp",
-     "Makes a frame from one or two rendered key frames: each of its pixels looks up in the keys the surface point "
-     "that it shows, and takes "
-     "their colour there, layer by layer. Pixels that the keys do not give, or not well enough, are named in a mask "
-     "with the cause; "
-     "frame-render traces them over the warped frame. It also writes where each pixel goes to in the next frame and "
-     "came from in the "
-     "previous one.",
+     "Makes a frame from one or two rendered key frames: each of its pixels looks up its surface point in the keys and "
+     "takes their colour there, layer by layer. A mask names pixels that the keys do not give well enough, with the "
+     "cause; frame-render traces them over the warped frame. ibr-warp also writes where each pixel moves in the next "
+     "frame and came from in the previous one.",
      "key .exr: frames with RGBA, Z, N, id and better with the layer specular (formats/frames/frames.md)\n"
      "flow .exr: pixel flow (formats/flow/flow.md)\n"
      "mask .exr: pixels to trace, with causes (formats/mask/mask.md)",
@@ -158,23 +140,20 @@ constexpr ManualText kTexts[] = {
      "ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr",
      "frame-render aqm-compare tempolux-info"},
     {"st-filter",
-     "Takes noise out of a frame of few samples: planes are fitted to the light around each pixel, in its own frame "
-     "and in frames before and after "
-     "along the pixel flow. A pixel counts if it sees the same surface (id.object, Z, N); in large windows it counts "
-     "as far as its value agrees. Two halves of the "
-     "light, LAYER plus and less LAYER.noise (frame-render --channels halves), say what each candidate errs by; where "
-     "the samples err less they stay. Where albedo is "
-     "there light alone is filtered, not textures. Emission and specular are filtered by what mirrors and glass show "
-     "(channels seen). With coverage edges are put "
-     "together from the surfaces that a pixel sees.\n"
+     "Removes noise from a frame with few samples: planes are fitted to the light around each pixel, in its own frame "
+     "and in neighbouring frames along the pixel flow. Another pixel counts if it shows the same surface (id.object, "
+     "Z, N); in large windows its weight also depends on how well its value agrees. Two halves of the light, LAYER "
+     "plus and minus LAYER.noise (frame-render --channels halves), give the error of each candidate; where the "
+     "unfiltered samples have less error they stay. With albedo only light is filtered, not textures. Emission and "
+     "specular light are filtered by the surfaces in mirrors and glass (channels seen). With coverage edges are "
+     "composed from the surfaces that a pixel shows.\n"
      "\n"
-     "Frames of other programs get halves from their variance, or from what neighbours differ by where they have "
+     "Frames of other programs get halves from their variance, or from the differences of neighbours if they have "
      "albedo; without either they stay as they are.\n"
      "\n"
      "st-filter mesh SCENE --photons FILE -o FILE makes light textures instead: photons are counted by small triangles "
-     "of the surfaces and smoothed "
-     "along them; frame-render --meshirrad reads them (docs/methods/light_textures.md). Its options: st-filter mesh "
-     "--help.",
+     "of the surfaces and smoothed along the surfaces; frame-render --meshirrad reads them "
+     "(docs/methods/light_textures.md). Its options: st-filter mesh --help.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
      "flow .exr: where pixels go and came from (formats/flow/flow.md)\n"
      ".meshirrad: written by st-filter mesh (formats/meshirrad/meshirrad.md)",
@@ -188,11 +167,10 @@ constexpr ManualText kTexts[] = {
      "frame-render room.glb --frame 12 --size 640x360 --meshirrad 12.meshirrad -o 12.exr",
      "frame-render aqm-compare tempolux-info"},
     {"volume-compose",
-     "Puts the smoke of a scene into a frame: photons in media (photon-trace --kinds ...,volume) are summed in cells "
-     "and smoothed, "
-     "each pixel's rays march through the smoke to the surfaces of the scene, and lamps are sampled on the way. The "
-     "base is a "
-     "frame of the same scene, whose light frame-render has dimmed already, or any frame with a channel Z.",
+     "Adds the smoke of a scene to a frame: photons in media (photon-trace --kinds ...,volume) are summed in cells and "
+     "filtered, each pixel's rays march through the smoke to the surfaces of the scene, and lights are sampled on the "
+     "way. The base is a frame of the same scene, whose light frame-render has already attenuated, or any frame with a "
+     "channel Z.",
      "frame .exr: read and written, with layer volume (formats/frames/frames.md)\n"
      ".photons: read (formats/photons/photons.md)\n"
      ".vdb: density of the smoke, OpenVDB",

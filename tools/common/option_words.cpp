@@ -1,4 +1,4 @@
-// tools/common/option_words.cpp
+// tools/common/option_words.cpp -- texts and limits of options.
 #include "tools/common/option_words.h"
 
 #include <cmath>
@@ -13,15 +13,15 @@ std::string text_of(double value) {
   return text;
 }
 
-/// CLI11 joins type and checks: "INT:1 to 512", "TEXT:{raw,spec}".
+/// The part of the type that comes before the checks in CLI11's "INT:1 to 512" or "TEXT:{raw,spec}".
 std::string before_colon(const std::string& type) { return type.substr(0, type.find(':')); }
 std::string after_colon(const std::string& type) {
   const std::size_t colon = type.find(':');
   return colon == std::string::npos ? "" : type.substr(colon + 1);
 }
 
-/// A check for numbers of [least, most], or of (least, most] if `above`. Its words are made when somebody reads them:
-/// every start of a tool sets up dozens of checks.
+/// Checks for numbers in [least, most], or in (least, most] if `above`. Its text is made on demand, since every start
+/// of a tool creates dozens of checks.
 class NumberCheck : public CLI::Validator {
  public:
   NumberCheck(double least, double most, bool above) {
@@ -66,7 +66,7 @@ std::string positional_words(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_positional() || option->get_group().empty()) continue;
     const std::string type = option->get_type_name();
-    const bool named = type.find(' ') != std::string::npos;  // what is typed, instead of a type
+    const bool named = type.find(' ') != std::string::npos;  // a placeholder is shown instead of a type
     const std::string word = named ? type : option->get_single_name() + (option->get_expected_max() > 1 ? "..." : "");
     words += option->get_required() ? " " + word : " [" + word + "]";
   }

@@ -1,4 +1,4 @@
-// The options all tools share, and the look of --help and --version.
+// tools/common/options.cpp -- the options that all tools share, and the layout of --help and --version.
 #include <link.h>
 #include <stdlib.h>
 
@@ -16,7 +16,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// An option that is text on the command line and a value after `parse`; errors name the option.
+/// Adds an option whose text `parse` converts to a value; errors name the option.
 CLI::Option* parsed_option(CLI::App& app, const std::string& names, const std::string& help,
                            const std::string& shown_default, const std::function<void(const std::string&)>& parse) {
   const std::string first = names.substr(0, names.find(','));
@@ -69,7 +69,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-/// Collects the file behind each loaded shared object, but for those of the C and C++ run time.
+/// Collects the file of each loaded shared object, except those of the C and C++ runtime.
 int add_library(dl_phdr_info* info, std::size_t, void* names) {
   if (!info->dlpi_name || info->dlpi_name[0] != '/') return 0;
   std::error_code error;
@@ -110,7 +110,7 @@ void Tool::environment_options() {
       throw CLI::RequiresError(option->get_name(), "--environment or --environment-color");
   };
   CLI::Option* strength = app.add_option("--environment-strength", common.environment_strength,
-                                         "factor of its radiance: what a pixel of value 1 emits, W/m^2/sr")
+                                         "radiance of a map's pixel of value 1, W/m^2/sr")
                               ->type_name("X")
                               ->capture_default_str()
                               ->check(number_between(0, 1e30));
@@ -180,7 +180,7 @@ void Tool::common_options(unsigned flags) {
         ->type_name("FRAMES");
   if (flags & uses_camera)
     app.add_option("--camera", common.camera,
-                   "name of the camera; auto: the first of the scene, or one that frames what it holds")
+                   "name of the camera; auto: the scene's first camera, or a new one that shows the whole content")
         ->type_name("NAME")
         ->capture_default_str();
   if (flags & uses_seed) {
@@ -247,7 +247,7 @@ void Tool::common_options(unsigned flags) {
       ->type_name("FILE");
   left_out(app.add_flag("--no-clobber", common.no_clobber, "refuse to replace an output that exists"));
   left_out(app.add_flag("-q,--quiet", common.quiet, "no words but errors"));
-  left_out(app.add_flag("-v,--verbose", common.verbose, "say what is done and how long it took"));
+  left_out(app.add_flag("-v,--verbose", common.verbose, "report each phase and its time"));
 }
 
 CLI::Option* Tool::output_option(std::string& path, const std::string& help, const std::string& names) {

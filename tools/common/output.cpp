@@ -29,19 +29,20 @@ namespace tempolux::tools {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr std::size_t kDirectBytes = std::size_t{1} << 14;  ///< pieces from this size on are not copied first
+/// Pieces of at least this size are written without copying.
+constexpr std::size_t kDirectBytes = std::size_t{1} << 14;
 
-/// ".NAME.tmp.HOST." in the folder of `target`; a name too long for the file system is cut and hashed.
+/// ".NAME.tmp.HOST." in the folder of `target`; a name too long for the file system is shortened and hashed.
 std::filesystem::path temporary_stem(const std::filesystem::path& target, const std::string& host) {
   std::string name = target.filename().string();
-  constexpr std::size_t kDigits = 20;  // of the longest process id
+  constexpr std::size_t kDigits = 20;  // digits of the longest process id
   const std::size_t rest = std::strlen("..tmp..") + host.size() + kDigits;
   if (name.size() + rest > NAME_MAX) name = name.substr(0, 64) + "~" + hash_hex(name);
   return target.parent_path() / ("." + name + ".tmp." + host + ".");
 }
 
-/// Temporaries in a folder as this process first found it. Listed once: a run of many outputs would spend time
-/// that grows with their square.
+/// Temporary files in a folder when this process first listed it. Listed once, since the time would otherwise grow with
+/// the square of the number of outputs.
 const std::vector<std::string>& temporaries_found(const std::string& folder) {
   static std::mutex mutex;
   static std::map<std::string, std::vector<std::string>> found;
@@ -55,7 +56,7 @@ const std::vector<std::string>& temporaries_found(const std::string& folder) {
   return entry->second;
 }
 
-/// Removes what runs that were killed left for the same target: same host, no such process, lock free.
+/// Removes temporary files of killed runs for the same target: the same host, no such process, lock free.
 void remove_stale(const std::filesystem::path& stem) {
   const std::string folder = stem.has_parent_path() ? stem.parent_path().string() : ".";
   const std::string prefix = stem.filename().string();
@@ -109,7 +110,7 @@ bool same_bytes(const std::string& a, const std::string& b) {
   return file_a.eof() && file_b.eof();
 }
 
-/// A file whatever its name.
+/// Identifies a file independent of its name.
 using FileId = std::pair<dev_t, ino_t>;
 
 std::optional<FileId> regular_file(const std::string& path) {
@@ -118,23 +119,22 @@ std::optional<FileId> regular_file(const std::string& path) {
   return FileId{status.st_dev, status.st_ino};
 }
 
-/// What this process reads, writes and has written: for the dependency file, for messages, against two outputs
-/// of one name and outputs that would take an input's place.
+/// All files that this process reads, writes and has written: for the dependency file, for messages, and to detect two
+/// outputs with one name, or an output that would replace an input.
 struct Ledger {
   struct Line {
     std::string path, target, temporary;
-    std::string key;  ///< target in one spelling
+    std::string key;  ///< the target's path in normal form
     std::optional<FileId> replaces;
     enum class Stage { open, committed, dropped } stage = Stage::open;
   };
   std::mutex mutex;
   std::vector<Line> lines;
-  std::set<std::string> open_keys;  ///< of the lines that are open
-  std::map<FileId, std::string>
-      to_be_replaced;                    ///< by the lines that are open: what stands under their names, and these
-  std::map<FileId, std::string> inputs;  ///< and their names
+  std::set<std::string> open_keys;               ///< of the outputs under construction
+  std::map<FileId, std::string> to_be_replaced;  ///< files that these outputs will replace, and their temporary files
+  std::map<FileId, std::string> inputs;          ///< input files and their names
 
-  /// Neither number is an input's for good: a file that is gone leaves it to another.
+  /// Checked when needed, since a removed file's id may be given to another file.
   void refuse_input(const FileId& id, const std::string& output) const {
     const auto input = inputs.find(id);
     if (input != inputs.end() && regular_file(input->second) == id)
@@ -154,7 +154,7 @@ struct Output::State : std::streambuf {
   std::string path, target, temporary_path;
   bool no_clobber = false;
   int file = -1;
-  std::optional<Temporary> temporary;  ///< absent: written in place
+  std::optional<Temporary> temporary;  ///< empty: the output is written in place
   std::vector<char> buffer;
   std::size_t ledger_line = 0;
   std::uint64_t bytes_written = 0;
@@ -198,7 +198,7 @@ struct Output::State : std::streambuf {
     struct stat status = {};
     if (stat(path.c_str(), &status) != 0) return open_temporary({});
     if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder; name a file");
-    // /dev/stdout may lead to a file that others hold open; /dev/shm is a folder of files like any other.
+    // /dev/stdout may lead to a file that other processes hold open; /dev/shm is a folder of files like any other.
     const bool of_the_system =
         (path.starts_with("/dev/") && !path.starts_with("/dev/shm/")) || path.starts_with("/proc/");
     if (!S_ISREG(status.st_mode) || of_the_system) return open_in_place();
@@ -226,7 +226,7 @@ struct Output::State : std::streambuf {
     temporary_path = stem.string() + std::to_string(getpid());
     enter_in_ledger();
     remove_stale(stem);
-    unlink(temporary_path.c_str());  // of a dead process that had our number
+    unlink(temporary_path.c_str());  // left by a dead process with the same id
     temporary.emplace(temporary_path);
     file = open(temporary_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0) {
@@ -234,7 +234,8 @@ struct Output::State : std::streambuf {
       temporary->release();
       fail(path, "cannot create", error);
     }
-    flock(file, LOCK_EX | LOCK_NB);  // tells others that we live; not every file system can
+    // Shows other processes that this one is running; not every file system supports locks.
+    flock(file, LOCK_EX | LOCK_NB);
     if (mode) fchmod(file, *mode);
   }
 
@@ -275,7 +276,7 @@ struct Output::State : std::streambuf {
     note(Ledger::Line::Stage::committed);
   }
 
-  /// All bytes are written (sync: on the disk) and the file is closed after this.
+  /// Writes all bytes (with `sync` to the disk) and closes the file.
   void finish_file(bool sync) {
     flush_buffer();
     if (sync && fsync(file) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
@@ -295,7 +296,7 @@ struct Output::State : std::streambuf {
     if (!sync) return;
     const std::string folder = std::filesystem::path(target).parent_path().string();
     const int handle = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle < 0) return;  // a folder that may be written but not read
+    if (handle < 0) return;  // the folder may be writable but not readable
     fsync(handle);
     close(handle);
   }

@@ -1,4 +1,4 @@
-// tools/common/output.h -- outputs that are either complete under their final name or not there at all.
+// tools/common/output.h -- outputs that are either complete under their final name or do not exist.
 #pragma once
 
 #include <cstddef>
@@ -9,44 +9,44 @@
 
 namespace tempolux::tools {
 
-/// An output under construction: a temporary name in the same folder (".NAME.tmp.HOST.PID"), created at
-/// once so that an unwritable place is noticed before the work; commit() syncs and renames. Destroyed
-/// uncommitted, by an exception or by a signal: removed. What a killed run left for the same target on
-/// this host is removed by the next one.
+/// An output under construction. A temporary file in the same folder (".NAME.tmp.HOST.PID") is created at once, so that
+/// an unwritable place is reported before the work; commit() syncs and renames it. An output that is not committed is
+/// removed, also after an exception or a signal. Files that a killed run left for the same target on this host are
+/// removed by the next run.
 ///
-/// "-" is standard output; binary data to a terminal is refused. Devices and named pipes are written in
-/// place; of a symbolic link the file it points to is replaced.
+/// "-" is standard output; binary data is not written to a terminal. Devices and named pipes are written in place; of a
+/// symbolic link the target is replaced.
 class Output {
  public:
   enum class Kind { binary, text };  ///< text may go to a terminal
 
-  /// Throws InputError (exit 2) if `path` is empty, a folder, a terminal, an output of this run already, a file that it
-  /// reads (protect_input), or exists under no_clobber; ResourceError (exit 3) if the file cannot be created.
+  /// Throws InputError (exit 2) if `path` is empty, a folder, a terminal, already an output of this run, or an input
+  /// (protect_input), or if it exists under no_clobber; ResourceError (exit 3) if the file cannot be created.
   explicit Output(const std::string& path, bool no_clobber = false, Kind kind = Kind::binary);
   ~Output();
   Output(Output&&) noexcept;
   Output& operator=(Output&&) noexcept;
 
-  const std::string& path() const;            ///< final name as given
+  const std::string& path() const;            ///< final name as the user gave it
   const std::string& temporary_path() const;  ///< write here; "/dev/stdout" for "-"
   bool is_stdout() const;
 
-  /// Writes bytes through a buffer of 1 MiB of its own; throws ResourceError with the reason.
+  /// Writes bytes through a buffer of 1 MiB; throws ResourceError with the reason.
   void write(const void* data, std::size_t size);
-  std::uint64_t written() const;  ///< bytes, by write() so far
+  std::uint64_t written() const;  ///< bytes passed to write() so far
   std::ostream& stream();         ///< the same buffer as a std::ostream; errors throw as above
 
-  /// What was written so far can be read at temporary_path(). Throws as write().
+  /// Makes all bytes so far readable at temporary_path(). Throws as write().
   void flush();
 
-  /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError, and InputError under
-  /// no_clobber if the name has been taken meanwhile. Nothing may be written after it.
+  /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError; InputError under no_clobber if the
+  /// name has been taken meanwhile. Nothing may be written afterwards.
   void commit();
-  /// commit() without the two fsyncs, which cost a disk's turn each: for many small files that are compared with what
-  /// they should hold and made again if a power cut took them.
+  /// commit() without the two fsyncs, which wait for the disk: for many small files that are checked later and made
+  /// again if a power cut destroyed them.
   void commit_unsynced();
-  /// commit(), unless a file of the same bytes is there already: that one stays untouched, its time stamp
-  /// too, so that make has nothing to do. Returns true if the file was replaced.
+  /// commit(), unless a file with the same bytes exists: that file and its time stamp stay, so that make has nothing to
+  /// do. Returns true if the file was replaced.
   bool commit_if_changed();
 
  private:
@@ -54,12 +54,12 @@ class Output {
   std::unique_ptr<State> state_;
 };
 
-/// Says that this run reads `path`: no output may take its place, under whatever name (InputError, whichever of the two
-/// comes first). Only regular files are looked at.
+/// Declares that this run reads `path`: no output may replace it under any name (InputError, whichever of the two comes
+/// first). Affects regular files only.
 void protect_input(const std::string& path);
-/// HOST in the names of temporary files: this machine.
+/// HOST in names of temporary files: identifies this machine.
 std::string temporary_host();
-/// Final names of the outputs committed by this process so far, in order; "-" is not among them.
+/// Final names of the outputs committed so far, in order, without "-".
 std::vector<std::string> committed_outputs();
 /// `message` with every temporary name of this run replaced by the final name.
 std::string with_final_names(std::string message);

@@ -1,5 +1,4 @@
-// tools/common/percent_option.h -- limits that are numbers, or shares of what a viewer sees when they end in
-// "%".
+// tools/common/percent_option.h -- limits given as a number, or as a share of pixels that ends in "%".
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,7 +8,7 @@
 
 namespace tempolux::tools {
 
-/// For transform(): rewrites "5%" as 0.05 and calls `given`; other words stay.
+/// For transform(): rewrites "5%" as 0.05 and calls `given`; other words stay unchanged.
 inline CLI::Validator percent(std::function<void()> given) {
   return CLI::Validator(
       [given = std::move(given)](std::string& word) {

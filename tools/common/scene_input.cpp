@@ -65,9 +65,9 @@ bool SceneInput::has_distant_light() const {
          });
 }
 
-/// Light from far away is sent through a sphere around all that it can meet: media of the frame belong to that. So with
-/// both each frame has bounds of its own, the same whether it is made alone or as one of a range; under frozen
-/// majorants the box of these takes the media's place, so that photons of all frames of the segment start alike.
+/// Distant light enters through a sphere around all surfaces and media of the frame. So with distant light and media
+/// each frame has its own bounds, the same whether it is made alone or in a range. With frozen majorants their box
+/// replaces the media's, so that photons of all frames of the segment start alike.
 void SceneInput::enter_segment(int frame, bool read_volumes) {
   const bool inside = segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last;
   const bool adds_media = read_volumes && volumes_->any() && has_distant_light();

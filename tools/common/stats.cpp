@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// User and system seconds of all threads of this process since its start, and of the helper programs that have ended.
+/// User and system seconds of all threads of this process since its start, and of child processes that have ended.
 double cpu_seconds() {
   double sum = 0;
   for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -32,7 +32,7 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// VmHWM of this program; ru_maxrss, the fallback, is at least that of the process which started it.
+/// VmHWM of this program. The fallback ru_maxrss may include the process that started this one.
 std::int64_t peak_memory_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -42,14 +42,14 @@ std::int64_t peak_memory_bytes() {
   return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
-/// Whole numbers without a fraction part; what JSON cannot say is null.
+/// Whole numbers are written without a fraction; values that JSON cannot express are null.
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;
   if (value == std::floor(value) && std::abs(value) < 0x1p53) return std::int64_t(value);
   return value;
 }
 
-/// Seconds to the microsecond: more is noise.
+/// Rounds seconds to the microsecond.
 double rounded(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// tools/common/stats.h -- what a run did and cost, written by --stats as JSON (formats/stats/stats.md).
+// tools/common/stats.h -- the figures and costs of a run, which --stats writes as JSON (formats/stats/stats.md).
 #pragma once
 
 #include <memory>
@@ -6,17 +6,17 @@
 
 namespace tempolux::tools {
 
-/// Call from the main thread only.
+/// Only for the main thread.
 class Stats {
  public:
   Stats();
   ~Stats();
-  /// Starts a phase ("load", "build", "trace", "write" ...); ends the one before. CPU and wall seconds are
-  /// summed by name, so a phase may come again for each frame.
+  /// Starts a phase ("load", "build", "trace", "write" ...) and ends the one before. CPU and wall seconds are summed by
+  /// name, so a phase may recur for each frame.
   void phase(const std::string& name, bool parallel = false);
   void end_phase();
   void count(const std::string& name, double value);  ///< adds to counts.NAME: rays, photons, bytes ...
-  void set(const std::string& name, double value);    ///< results.NAME: its own error estimate ...
+  void set(const std::string& name, double value);    ///< sets results.NAME, for example an error estimate
   void set(const std::string& name, const std::string& value);
 
   /// The text of the file. `command` is the tool's line of history.

@@ -8,8 +8,8 @@
 
 namespace tempolux::tools {
 
-/// A list that only grows, so that the signal handler may walk it at any moment without a lock. One entry
-/// of some hundred bytes stays for each output of the run.
+/// An entry of a list that only grows, so that the signal handler may read it at any time without a lock. Each output
+/// of the run adds an entry of a few hundred bytes.
 struct Temporary::Entry {
   std::string path;
   std::atomic<bool> live{true};
@@ -33,7 +33,7 @@ extern "C" void remove_temporaries_and_end(int signal) {
   struct sigaction standard = {};
   standard.sa_handler = SIG_DFL;
   sigaction(signal, &standard, nullptr);
-  raise(signal);  // pending until this handler returns
+  raise(signal);  // stays pending until this handler returns
   errno = saved;
 }
 

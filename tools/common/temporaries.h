@@ -8,8 +8,8 @@
 
 namespace tempolux::tools {
 
-/// Marks a path for removal by the signal handler; create before the file. Not for files of others. May be a folder if
-/// all that lies in it is marked after it: what is marked last goes first.
+/// Marks a path for removal by the signal handler; create it before the file. Must not be used for the user's files.
+/// May be a folder if its content is marked afterwards: the last mark is removed first.
 class Temporary {
  public:
   explicit Temporary(const std::string& path);
@@ -18,7 +18,7 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
 
   const char* path() const;
-  /// Renamed or handed on: no longer removed.
+  /// The file has been renamed or passed on: it is no longer removed.
   void release();
   /// Removes the file now.
   void remove();
@@ -29,16 +29,17 @@ class Temporary {
   Entry* entry_;
 };
 
-/// A process that this one has started and waits for: the signal handler ends it by TERM and waits until it has removed
-/// its own files. 0: none any more. One at a time.
+/// Registers a child process that this process waits for: the signal handler sends it TERM and waits until it has
+/// removed its own files. 0: none. Only one at a time.
 void end_together_with(pid_t child);
 
-/// From now on INT, TERM, HUP and XCPU remove all temporaries and end the process by that signal (the shell
-/// sees 128 + n). A signal that was ignored at the start (nohup) stays ignored. PIPE and XFSZ are ignored,
-/// so that a write fails with a reason instead.
+/// From now on INT, TERM, HUP and XCPU remove all temporary files and end the process with that signal (the shell sees
+/// 128 + n). A signal that was ignored at the start (nohup) stays ignored. PIPE and XFSZ are ignored, so that a write
+/// fails with a reason instead.
 void install_signal_handlers();
 
-/// Ends the process as a broken pipe does, by PIPE, temporaries removed; returns if PIPE was ignored at the start.
+/// Removes temporary files and ends the process by PIPE, as a broken pipe does; returns if PIPE was ignored at the
+/// start.
 void end_by_broken_pipe();
 
 }  // namespace tempolux::tools

@@ -28,28 +28,28 @@
 namespace tempolux::tools {
 namespace {
 
-/// Numbers below 2^-126 count as zero, in every thread started from now on: they cost 150 times the time
-/// of others and are no light. Must come before any thread and before the first use of TBB or Embree.
+/// Numbers below 2^-126 count as zero in every thread that starts from now on: computing with them takes 150 times as
+/// long, and they carry no visible light. Must be called before any thread and before the first use of TBB or Embree.
 void flush_denormals_to_zero() {
   constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
   _mm_setcsr(_mm_getcsr() | kFlushToZero | kDenormalsAreZero);
 }
 
-/// Memory once used is kept. Workers take and free pieces of up to a megabyte over and over; given back to the
-/// system each time they would come back as page faults, 5 % of photon-trace.
+/// Keeps freed memory. Threads allocate and free pieces of up to a megabyte; if they were returned to the system, page
+/// faults would take 5 % of photon-trace's time.
 void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 4 << 20);
   mallopt(M_TRIM_THRESHOLD, 64 << 20);
 }
 
-/// If started with a standard stream closed, an output file could get its number and receive our messages.
+/// Opens missing standard streams: otherwise an output file could get such a stream's number and receive messages.
 void hold_standard_streams() {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
     if (fcntl(stream, F_GETFD) == -1 && errno == EBADF)
       if (open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
 }
 
-/// One line: line breaks and control characters of file names must not fake other lines.
+/// Makes text fit for one line: line breaks and control characters in file names must not fake other lines.
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   for (char& c : text)
@@ -57,14 +57,15 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// Text on standard output. A reader that has seen enough (`| head`) is no fault.
+/// Flushes standard output. A reader that has stopped (`| head`) is not an error.
 void flush_stdout() {
   errno = 0;
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::cout) return;
   int error = errno ? errno : EIO;
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
-  if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR)) error = EPIPE;  // failed long before: errno is another's
+  // The write failed earlier, so errno is of another call.
+  if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR)) error = EPIPE;
   if (error == EPIPE) end_by_broken_pipe();
   throw ResourceError(std::string("standard output: write failed: ") + std::strerror(error));
 }
@@ -86,7 +87,7 @@ Tool::Tool(std::string name, std::string what, int argc, char** argv) {
   flush_denormals_to_zero();
   keep_freed_memory();
   hold_standard_streams();
-  // All of a help text is written at its end, where a failure still has its reason.
+  // Buffers a whole help text, so that a failure to write it is reported with its reason.
   static char text[1 << 16];
   if (!isatty(STDOUT_FILENO)) std::setvbuf(stdout, text, _IOFBF, sizeof text);
   install_signal_handlers();
@@ -173,7 +174,7 @@ void Tool::State::parse() {
   if (common.threads == 0) common.threads = usable_processor_count();
 }
 
-/// For the build: cmake/install.cmake. True if that was all that was asked for.
+/// Writes a manual for the build (cmake/install.cmake). True if the user asked for nothing else.
 bool Tool::State::print_manual() const {
   const std::string wish = argc == 2 ? argv[1] : "";
   if (wish == "--help-man") std::cout << man_page(app);
@@ -185,7 +186,7 @@ bool Tool::State::print_manual() const {
 
 void Tool::State::apply_limits() const {
   if (common.max_memory_bytes == 0) return;
-  mallopt(M_ARENA_MAX, 2);  // each arena reserves 64 MiB of the address space that is counted
+  mallopt(M_ARENA_MAX, 2);  // each arena reserves 64 MiB of the limited address space
   const rlimit limit{common.max_memory_bytes, common.max_memory_bytes};
   if (setrlimit(RLIMIT_AS, &limit) != 0)
     throw ResourceError(std::string("--max-memory: cannot be set: ") + std::strerror(errno));
@@ -195,7 +196,7 @@ int Tool::State::run(const std::function<int()>& body, const Tool& tool) {
   apply_limits();
   const ThreadLimit limit(common.threads);
   for (const std::string& file : common.state_files) protect_input(file);
-  // Created before the work, as all outputs: a place that cannot be written is noticed now.
+  // Created before the work like all outputs, so that an unwritable place is reported first.
   std::optional<Output> stats_output, dep_output;
   if (!common.stats_file.empty()) stats_output.emplace(common.stats_file, common.no_clobber, Output::Kind::text);
   if (!common.dep_file.empty()) dep_output.emplace(common.dep_file, common.no_clobber, Output::Kind::text);

@@ -1,4 +1,4 @@
-// tools/common/tool_state.h -- what a Tool holds; for tool_main.cpp, options.cpp and history.cpp only.
+// tools/common/tool_state.h -- the members of Tool; for tool_main.cpp, options.cpp and history.cpp only.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ struct Tool::State {
   };
   std::vector<Dependency> dependencies;
 
-  // Words for people come from any thread.
+  // Messages may come from any thread.
   std::mutex message_mutex;
   std::set<std::string> warnings;
   bool bar_allowed = false, bar_shown = false;
@@ -37,7 +37,7 @@ struct Tool::State {
   State(std::string tool, std::string what, int count, char** values)
       : name(std::move(tool)), argc(count), argv(values), app(std::move(what), name) {}
 
-  /// Whether the file of --said has this warning.
+  /// True if the file of --said has this warning.
   bool was_said(const std::string& message);
   std::optional<std::set<std::string>> said;
 
@@ -52,7 +52,7 @@ struct Tool::State {
 
 /// Layout of --help: descriptions wrapped, default and "required" at their end.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
-/// The lines of --version: tool, compiler, the shared libraries that are loaded.
+/// The lines of --version: tool, compiler, and the loaded shared libraries.
 std::string version_text(const std::string& tool);
 
 }  // namespace tempolux::tools

@@ -10,9 +10,9 @@
 namespace tempolux::tools {
 namespace {
 
-constexpr std::size_t kMostKept = std::size_t(1) << 30;  ///< bytes of voxels that stay in memory for frames to come
+constexpr std::size_t kMostKept = std::size_t(1) << 30;  ///< bytes of voxels kept in memory for later frames
 
-/// The value for volume i of n: its own, or the one given for all, or none.
+/// The value for volume i of n: its own, or the common one, or none.
 template <class T>
 const T* value_for(const std::vector<T>& values, std::size_t i, std::size_t n, const char* option) {
   if (values.empty()) return nullptr;
@@ -22,13 +22,13 @@ const T* value_for(const std::vector<T>& values, std::size_t i, std::size_t n, c
   return &values[values.size() == 1 ? 0 : i];
 }
 
-/// The file that shows a volume at a frame.
+/// The file of a volume at a frame.
 std::string file_of(const VolumeSource& source, int frame) {
   const int at = source.frames ? std::clamp(frame, source.frames->first, source.frames->second) : frame;
   return has_frame_pattern(source.pattern) ? frame_name(source.pattern, at) : source.pattern;
 }
 
-/// Do all volumes have the same file at both frames?
+/// True if all volumes have the same file at both frames.
 bool same_files(const std::vector<VolumeSource>& sources, int a, int b) {
   return a == b || std::ranges::all_of(
                        sources, [&](const VolumeSource& source) { return file_of(source, a) == file_of(source, b); });

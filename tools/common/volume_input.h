@@ -1,4 +1,4 @@
-// tools/common/volume_input.h -- the smoke of a scene: --volume and its companions, or what the scene's nodes name.
+// tools/common/volume_input.h -- the media of a scene: from --volume and its options, or from the scene's nodes.
 #pragma once
 
 #include <map>
@@ -16,22 +16,22 @@ namespace tempolux::tools {
 
 class VolumeInput {
  public:
-  /// `--volume` takes the place of what the scene names; "none" leaves that out. Throws InputError for options that do
-  /// not fit each other.
+  /// `--volume` replaces the media that the scene names; "none" removes them. Throws InputError for options that
+  /// contradict each other.
   VolumeInput(Tool& tool, const Scene& scene);
 
   bool any() const { return !sources_.empty(); }
-  /// Are the majorants those of a file, --majorants?
+  /// True if the majorants come from a file, --majorants.
   bool frozen() const { return !tool_.common().volume.majorants.empty(); }
-  /// Last frame that has a file, if all say; -1: not known.
+  /// Last frame with a file, if all volumes give it; -1: unknown.
   int last_frame() const;
-  /// The media of a frame in scene space; nullptr: none there. Their files are dependencies of the tool.
+  /// The media of a frame in scene space; nullptr: none. Their files become dependencies of the tool.
   std::shared_ptr<const Media> at(int frame, Vec3d origin);
-  /// The same, as read: no majorants made.
+  /// The same media without majorants.
   std::vector<Medium> read(int frame, Vec3d origin);
-  /// All that were read so far.
+  /// All files read so far.
   const std::vector<std::string>& files() const { return files_; }
-  /// Majorants that hold for these frames, world space.
+  /// Majorants that are valid for these frames; world space.
   FrozenMajorants freeze(int first, int last);
   /// Hash of what read() gives, for SceneHashes::media.
   static std::string hash(const std::vector<Medium>& media);
@@ -47,11 +47,11 @@ class VolumeInput {
     Vec3d origin;
     std::vector<Medium> media;
   };
-  std::map<int, Kept> kept_;  ///< what read() gave, as far as kMostKept allows
+  std::map<int, Kept> kept_;  ///< results of read(), up to kMostKept bytes
   std::size_t kept_bytes_ = 0;
   std::optional<FrozenMajorants> majorants_;
   MajorantGrid scene_majorants_;
-  std::shared_ptr<const Media> last_;  ///< what at() gave last
+  std::shared_ptr<const Media> last_;  ///< the last result of at()
   int last_at_ = 0;
   Vec3d last_origin_;
   bool has_last_ = false;

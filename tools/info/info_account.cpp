@@ -1,4 +1,4 @@
-// tempolux-info on what frames say of their own light.
+// tools/info/info_account.cpp -- tempolux-info: the bias that frames report of their light.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,13 +13,13 @@ namespace tempolux::tools {
 namespace {
 
 constexpr std::array<const char*, 3> kLayers{"direct", "caustic", "indirect"};
-constexpr double kLimit = 0.02, kErrors = 3;  // as FrameAudit's is_biased()
+constexpr double kLimit = 0.02, kErrors = 3;  // as in FrameAudit's is_biased()
 
-/// Of one layer over the frames.
+/// Sums of one layer over the frames.
 struct Sum {
   int frames = 0;
   double share = 0, share_square = 0, of_layer = 0, of_layer_square = 0;
-  double worst = 0, worst_error = 0;  ///< share of the picture, of the object that is farthest off
+  double worst = 0, worst_error = 0;  ///< share of the picture, in the object with the largest bias
   std::string worst_name;
 
   double mean() const { return share / frames; }
@@ -65,7 +65,7 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
 FramesAccount account_of_frames(const std::vector<std::string>& files) {
   std::array<Sum, kLayers.size()> sums;
   for (const std::string& file : files) {
-    ExrReadOptions attributes;  // and one channel: a picture without any is none
+    ExrReadOptions attributes;  // and one channel: an EXR image without any is invalid
     attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
     const Image image = load_exr(file, attributes);
     for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l], file, sums[l]);

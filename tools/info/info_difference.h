@@ -1,22 +1,24 @@
-// tools/info/info_difference.h -- what the differences of two files of one type, record by record, have in common.
+// tools/info/info_difference.h -- compares two files of one type, record by record.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
 
-/// A file that is compared: what its header says, and the hash of its data.
+/// A file of a comparison: its header's facts, and the hash of its data.
 struct ComparedFile {
   const std::string& path;
   std::string digest;
   Facts header;
 };
 
-/// The keys that come first: files, type, equal, and the headers' values that differ.
+/// The first keys of a difference: files, type, equal, and the header values that differ.
 inline Facts difference_of_headers(const char* type, const ComparedFile& a, const ComparedFile& b) {
   Facts facts = {
       {"files", {a.path, b.path}}, {"type", type}, {"equal", a.digest == b.digest}, {"differing", Facts::object()}};
@@ -26,7 +28,7 @@ inline Facts difference_of_headers(const char* type, const ComparedFile& a, cons
   return facts;
 }
 
-/// Of the records that both have, by number: those that differ.
+/// The records that both files have under one number and that differ.
 template <class Records>
 std::size_t count_differing(const Records& a, const Records& b) {
   const std::size_t both = std::min(a.size(), b.size());
@@ -35,14 +37,27 @@ std::size_t count_differing(const Records& a, const Records& b) {
   return differing;
 }
 
+/// The numbers of compared and of differing records and, if any differ, the first one and the largest differences.
+/// `light`: name and largest difference, by channel, of the records' light.
+template <class Difference>
+void add_record_difference(const Difference& records, const std::pair<const char*, const std::array<double, 3>&>& light,
+                           Facts& facts) {
+  facts["records_compared"] = records.records;
+  facts["records_differing"] = records.differing;
+  if (records.differing == 0) return;
+  facts["first_differing_record"] = records.first;
+  facts["largest_position_difference_m"] = records.largest_position;
+  facts[light.first] = light.second;
+}
+
 template <class Records>
 void add_differing_records(const Records& a, const Records& b, Facts& facts) {
   facts["records_compared"] = std::min(a.size(), b.size());
   facts["records_differing"] = count_differing(a, b);
 }
 
-/// All of it for files that are a header and one array of records: how they are read, what of a header is compared,
-/// where the records are.
+/// The whole difference of two files that consist of a header and one array of records. The arguments read a file, and
+/// select the header's facts and the records.
 template <class File, class Header, class Records>
 Facts difference_of_files(const char* type, const std::string& a, const std::string& b,
                           File (*load)(const std::string&), Facts (*header_facts)(const Header&),

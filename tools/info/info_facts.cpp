@@ -10,7 +10,7 @@
 namespace tempolux::tools {
 namespace {
 
-constexpr std::size_t kMostItems = 12;  // of a list of objects
+constexpr std::size_t kMostItems = 12;  // items shown of a long list
 
 bool is_leaf(const Facts& value) {
   if (!value.is_structured()) return true;
@@ -97,7 +97,7 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x89TRADS")) return FileType::radsamples;
   if (head.starts_with("\x89TMESH")) return FileType::meshirrad;
   if (head.starts_with("\x89TLGRD")) return FileType::lightgrid;
-  if (path == "-") return FileType::photons;  // whose reader says what is wrong
+  if (path == "-") return FileType::photons;  // the reader of photons reports any error
   if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{') return FileType::json;
   for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
     if (head.starts_with(magic)) return FileType::image;

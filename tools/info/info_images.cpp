@@ -1,4 +1,4 @@
-// tempolux-info on images: facts, difference, pictures.
+// tools/info/info_images.cpp -- tempolux-info on images: facts, difference, pictures.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,7 +16,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// EXR with or without NaN, its R, G and B alone if it has them; any other format as lib/image reads it.
+/// Loads an EXR with or without NaN, only R, G and B if wanted and present; any other format as lib/image reads it.
 Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
   std::string magic(4, '\0');
   if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
@@ -30,14 +30,14 @@ Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
   return load_exr(path, options);
 }
 
-/// What a picture of it needs.
+/// Loads the channels that a picture of the image needs.
 Image load_shown(const std::string& path, const PictureOptions& options) {
   return load(path, true, options.layer.empty());
 }
 
 constexpr std::string_view kHistory = "tempolux:history";
 
-/// History and identity by themselves, then all other attributes by their names in the file.
+/// History and identity first, then all other attributes by their names in the file.
 Facts attribute_facts(const Image& image) {
   Facts facts = {{"history", Facts::array()}, {"identity", nullptr}};
   for (const auto& [name, value] : image.text) {
@@ -50,7 +50,7 @@ Facts attribute_facts(const Image& image) {
   return facts;
 }
 
-/// Errors of lib/image about layers do not know the file's name.
+/// Adds the file's name to errors of lib/image about layers.
 template <class Make>
 auto named(const std::string& path, const Make& make) {
   try {
@@ -66,7 +66,8 @@ Facts channel_facts(const ChannelStatistics& channel) {
   return facts;
 }
 
-/// Of a mask: for each cause the pixels that have it, and the share of the picture that it is the first cause of.
+/// For a mask: the number of pixels masked for each cause, and the share of the picture for which it is the first
+/// cause.
 Facts cause_facts(const Image& image, const std::string& path) {
   Facts facts = Facts::array();
   const double pixels = double(image.pixel_count());
@@ -85,7 +86,7 @@ Picture picture_of(const std::string& path, const Image& image, const PreviewOpt
   return named(path, [&] { return make_picture(image, preview); });
 }
 
-/// Stops that suit it: none for a mask, whose colours are fixed.
+/// Automatic exposure in stops; 0 for a mask, whose colours are fixed.
 double stops_of(const std::string& path, const Image& image, const std::string& layer) {
   if (layer.empty() && !image.find("R") && is_why_mask(image)) return 0;
   return named(path, [&] { return auto_exposure_stops(image, layer); });
@@ -159,7 +160,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
   const auto step = [&] {
     if (options.progress) options.progress(++done / steps);
   };
-  if (!preview.exposure_stops) {  // frames are read twice, so that one at a time is in memory
+  if (!preview.exposure_stops) {  // frames are read twice, so that only one is in memory
     std::vector<double> stops;
     for (const std::string& path : paths) {
       const Image image = load_shown(path, options);

@@ -1,4 +1,4 @@
-// tempolux-info on our JSON files: statistics, comparisons, plans.
+// tools/info/info_json.cpp -- tempolux-info on JSON files: statistics, comparisons, plans.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -33,7 +33,7 @@ Facts parse(const std::string& path) {
   }
 }
 
-/// The name of the format: "tempolux.stats"; scene-plan's is kept in `format`.
+/// The name of the format, such as "tempolux.stats"; a plan has its name in `format`.
 std::string schema_of(const Facts& document) {
   for (const char* key : {"schema", "format"})
     if (document.is_object() && document.contains(key) && document[key].is_string()) {
@@ -49,7 +49,7 @@ void check_stats(const std::string& path, const Facts& document) {
   if (!document.value("tool", Facts()).is_string()) bad(path, "tool: is no text");
 }
 
-/// What error-report needs of a comparison.
+/// Checks the parts of a comparison that error-report needs.
 void check_comparison(const std::string& path, const Facts& document) {
   const Facts total = document.value("total", Facts());
   if (!total.is_object()) bad(path, "total: is missing, or no object");
@@ -89,7 +89,7 @@ Facts json_difference(const std::string& a, const std::string& b) {
   Facts facts = {{"files", {a, b}}, {"type", schema_of(document_a)}};
   facts["equal"] = digest_of_document(document_a) == digest_of_document(document_b);
   Facts differing = Facts::object();
-  // JSON Pointer of each place that is not the same, with both values.
+  // JSON Pointer of each difference, with both values.
   for (const auto& step : nlohmann::json::diff(nlohmann::json(document_a), nlohmann::json(document_b))) {
     const std::string place = step["path"];
     const nlohmann::json pointed_a = nlohmann::json(document_a), pointed_b = nlohmann::json(document_b);

@@ -1,4 +1,4 @@
-// tempolux-info on .lightgrid: facts, difference.
+// tools/info/info_lightgrid.cpp -- tempolux-info on .lightgrid: facts, difference.
 #include <nlohmann/json.hpp>
 #include <string>
 

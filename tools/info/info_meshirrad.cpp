@@ -1,4 +1,4 @@
-// tempolux-info on .meshirrad: facts, difference.
+// tools/info/info_meshirrad.cpp -- tempolux-info on .meshirrad: facts, difference.
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -21,8 +21,7 @@ Facts header_facts(const MeshirradHeader& header) {
   return facts;
 }
 
-/// Frames in the windows of elements that photons arrived at, and how many frames the middle of a window lies after its
-/// own.
+/// Number of frames in the windows of elements with photons, and the mean offset of a window's middle from its frame.
 Facts window_facts(const MeshirradFile& file) {
   Spread frames, age;
   for (const MeshElement& e : file.elements) {
@@ -35,11 +34,11 @@ Facts window_facts(const MeshirradFile& file) {
   return {{"window_frames", facts(frames)}, {"window_shift_frames", facts(age)}};
 }
 
-/// Photons, flux and irradiance of all elements, or of some.
+/// Photons, flux and irradiance of a set of elements.
 struct Sum {
   std::uint64_t elements = 0, photons = 0;
   double area = 0;
-  std::array<double, 3> counted{}, filtered{};  ///< W: by sums, a frame; by irradiance times area
+  std::array<double, 3> counted{}, filtered{};  ///< W: from the counts per frame; from irradiance times area
   void add(const MeshElement& e, double unit) {
     ++elements;
     photons += e.photons;

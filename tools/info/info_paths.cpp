@@ -1,4 +1,4 @@
-// tempolux-info on .paths: facts, difference.
+// tools/info/info_paths.cpp -- tempolux-info on .paths: facts, difference.
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace formats;
 
-/// The header but for history and identity.
+/// The header without history and identity.
 Facts header_facts(const PathsHeader& header) {
   return {{"kinds", header.kinds},        {"origin_m", header.origin},
           {"groups", header.group_count}, {"emitted_paths", header.emitted_count},

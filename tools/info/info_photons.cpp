@@ -1,4 +1,4 @@
-// tempolux-info on .photons: facts, difference, export.
+// tools/info/info_photons.cpp -- tempolux-info on .photons: facts, difference, export.
 #include <array>
 #include <bit>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 #include "formats/photons/summary.h"
 #include "lib/image/statistics.h"
-#include "tools/info/info_facts.h"
+#include "tools/info/info_difference.h"
 
 namespace tempolux::tools {
 namespace {
@@ -26,7 +26,7 @@ std::string column_names(std::uint32_t columns) {
   return names.empty() ? "none" : names;
 }
 
-/// The header but for history and identity.
+/// The header without history and identity.
 Facts header_facts(const PhotonHeader& header) {
   Facts facts = {{"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
                  {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
@@ -55,7 +55,7 @@ Facts total_facts(const PhotonTotals& totals) {
           {"absorbed_flux_W", totals.absorbed_flux}};
 }
 
-/// How old the groups are: of each frame at which some were traced their number and paths.
+/// Age of the groups: for each frame at which groups were traced, their number and paths.
 Facts group_facts(const std::vector<GroupFlux>& ledger) {
   std::map<std::int32_t, std::pair<std::uint64_t, std::uint64_t>> by_frame;
   for (const GroupFlux& group : ledger) {
@@ -80,7 +80,7 @@ std::string ply_header(std::uint64_t count) {
   return text + "end_header\n";
 }
 
-/// One vertex as the header above says, little-endian as every machine we build for.
+/// Appends one vertex in the layout of the PLY header above, little-endian.
 void append_vertex(std::string& to, const std::array<double, 3>& position, const Photon& photon, double white) {
   static_assert(std::endian::native == std::endian::little);
   const auto put = [&to](const auto& value) {
@@ -97,7 +97,7 @@ void append_vertex(std::string& to, const std::array<double, 3>& position, const
   put(point_color(photon.flux, white));
 }
 
-/// A photon of a block, with the columns that the file has.
+/// Appends a photon of a block with the file's columns.
 void append_row(std::string& to, const std::array<double, 3>& position, const PhotonBlock& block, std::size_t i,
                 std::uint32_t columns) {
   const Photon& photon = block.photons[i];
@@ -150,29 +150,18 @@ Facts photon_facts(const std::string& path) {
 Facts photon_difference(const std::string& a, const std::string& b) {
   PhotonReader reader_a(a), reader_b(b);
   const PhotonDifference records = compare(reader_a, reader_b);
-  Facts differing = Facts::object();
-  const auto compare_facts = [&differing](const Facts& x, const Facts& y) {
-    for (const auto& [key, value] : x.items())
-      if (const Facts other = y.value(key, Facts()); other != value) differing[key] = {value, other};
+  const auto compared = [](const std::string& path, const PhotonReader& reader) {
+    const PhotonHeader& header = reader.header();
+    Facts facts = {{"history", lines_of(header.history)}, {"identity", identity_facts(header.identity)}};
+    facts.update(header_facts(header));
+    facts["photons"] = reader.totals().photon_count;
+    facts.update(total_facts(reader.totals()));
+    return ComparedFile{path, reader.digest(), facts};
   };
-  const PhotonHeader &header_a = reader_a.header(), &header_b = reader_b.header();
-  compare_facts({{"history", lines_of(header_a.history)}}, {{"history", lines_of(header_b.history)}});
-  compare_facts({{"identity", identity_facts(header_a.identity)}}, {{"identity", identity_facts(header_b.identity)}});
-  compare_facts(header_facts(header_a), header_facts(header_b));
-  compare_facts({{"photons", reader_a.totals().photon_count}}, {{"photons", reader_b.totals().photon_count}});
-  compare_facts(total_facts(reader_a.totals()), total_facts(reader_b.totals()));
-
-  Facts facts = {{"files", {a, b}}, {"type", "photons"}};
-  facts["equal"] = reader_a.digest() == reader_b.digest();
-  facts["differing"] = differing;
-  facts["records_compared"] = records.records;
-  facts["records_differing"] = records.differing;
-  if (records.differing > 0) {
-    facts["first_differing_record"] = records.first;
-    facts["largest_position_difference_m"] = records.largest_position;
-    facts["largest_flux_difference_W"] = records.largest_flux;
-  }
-  facts["digests"] = {reader_a.digest(), reader_b.digest()};
+  const ComparedFile of_a = compared(a, reader_a), of_b = compared(b, reader_b);
+  Facts facts = difference_of_headers("photons", of_a, of_b);
+  add_record_difference(records, {"largest_flux_difference_W", records.largest_flux}, facts);
+  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 
@@ -202,7 +191,7 @@ void export_photons(const std::string& path, const std::string& format, Output& 
   const bool ply = format == "ply";
   double white = 0;
   std::string text;
-  if (ply) {  // its header says the count and colours need the brightest photon: the file is read twice
+  if (ply) {  // PLY needs the count and the brightest photon first, so the file is read twice
     if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
     PhotonReader first(path, {.digest = false});
     const PhotonSummary summary = summarise(first);

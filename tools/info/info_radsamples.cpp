@@ -1,4 +1,4 @@
-// tempolux-info on .radsamples: facts, difference.
+// tools/info/info_radsamples.cpp -- tempolux-info on .radsamples: facts, difference.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -26,7 +26,7 @@ Facts header_facts(const RadsamplesFile& file) {
   return facts;
 }
 
-/// Share of the samples for which `is` holds.
+/// Share of the samples for which `is` returns true.
 template <class Is>
 double share(const RadsamplesFile& file, const Is& is) {
   if (file.samples.empty()) return 0;

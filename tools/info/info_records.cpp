@@ -1,4 +1,4 @@
-// tempolux-info on .irradpoints and .irradcache: facts, difference, export.
+// tools/info/info_records.cpp -- tempolux-info on .irradpoints and .irradcache: facts, difference, export.
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 #include "formats/irradcache/summary.h"
 #include "formats/irradpoints/summary.h"
 #include "lib/image/statistics.h"
-#include "tools/info/info_facts.h"
+#include "tools/info/info_difference.h"
 #include "tools/info/point_table.h"
 
 namespace tempolux::tools {
@@ -15,7 +15,7 @@ namespace {
 
 using namespace formats;
 
-/// nullptr of what holds no number.
+/// nullptr if there are no numbers.
 Facts spread_facts(const Spread& spread) {
   if (spread.count == 0) return nullptr;
   return {{"min", spread.min}, {"max", spread.max}, {"mean", spread.mean()}};
@@ -91,30 +91,21 @@ Facts start_of(const std::string& path, const char* type, const File& file) {
 
 template <class File>
 Facts difference(const std::array<std::string, 2>& names, const char* type, const File& a, const File& b) {
-  const auto all_of = [](const File& file) {
+  const auto compared = [](const std::string& path, const File& file) {
     Facts facts = {{"history", lines_of(file.header.history)}, {"identity", identity_facts(file.header.identity)}};
     facts.update(header_facts(file.header));
     facts.update(total_facts(file.totals));
-    return facts;
+    return ComparedFile{path, digest_of(file), facts};
   };
-  const Facts of_a = all_of(a), of_b = all_of(b);
-  const std::string digest_a = digest_of(a), digest_b = digest_of(b);
-  Facts facts = {{"files", names}, {"type", type}, {"equal", digest_a == digest_b}, {"differing", Facts::object()}};
-  for (const auto& [key, value] : of_a.items())
-    if (of_b[key] != value) facts["differing"][key] = {value, of_b[key]};
+  const ComparedFile of_a = compared(names[0], a), of_b = compared(names[1], b);
   const RecordDifference records = compare(a, b);
-  facts["records_compared"] = records.records;
-  facts["records_differing"] = records.differing;
-  if (records.differing > 0) {
-    facts["first_differing_record"] = records.first;
-    facts["largest_position_difference_m"] = records.largest_position;
-    facts["largest_irradiance_difference_W_m2"] = records.largest_irradiance;
-  }
-  facts["digests"] = {digest_a, digest_b};
+  Facts facts = difference_of_headers(type, of_a, of_b);
+  add_record_difference(records, {"largest_irradiance_difference_W_m2", records.largest_irradiance}, facts);
+  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 
-/// Position in world space and normal: how every row begins.
+/// Adds the first columns of every row: position in world space, and normal.
 template <class Record, class Normal>
 void start_row(PointTable& table, const std::array<double, 3>& origin, const Record& record, const Normal& normal) {
   for (std::size_t c = 0; c < 3; ++c) table.add(origin[c] + double(record.position[c]));

@@ -17,7 +17,7 @@ void append_bytes(std::string& to, const Value& value) {
   to.append(bytes, sizeof value);
 }
 
-/// "direct_r", "direct_g", "direct_b"; of one number the name alone. `unit` is put behind, if given.
+/// Names such as "direct_r", "direct_g", "direct_b"; the plain name for a single number. `unit` is appended if given.
 std::vector<std::string> names_of(const PointTable::Column& column, const std::string& unit) {
   const std::string end = unit.empty() ? "" : "_" + unit;
   if (column.channels == 1) return {column.name + end};

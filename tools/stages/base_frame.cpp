@@ -18,7 +18,8 @@ std::vector<std::uint8_t> read_mask(const std::string& name, const Picture& pict
   return nonzero_pixels(image);
 }
 
-/// Matrices are stored as float32, so that of one camera they are equal to the bit; absent: not known, not another.
+/// True if the matrix is there and differs. Matrices are stored as float32, so those of one camera are equal to the
+/// bit.
 bool is_other(const Image& image, const char* name, const std::array<double, 16>& matrix) {
   const auto found = image.matrices.find(name);
   if (found == image.matrices.end()) return false;

@@ -1,4 +1,4 @@
-// tools/stages/base_frame.h -- what --mask and --base name: which pixels are traced, and where the others come from.
+// tools/stages/base_frame.h -- reads --mask and --base: the pixels to trace, and the frame that gives the other pixels.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@
 namespace tempolux::tools {
 
 struct BaseFrame {
-  std::vector<std::uint8_t> mask;  ///< by pixel: is it traced? Empty: all are, and there is no base
+  std::vector<std::uint8_t> mask;  ///< by pixel: 1 if it is traced. Empty: all pixels are traced, and there is no base
   Image base;
 };
 
-/// What the picture to come looks like.
+/// Size and camera of the picture to render.
 struct Picture {
   int width = 0, height = 0;
   std::array<double, 16> world_to_camera{}, world_to_ndc{};  ///< as in its attributes (frames.md 3)
 };
 
-/// Reads both. InputError if the mask has another size, or if the base shows another state of the scene
-/// (check_identity) or was seen by another camera; with --allow-stale a warning.
+/// Reads both files. Throws InputError if the mask has another size, or if the base shows another state of the scene
+/// (check_identity) or has another camera; with --allow-stale these are warnings.
 BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string& base, const SceneFrame& frame,
                           const Picture& picture);
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "formats/error.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux::tools {
 namespace {
@@ -35,10 +35,10 @@ DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, con
   return divided;
 }
 
-void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number) {
+void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number) {
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
-  const SceneFrame frame = standing_scene(input.at(number));
+  const SceneFrame frame = static_scene_of(input.at(number));
   tool.stats().phase("build");
   const Tracer tracer(frame);
   Lights lights(frame, input.emission(frame.frame));
@@ -52,10 +52,10 @@ void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& op
   write_points(tool, points, frame, output, std::array{frame.segment.first, frame.segment.last});
 }
 
-void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& tree) {
+void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree) {
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(number), standing = standing_scene(frame);
+  const SceneFrame frame = input.at(number), standing = static_scene_of(frame);
   const EmissionTable& emission = input.emission(frame.frame);
   tool.stats().phase("build");
   const Tracer whole(frame, tree), without(standing, tree);
@@ -84,7 +84,7 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   tool.stats().count("points_anew", double(counts.anew));
 }
 
-void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& standing) {
+void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& standing) {
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);

@@ -1,4 +1,4 @@
-// tools/stages/build_points.h -- irradcache-build: its options, and points of a frame, of what stands, or updated.
+// tools/stages/build_points.h -- irradcache-build: its options, and irradiance points: of a frame, static, or updated.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace tempolux::tools {
 
-/// What irradcache-build was asked for.
+/// The options of irradcache-build.
 struct CacheOptions {
   std::vector<std::string> inputs;  // [points|records] SCENE
   std::string photons, points, importance, high, records, mask, output, keep_points, map = "global", update;
-  std::vector<std::string> dynamic;  // the frame's own first
+  std::vector<std::string> dynamic;  // the frame's own map comes first
   std::uint64_t point_count = PointOptions{}.count;
   std::vector<formats::ViewSphere> view;  // of importance
   int width = 640, height = 360;
@@ -27,7 +27,7 @@ struct CacheOptions {
 
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
   const std::string& scene() const { return inputs.back(); }
-  /// Options of the points of a frame.
+  /// Options for the points of a frame.
   PointOptions points_of(const SceneFrame& frame) const {
     PointOptions options = point;
     options.seen = spheres_in_scene(view, frame.origin);
@@ -35,18 +35,18 @@ struct CacheOptions {
   }
 };
 
-/// Points from a file of photons, in two phases: only the second works with all threads.
+/// Points from a file of photons, in two phases, of which only the second uses all threads.
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
                                const PointOptions& options);
-/// The same from the low part, options.photons, and the high part, options.high.
+/// The same from a divided map: the low part options.photons and the high part options.high.
 DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer,
                                     const Lights& lights);
 
-/// .irradpoints of a frame, from its global map.
-void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& standing);
-/// Of what stands, once for a segment, from its static map.
-void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number);
-/// Of a frame, from those of what stands: what movers change is added, and their own points.
-void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& tree);
+/// Writes the .irradpoints of a frame from its global map.
+void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& standing);
+/// Writes the static points of a segment from its static map.
+void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number);
+/// Writes the points of a frame from the static points: adds the dynamic map's light, and points on the movers.
+void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree);
 
 }  // namespace tempolux::tools

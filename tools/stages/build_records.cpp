@@ -11,12 +11,12 @@
 #include "lib/gather/cache_files.h"
 #include "lib/image/images_by_module.h"
 #include "lib/render/camera_records.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux::tools {
 namespace {
 
-/// Header of a cache placed for these frames.
+/// Header of a cache that is placed for these frames.
 formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneFrame& frame,
                                        const std::vector<int>& frames, std::span<const IrradianceRecord> records,
                                        float least_cosine) {
@@ -43,7 +43,7 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   return header;
 }
 
-/// By pixel of the frame, 0: nobody looks there; empty without --mask.
+/// By pixel of the frame; 0: the pixel needs no records. Empty without --mask.
 std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options, int number) {
   if (options.mask.empty()) return {};
   const std::string name = frame_name(options.mask, number);
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options,
   return std::move(mask.pixels);
 }
 
-/// InputError unless all but the cameras is the same at two frames.
+/// Throws InputError unless two frames are equal except for their cameras.
 void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const SceneFrame& first) {
   if (!formats::stale_concerns(identity_of(frame), identity_of(first)).empty())
     throw InputError(options.scene() + ": frame " + std::to_string(frame.frame) +
@@ -63,7 +63,8 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
                      ": one cache cannot hold for both; make one for each");
 }
 
-/// The cameras that records are placed for. `at`: the scene at a frame, or as it stands there; `first`: at the first.
+/// The cameras that records are placed for. `at`: the scene at a frame, or the static scene; `first`: at the first
+/// frame.
 RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                          const SceneFrame& first, std::function<SceneFrame(int)> at) {
   RecordCameras cameras{
@@ -90,7 +91,8 @@ void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
   tool.stats().count("unanswered", double(counts.unanswered));
 }
 
-/// Points made from photons, read, or read as two parts: high_shares receives what the high part has of each.
+/// Points made from photons, or read, or read as two parts: then high_shares receives the high part's share of each
+/// point.
 GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights,
                            std::vector<float>& high_shares) {
   if (options.high.empty())
@@ -104,7 +106,7 @@ GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer
   return std::move(divided.whole);
 }
 
-/// Dynamic maps of a frame, its own first, as densities over the standing scene.
+/// Dynamic maps of a frame (its own comes first) as densities over the static scene.
 std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing,
                                         const SceneFrame& frame) {
   std::vector<SignedDensity> maps;
@@ -126,7 +128,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   Output output(options.output, tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const bool standing = options.map == "static";
-  const auto state = [&](int number) { return standing ? standing_scene(input.at(number)) : input.at(number); };
+  const auto state = [&](int number) { return standing ? static_scene_of(input.at(number)) : input.at(number); };
   const SceneFrame first = state(frames.front());
   tool.stats().phase("build");
   const Tracer tracer(first);
@@ -170,11 +172,11 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
 }
 
 void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
-                           StandingTree& tree) {
+                           StaticTree& tree) {
   const int number = frames.front();
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(number), standing = standing_scene(frame);
+  const SceneFrame frame = input.at(number), standing = static_scene_of(frame);
   tool.stats().phase("build");
   const Tracer tracer(frame, tree), without(standing, tree);
   const Lights lights(frame, input.emission(frame.frame));

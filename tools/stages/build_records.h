@@ -1,4 +1,4 @@
-// tools/stages/build_records.h -- irradcache-build: records gathered for the cameras of frames, or updated for one
+// tools/stages/build_records.h -- irradcache-build: gathers records for the cameras of frames, or updates them for one
 // state of light.
 #pragma once
 
@@ -8,12 +8,12 @@
 
 namespace tempolux::tools {
 
-/// Records for the cameras of all frames: one cache, valid while nothing but the camera changes. Of what stands if
-/// options.map is "static".
+/// Writes the records for the cameras of all frames as one cache, which is valid while only the camera changes; of the
+/// static scene if options.map is "static".
 void build_records(Tool& tool, SceneInput& input, CacheOptions options, const std::vector<int>& frames);
-/// Records by localised gathering: those of what stands, updated, and new ones where movers matter to the cameras of
-/// `frames`, which are lit alike.
+/// Writes localised records: the static records, updated, and new records where movers change the light that the
+/// cameras of `frames` see. The frames must have the same light.
 void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
-                           StandingTree& tree);
+                           StaticTree& tree);
 
 }  // namespace tempolux::tools

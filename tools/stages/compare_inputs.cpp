@@ -1,4 +1,4 @@
-// tools/stages/compare_inputs.cpp -- loading the frames of a comparison and checking what scene they show.
+// tools/stages/compare_inputs.cpp -- loads the frames of a comparison and checks that they show the same scene.
 #include "tools/stages/compare_inputs.h"
 
 #include "formats/error.h"
@@ -10,7 +10,7 @@ namespace tempolux::tools {
 LoadedFrame::LoadedFrame(Tool& tool, const ComparedFiles& files, std::optional<int> frame) {
   const auto load = [&](const std::string& pattern, Image& image) -> NamedImage {
     const std::string file = frame ? frame_name(pattern, *frame) : pattern;
-    image = load_exr(file, {.allow_nan = true});  // pixels that do not count may hold anything
+    image = load_exr(file, {.allow_nan = true});  // pixels that do not count may have any value
     tool.depends_on(file);
     return {&image, file};
   };

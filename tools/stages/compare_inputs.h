@@ -11,7 +11,7 @@
 
 namespace tempolux::tools {
 
-/// Names or patterns; one reference or its two halves; mask, smooth, except and flow may be empty.
+/// Names or patterns. The reference is one file or two halves; mask, smooth, except and flow may be empty.
 struct ComparedFiles {
   std::string test;
   std::vector<std::string> references;
@@ -21,12 +21,12 @@ struct ComparedFiles {
 /// The images of one frame. Adds their files to the tool's dependencies.
 class LoadedFrame {
  public:
-  /// `frame` fills the patterns; without it names are taken as they are. Throws as load_exr does.
+  /// `frame` is filled into patterns; without it names are used unchanged. Throws as load_exr does.
   LoadedFrame(Tool& tool, const ComparedFiles& files, std::optional<int> frame);
   LoadedFrame(const LoadedFrame&) = delete;
   LoadedFrame& operator=(const LoadedFrame&) = delete;
 
-  /// Points into this object.
+  /// The result refers to this object.
   const ComparedInputs& inputs() const { return inputs_; }
   /// The flow's file, and the flow in it; nullptr without one.
   const Image* flow_image() const { return flow_ ? &flow_image_ : nullptr; }
@@ -40,10 +40,10 @@ class LoadedFrame {
   ComparedInputs inputs_;
 };
 
-/// Refuses frames of different scene states; warns once per run about frames that do not say theirs.
+/// Refuses frames of different states of the scene; warns once per run about frames without identity.
 class IdentityGuard {
  public:
-  /// With allow_stale different states are a warning.
+  /// With allow_stale different states only give a warning.
   IdentityGuard(Tool& tool, bool allow_stale) : tool_(tool), allow_stale_(allow_stale) {}
   /// Throws InputError naming both files and the hashes that differ.
   void check(const ComparedInputs& inputs);

@@ -17,7 +17,7 @@ bool wants(const CountOptions& options, formats::PathKind kind) {
   return std::size_t(kind) < 3 && std::ranges::find(options.kinds, kKinds[std::size_t(kind)]) != options.kinds.end();
 }
 
-/// 2^-44 of what all lamps emit, a power of two: a sum holds 2^19 times that flux.
+/// A power of two, about 2^-44 of the flux of all lights: a sum then holds 2^19 times that flux.
 double unit_of(double emitted) {
   return std::exp2(std::clamp(std::ceil(std::log2(std::max(emitted, 1e-300))), -900.0, 900.0) - 44);
 }
@@ -46,11 +46,11 @@ formats::PhotonMap read_map(Tool& tool, const std::string& name, const SceneFram
   return map;
 }
 
-/// Other frames of the segment of a frame, evaluated once.
+/// Other frames of a frame's segment, each evaluated once.
 class SegmentFrames {
  public:
   SegmentFrames(SceneInput& input, const SceneFrame& frame) : input_(input), frame_(frame) {}
-  /// Null outside the segment.
+  /// nullptr outside the segment.
   const SceneFrame* at(int number) {
     if (number == frame_.frame) return &frame_;
     if (number < frame_.segment.first || number > frame_.segment.last) return nullptr;
@@ -58,7 +58,7 @@ class SegmentFrames {
     if (is_new) found->second = input_.at(number, false);
     return &found->second;
   }
-  /// By which elements are cut: what moves as it is at the start, in the middle and at the end.
+  /// Frames whose shapes determine the size of elements: for moving surfaces the first, middle and last frame.
   std::vector<const SceneFrame*> measured() {
     const Segment& s = frame_.segment;
     return {at(s.first), at(s.first + (s.last - s.first) / 2), at(s.last)};
@@ -74,8 +74,8 @@ class SegmentFrames {
   std::map<int, SceneFrame> others_;
 };
 
-/// Of windows: the same in all frames of a segment, so they follow from the paths and not from the photons that were
-/// stored.
+/// Widths for windows: the same in all frames of a segment, so they are computed from the number of paths and not from
+/// the stored photons.
 MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& first, std::uint64_t paths) {
   MeshOptions mesh = window_widths(surface_area(first), double(paths) * options.frames);
   if (options.mesh.filter.width > 0) {
@@ -103,7 +103,7 @@ void add_count_options(CLI::App& app, CountOptions& options) {
 }
 
 CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame,
-                             StandingTree& standing) {
+                             StaticTree& standing) {
   tool.stats().phase("read photons");
   const std::string name = frame_name(options.photons, frame.frame);
   const formats::PhotonMap map = read_map(tool, name, frame, options);

@@ -27,7 +27,7 @@ std::vector<Rgbd> flux_of(const formats::MeshirradFile& file) {
   return flux;
 }
 
-void make_texture(Tool& tool, SceneInput& input, const Options& options, int number, StandingTree& standing) {
+void make_texture(Tool& tool, SceneInput& input, const Options& options, int number, StaticTree& standing) {
   Output output(frame_name(options.output, number), tool.common().no_clobber, Output::Kind::binary);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
@@ -78,7 +78,7 @@ int filter_mesh(int argc, char** argv) {
                                                                      : Kind::gaussian;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);
-    StandingTree standing;
+    StaticTree standing;
     for (const int frame : frames) make_texture(tool, input, options, frame, standing);
     return exit_ok;
   });

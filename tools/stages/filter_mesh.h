@@ -3,7 +3,7 @@
 
 namespace tempolux::tools {
 
-/// The whole program `st-filter mesh`; argv[0] is that word. Returns the exit code.
+/// The program `st-filter mesh`; argv[0] is "mesh". Returns the exit code.
 int filter_mesh(int argc, char** argv);
 
 }  // namespace tempolux::tools

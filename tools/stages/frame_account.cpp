@@ -28,7 +28,7 @@ std::string noise_line(const RenderedFrame& rendered) {
   return line + "; " + number(rendered.samples_per_pixel) + " samples a pixel";
 }
 
-/// Of a layer's parts the one that is farthest off in light, if surely so.
+/// The part of a layer with the largest difference in light, if the difference is significant.
 const AuditEntry* worst_of(const std::vector<AuditEntry>& audit, Layer layer, const std::string& kind) {
   const AuditEntry* worst = nullptr;
   for (const AuditEntry& entry : audit) {
@@ -47,7 +47,7 @@ std::string percent(double value, double error) {
   return text;
 }
 
-/// An object by the name that its file gives it; other parts as they are called.
+/// An object by its name in the file; other parts by their description.
 std::string in_words(const AuditEntry& part, const std::vector<std::string>& object_names) {
   const bool named = part.object < object_names.size() && !object_names[part.object].empty();
   return named ? part.part + " \"" + object_names[part.object] + "\"" : part.part;
@@ -99,8 +99,8 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
   return numbers;
 }
 
-void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
-                 const FrameOptions& asked, const std::vector<std::string>& object_names) {
+void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
+                    const FrameOptions& asked, const std::vector<std::string>& object_names) {
   for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);
   if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
   for (const AuditEntry& entry : audit) {

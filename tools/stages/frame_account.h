@@ -1,5 +1,4 @@
-// tools/stages/frame_account.h -- what a frame says of its own error: in stats, in its header and on the
-// terminal.
+// tools/stages/frame_account.h -- reports a frame's error: in stats, in its header and on the terminal.
 #pragma once
 
 #include <map>
@@ -12,15 +11,14 @@
 
 namespace tempolux::tools {
 
-/// Numbers by the names that formats/frames/frames.md and formats/stats/stats.md give them, for instance
-/// "noise.direct.codes". Of a frame whose noise is not known: none.
-/// audit: entries of FrameAudit, if there was one.
+/// Figures under the names of formats/frames/frames.md and formats/stats/stats.md, for instance "noise.direct.codes".
+/// Empty if the frame's noise is unknown. audit: entries of FrameAudit, if there was an audit.
 std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit);
 
-/// Says them: results of --stats, a line each with --verbose, a warning if `asked` (FrameOptions::seen_error)
-/// was not reached, and one for each layer that is biased (is_biased). object_names: by id.object, those of the scene's
-/// file.
-void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
-                 const FrameOptions& asked, const std::vector<std::string>& object_names);
+/// Reports the figures: in --stats, as lines with --verbose, as a warning if `asked` (FrameOptions::seen_error) was not
+/// reached, and as a warning for each biased layer (is_biased). object_names: the names in the scene's file, by
+/// id.object.
+void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit,
+                    const FrameOptions& asked, const std::vector<std::string>& object_names);
 
 }  // namespace tempolux::tools

@@ -6,7 +6,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// "f.0012.exr" -> "f.0012_a.exr"
+/// "f.0012.exr" becomes "f.0012_a.exr".
 std::string half_name(const std::string& path, char letter) {
   const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
   const std::size_t end = dot == std::string::npos || (slash != std::string::npos && dot < slash) ? path.size() : dot;

@@ -1,4 +1,4 @@
-// tools/stages/frame_output.h -- the EXR files of one rendered frame: the mean and, if asked for, its halves.
+// tools/stages/frame_output.h -- writes the EXR files of one rendered frame: the mean and, on request, its halves.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace tempolux::tools {
 
-/// What a frame says about itself in its attributes (formats/frames/frames.md).
+/// The attributes of a frame (formats/frames/frames.md).
 struct FrameDescription {
   formats::Identity identity;
   std::string history;
@@ -26,10 +26,10 @@ struct FrameDescription {
 
 class FrameOutputs {
  public:
-  /// Creates the files at once: an unwritable place is noticed before the work.
+  /// Creates the files at once, so that an unwritable place is reported before the work.
   FrameOutputs(const std::string& path, bool halves, bool no_clobber);
-  /// Writes and commits all of them. `data` holds the data channels already; where there is a mask, pixels it
-  /// leaves out are those of `base`.
+  /// Writes and commits all files. `data` holds the data channels already; with a mask, pixels outside the mask are
+  /// copied from `base`.
   void write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
              const FrameDescription& description, const ExrWriteOptions& options, const std::vector<std::uint8_t>& mask,
              const Image& base);

@@ -11,7 +11,7 @@
 namespace tempolux::tools {
 namespace {
 
-/// Light that the scene has and a file lacks is not left out without a word. `remedy`: how to make a file that has it.
+/// Refuses a file that lacks light of the scene. `remedy` names the command that makes a complete file.
 void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, const std::vector<std::string>& wanted,
                  const SceneFrame& frame, const std::string& remedy) {
   const Lobes lobes = lobes_of(frame);
@@ -25,7 +25,7 @@ void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, 
   }
 }
 
-/// A part of the light taken for all of it would be light lost without a word.
+/// Refuses one part of a divided file where the whole is needed: its missing light would be lost silently.
 void refuse_part(const std::string& file, const std::string& part) {
   if (!part.empty())
     throw InputError(file + ": holds the " + part +
@@ -58,7 +58,7 @@ GatherPoints checked_points(Tool& tool, const std::string& file, const formats::
           in.header.history, in.header.emitted_count};
 }
 
-/// One of the files of photonmap-split.
+/// Loads one of the files of photonmap-split.
 formats::IrradpointsFile load_part(Tool& tool, const std::string& file, const std::string& part,
                                    const std::string& option) {
   tool.depends_on(file);
@@ -86,7 +86,7 @@ DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file,
   check_identity(tool, high_file, high.header.identity, frame);
   DividedGatherPoints divided;
   divided.high_shares = tempolux::join_parts(low.records, high.records);
-  // Points of a surface are the first of one sequence: fewer of them lie at places that more of them have, too.
+  // Points of a surface are a prefix of one sequence, so the files must hold the same points.
   if (divided.high_shares.size() != low.records.size() || low.header.origin != high.header.origin ||
       low.header.spacing != high.header.spacing || low.header.emitted_count != high.header.emitted_count)
     throw InputError(high_file + ": its points are not those of " + low_file + "; give the two parts of one file");
@@ -130,8 +130,7 @@ DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const 
           "; give " + (is_high ? "--high" : "--photons") + " the " + part + " part that photonmap-split writes");
   }
   const formats::PhotonHeader &one = map.whole.header, &other = map.high.header;
-  // A photon's place is one of the whole map's: both parts have its paths, its flux sent out and the state of the
-  // scene.
+  // Both parts must come from one map: the same paths, emitted flux and state of the scene.
   if (one.emitted_count != other.emitted_count || one.origin != other.origin || one.columns != other.columns ||
       one.kinds != other.kinds || one.map != other.map || map.whole.totals.emitted_flux != map.high.totals.emitted_flux)
     throw InputError(high + ": its photons are not those of " + low + "; give the two parts of one file");

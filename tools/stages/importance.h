@@ -1,4 +1,4 @@
-// tools/stages/importance.h -- where photons from afar are aimed and irradiance points are spread: --importance.
+// tools/stages/importance.h -- --importance: where photons of distant light are aimed and irradiance points are spread.
 #pragma once
 
 #include <map>
@@ -10,24 +10,24 @@
 
 namespace tempolux::tools {
 
-/// The help of the option, whose value is FILE, none or "" (what the tool finds itself).
+/// Help of the option, whose value is FILE, none or "" (spheres found by the tool).
 inline constexpr const char* kImportanceHelp =
     "where photons of sun and sky are aimed and points lie closer together: a view file of scene-plan, "
     "state/FRAME-KEY.view; "
     "none: the whole scene; without it: what the camera sees over the frame's segment";
 
-/// What cameras see, in world space, segment by segment.
+/// Spheres around what the cameras see, in world space, by segment.
 class Importance {
  public:
-  /// `option` as above. The scene must have a camera if it is "".
+  /// `option` as above. If it is "" the scene must have a camera.
   Importance(Tool& tool, SceneInput& input, const std::string& option);
-  /// Spheres for the segment that holds the frame; none: no aim.
+  /// Spheres for the segment that holds the frame; empty: no aim.
   const std::vector<formats::ViewSphere>& at(int frame);
 
  private:
   Tool& tool_;
   SceneInput& input_;
-  bool own_;  ///< found by this tool, as scene-plan finds it
+  bool own_;  ///< true if this tool finds the spheres, as scene-plan does
   std::vector<formats::ViewSphere> given_;
   std::map<int, std::vector<formats::ViewSphere>> found_;  ///< by first frame of the segment
 };

@@ -5,7 +5,7 @@
 #include "lib/gather/lamp_light.h"
 #include "lib/gather/localised_file.h"
 #include "lib/gather/whole_photons.h"
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 namespace tempolux::tools {
 
@@ -55,7 +55,7 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
 void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
   const SceneFrame& frame = tracer.frame();
   const std::string name = frame_name(options.photons, number);
-  // Do photons tell indirect light, too? Beside a map of caustic photons paths find it.
+  // True if photons give indirect light, too. With a map of caustic photons only, camera paths find indirect light.
   const bool alone =
       options.irradcache.empty() && options.points.empty() && options.meshirrad.empty() &&
       (options.photons_alone || formats::PhotonReader(name, {.digest = false}).header().kinds != "caustic");
@@ -76,7 +76,7 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
     const auto wanted = [alone](Vec3, const formats::Photon& photon) {
       return alone || photon.kind == formats::PathKind::caustic;
     };
-    map = read_photons(tool, name, standing_scene(frame), needed, "static", wanted);
+    map = read_photons(tool, name, static_scene_of(frame), needed, "static", wanted);
     const formats::PhotonMap dynamic =
         read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
     formats::PhotonBlock whole = whole_photons({map, dynamic, shift(map), shift(dynamic)}, wanted);

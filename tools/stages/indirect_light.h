@@ -1,4 +1,5 @@
-// tools/stages/indirect_light.h -- where a frame's caustic and indirect light comes from: photons, or a cache.
+// tools/stages/indirect_light.h -- opens the sources of a frame's caustic and indirect light: photons, points or a
+// cache.
 #pragma once
 
 #include <memory>
@@ -13,21 +14,23 @@ namespace tempolux::tools {
 
 struct IndirectLightOptions {
   std::string photons, irradcache, points, meshirrad;  ///< files, or patterns; "": none
-  std::string dynamic;                                 ///< the same: photons is then the segment's static map
-  std::string high;            ///< the same: points, or without points photons, is then the low part of photonmap-split
-  int high_samples = 4;        ///< of an eye path
-  bool photons_alone = false;  ///< photons must tell indirect light
+  std::string dynamic;  ///< files or patterns, "": none; with these `photons` is the segment's static map
+  /// Files or patterns, "": none; with these `points` (or, without points, `photons`) is the low part of photonmap-
+  /// split.
+  std::string high;
+  int high_samples = 4;        ///< samples of bright points per camera path
+  bool photons_alone = false;  ///< true: photons must give indirect light
   PhotonLightOptions photon_light;
-  InfluenceThresholds influence;  ///< of a localised cache
+  InfluenceThresholds influence;  ///< for a localised cache
 };
 
-/// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
+/// Opens the files of the options, checks them against the frame's identity, and owns them while the frame is rendered.
 class IndirectLight {
  public:
   IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
                 std::uint64_t seed, int number);
 
-  /// Empty if none was named: paths alone.
+  /// Empty without any file: camera paths find all light.
   const KnownLight& get() const { return known_; }
   const std::string& history() const { return history_; }
 

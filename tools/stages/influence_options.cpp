@@ -8,16 +8,17 @@
 namespace tempolux::tools {
 void influence_options(Tool& tool, InfluenceThresholds& thresholds) {
   CLI::App& app = tool.app();
-  app.add_option(
-         "--influence-low", thresholds.low,
-         "up to this influence of what moves, a share of the static irradiance, indirect light is that of records that "
-         "stand, updated by dynamic photons")
+  app.add_option("--influence-low", thresholds.low,
+                 "up to this influence of the movers, as a share of the static irradiance, indirect light is read from "
+                 "static records, updated by dynamic photons")
       ->capture_default_str()
       ->check(number_between(0));
-  app.add_option("--influence-high", thresholds.high, "from this influence on it is gathered anew; blended in between")
+  app.add_option("--influence-high", thresholds.high,
+                 "from this influence on indirect light is gathered anew; blended in between")
       ->capture_default_str()
       ->check(number_above(0));
-  app.add_flag("--influence-absolute", thresholds.absolute, "thresholds are irradiance, W/m^2, not shares of it");
+  app.add_flag("--influence-absolute", thresholds.absolute,
+               "thresholds are in W/m^2, not shares of the static irradiance");
 }
 
 void check_influence(const InfluenceThresholds& thresholds) {

@@ -6,9 +6,9 @@
 
 namespace tempolux::tools {
 
-/// --influence-low, --influence-high, --influence-absolute.
+/// Adds --influence-low, --influence-high and --influence-absolute.
 void influence_options(Tool& tool, InfluenceThresholds& thresholds);
-/// InputError unless 0 <= low < high.
+/// Throws InputError unless 0 <= low < high.
 void check_influence(const InfluenceThresholds& thresholds);
 
 }  // namespace tempolux::tools

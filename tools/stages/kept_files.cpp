@@ -26,7 +26,7 @@ std::string hash_of(const formats::RadsamplesRecord& record, const SeenSamples& 
   return hasher.hex();
 }
 
-/// What of the records is not of the scene; "" if all is.
+/// What in the records does not fit the scene; "" if all does.
 std::string fault_of(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points) {
   if (kept.point_light.size() != points.anchored)
     return "it has the light of " + std::to_string(kept.point_light.size()) + " points, of " +
@@ -96,7 +96,7 @@ void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHead
   for (std::uint32_t i = 0; i < hashes.size(); ++i) records_.emplace(hashes[i], i);
 }
 
-/// False, and nothing done, if less than half of the samples are the base's.
+/// Writes an overlay of the base. False, and nothing is written, if less than half of the samples are the base's.
 bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::string>& hashes,
                               formats::RadsamplesFile& file) const {
   if (path_.empty() || !same_folder(path, path_) || segment_ != file.header.segment ||
@@ -210,7 +210,7 @@ std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const Sc
     if (whole) make_base(file, in.header, digest.of(in), hashes);
     return kept;
   } catch (const InputError&) {
-    return std::nullopt;  // cut off or damaged: made again
+    return std::nullopt;  // truncated or damaged: the caller makes it again
   }
 }
 

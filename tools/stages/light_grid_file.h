@@ -1,4 +1,4 @@
-// tools/stages/light_grid_file.h -- .lightgrid files: what frame-render learned of light from far away.
+// tools/stages/light_grid_file.h -- reads and writes .lightgrid files: learned visibility of distant light.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace tempolux::tools {
 
-/// Writes what was learned in `frame`; nullptr: no cells.
+/// Writes what was learned at `frame`; nullptr: a file without cells.
 void write_light_grid(Tool& tool, const LightGrid* grid, const SceneFrame& frame, Output& output);
 
-/// Reads a grid for `frame`; nullptr if it has no cells. One of another scene costs noise only, so it is taken as it
-/// is; InputError if its lattice is not that of the frame's space, or it has other parts of the sky than LightGrid.
+/// Reads a grid for `frame`; nullptr if it has no cells. A grid of another scene only causes noise, so it is accepted.
+/// Throws InputError if its lattice does not fit the frame's space, or its parts of the sky are not LightGrid's.
 std::unique_ptr<LightGrid> read_light_grid(Tool& tool, const std::string& file, const SceneFrame& frame);
 
 }  // namespace tempolux::tools

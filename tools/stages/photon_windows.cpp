@@ -28,7 +28,7 @@ struct Counted {
   FrameCounts counts;
 };
 
-/// Frames' counts, read or made once each and kept as long as a window reaches them.
+/// Counts of frames: each is read or made once, and kept as long as a window needs it.
 class Counts {
  public:
   /// `range`: the frames asked for, ascending.
@@ -42,7 +42,7 @@ class Counts {
     }
     named_ = true;
   }
-  /// Of the frames around one that the range holds; the one itself at `at`.
+  /// The counts of a frame and its neighbours in the range; `at` receives the frame's own index.
   std::vector<std::shared_ptr<const Counted>> around(const SceneFrame& frame, std::size_t& at) {
     std::vector<std::shared_ptr<const Counted>> found;
     const int first = std::max(frame.frame - options_.window.reach, frame.segment.first);
@@ -95,12 +95,12 @@ class Counts {
   SceneInput& input_;
   const Options& options_;
   const std::vector<int>& range_;
-  StandingTree standing_;
-  bool named_ = false;  ///< by names, not by a pattern or photons
+  StaticTree standing_;
+  bool named_ = false;  ///< true if counts are given as a list of names, not as a pattern or photons
   std::map<int, std::shared_ptr<const Counted>> kept_;
 };
 
-/// Counts of a window are of one segment, one mesh and one kind.
+/// Checks that the counts of a window are of one segment, one mesh and one kind.
 void check_alike(const Counted& here, const Counted& other) {
   const auto& a = here.header;
   const auto& b = other.header;
@@ -125,13 +125,13 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
   file.header.holds = formats::MeshHolds::windows;
   file.header.jump = false;
   file.header.history += tool.history_line(number);
-  // What moves is cut as the counts are; the frames by which they were cut are looked at again.
+  // Elements of moving surfaces depend on the frames by which they were cut, so these are evaluated again.
   const Segment& s = frame.segment;
   std::vector<SceneFrame> others;
   for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last})
     others.push_back(f == number ? frame : input.at(f, false));
   file.elements = all_elements(frame, MeshCuts(here.header.cell, {&others[0], &others[1], &others[2]}));
-  std::vector<FrameCounts> scaled;  // units of this frame
+  std::vector<FrameCounts> scaled;  // scaled to this frame's unit
   std::vector<const FrameCounts*> window;
   scaled.reserve(found.size());
   for (const auto& counted : found) {
@@ -201,7 +201,7 @@ int photon_windows(int argc, char** argv) {
   tool.common_options(uses_scene | uses_frames);
   return tool.run([&] {
     std::vector<int> frames = tool.common().frames;
-    std::ranges::sort(frames);  // each is read once
+    std::ranges::sort(frames);  // each frame is read once
     check(options, frames);
     options.count.frames = 2 * options.window.reach + 1;
     tool.stats().phase("load");

@@ -1,4 +1,4 @@
-// tools/stages/photon_windows.h -- gather-temporal density.
+// tools/stages/photon_windows.h -- the program gather-temporal density.
 #pragma once
 
 namespace tempolux::tools {

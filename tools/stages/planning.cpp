@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPlansKept = 2;  ///< earlier plans whose files are kept, so that going back to a mode makes nothing again
+/// Earlier plans whose files are kept, so that going back to an earlier wish makes nothing again.
+constexpr int kPlansKept = 2;
 
 void make_folder(const std::string& folder) {
   std::error_code error;
@@ -42,7 +43,7 @@ void write_if_changed(const std::string& path, const std::string& content) {
   if (!fs::exists(path) || content_of(path) != content) write_whole(path, content);
 }
 
-/// Names of the files of a plan, a line each, without extensions: what is beside a file goes with it.
+/// Names of a plan's files, one per line, without extension: files in `beside` share the name.
 std::string stems(const Graph& graph, const std::vector<std::string>& others) {
   std::set<std::string> names(others.begin(), others.end());
   for (const GraphFile& file : graph.files) names.insert(stem_of(file.name));
@@ -52,7 +53,7 @@ std::string stems(const Graph& graph, const std::vector<std::string>& others) {
   return text;
 }
 
-/// "0012-3fa94c21d0": does a name look like those that make_graph gives?
+/// True if a name looks like those of make_graph: "0012-3fa94c21d0".
 bool has_key(const std::string& stem) {
   const std::size_t dash = stem.rfind('-');
   if (dash == std::string::npos || stem.size() - dash != 11 || dash < 4) return false;
@@ -62,7 +63,7 @@ bool has_key(const std::string& stem) {
   return all_in(stem.substr(0, dash), "0123456789+") && all_in(stem.substr(dash + 1), "0123456789abcdef");
 }
 
-/// Removes what no plan names any more from the folders of stages. Names that are not ours stay.
+/// Removes files from the stages' folders that no kept plan names. Files with other names stay.
 void remove_expired(const std::string& folder, const std::set<std::string>& named) {
   std::set<std::string> folders{"state"};
   for (const StageInfo& stage : kStages) folders.insert(std::string(stage.folder));
@@ -80,7 +81,7 @@ void add_lines(const std::string& text, std::set<std::string>& lines) {
   for (std::string line; std::getline(stream, line);) lines.insert(line);
 }
 
-/// Hashes of the programs beside this one, with all modules and with `recipes`.
+/// Hashes of the programs in this program's folder, each with all modules and with `recipes`.
 ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
   const std::string programs = fs::read_symlink("/proc/self/exe").parent_path().string();
   Hasher shared;
@@ -141,7 +142,7 @@ void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const 
   write_if_changed(path_ + "/state/warnings", warnings);
   write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history));
   write_if_changed(path_ + "/plan.mk", plan_makefile(planned.plan, planned.graph, tool_hash));
-  write_whole(path_ + "/state/inputs", inputs_.text(wish));  // last: from here on the plan is up to date
+  write_whole(path_ + "/state/inputs", inputs_.text(wish));  // written last: from here on the plan is up to date
 }
 
 Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes,
@@ -180,7 +181,7 @@ Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const s
   for (const std::string& file : input_.media_files()) {
     folder->inputs().hash_of(file);
     folder->inputs().hash_of(
-        fs::absolute(file).parent_path().string());  // a file that comes or goes is a change as well
+        fs::absolute(file).parent_path().string());  // a new or removed file in the folder is a change, too
   }
 }
 

@@ -1,4 +1,5 @@
-// tools/stages/planning.h -- what scene-plan does: looks whether anything changed, plans, and writes the plan's files.
+// tools/stages/planning.h -- the work of scene-plan: checks whether anything changed, plans, and writes the plan's
+// files.
 #pragma once
 
 #include <array>
@@ -11,27 +12,26 @@
 
 namespace tempolux::tools {
 
-/// A plan and its files, before they are written.
+/// A plan and its graph, before they are written.
 struct Planned {
   Plan plan;
   Graph graph;
   std::string scene_name;
-  std::vector<std::string> warnings;  ///< that were given for the scene
+  std::vector<std::string> warnings;  ///< warnings about the scene
 };
 
-/// The folder that a plan lies in, which is the folder of all files that it names.
+/// The folder of a plan and of all files that the plan names.
 class PlanFolder {
  public:
-  /// Makes the folder. Throws ResourceError if it cannot.
+  /// Creates the folder. Throws ResourceError if it cannot.
   explicit PlanFolder(std::string path);
 
   Inputs& inputs() { return inputs_; }
-  /// Whether the plan in the folder is that of this wish and nothing that it was made from has changed.
+  /// True if the folder's plan is of this wish and none of its inputs has changed.
   bool up_to_date(const std::string& wish);
-  /// The decisions for a segment: those that an earlier plan made for the same content, else `decide` makes them and
-  /// they are kept.
+  /// The decisions for a segment: from an earlier plan with the same key, else from `decide`; they are then kept.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
-  /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before it name.
+  /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before name.
   void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history);
 
  private:
@@ -40,32 +40,32 @@ class PlanFolder {
   std::vector<std::string> decided_;  ///< files that decisions() has read or written
 };
 
-/// Plans the frames asked for. The files that it reads become inputs of the folder.
+/// Plans the frames asked for. All files that it reads become inputs of the folder.
 class Planner {
  public:
-  /// Reads the scene. `folder`: nullptr if nothing is to be kept. `recipes`: files that hold the rules.
+  /// Reads the scene. `folder`: nullptr if nothing is kept. `recipes`: the files with the rules.
   Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes,
           PlanFolder* folder);
 
   const Planned& planned() const { return planned_; }
   const ToolHash& tool_hash() const { return tool_hash_; }
-  /// The files for other decisions or another wish.
+  /// The graph for a changed plan or wish.
   Graph graph(const Plan& plan, const Wish& wish);
 
  private:
   Inputs none_{""};
-  ToolHash tool_hash_;  ///< of the programs beside this one, with all modules and with `recipes`
+  ToolHash tool_hash_;  ///< of the programs in this program's folder, with all modules and with `recipes`
   SceneInput input_;
   Planned planned_;
 };
 
-/// Options that all stages share and that no state of the scene holds: they are a part of what files are made from, as
-/// typed. What names of files stand for, segments and the choice of an animation is in the states.
+/// Options that all stages share and that are not part of the scene's states: they enter the keys as typed. Input
+/// files, segments and the choice of an animation are part of the states.
 inline constexpr std::array kSharedWords{"--fps", "--reduce-textures", "--max-texture", "--allow-outside",
                                          "--allow-stale"};
 
-/// Throws InputError, naming the option, unless the words are letters, digits, blanks and . , : + - _ % /: they stand
-/// in plan.mk, where other characters would mean something.
+/// Throws InputError, naming the option, unless the words consist of letters, digits, blanks and . , : + - _ % /. They
+/// are written to plan.mk, where other characters have a meaning.
 void check_words(const std::string& option, const std::string& words);
 
 }  // namespace tempolux::tools

@@ -18,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWidth = 128;  ///< pixels of the larger sample, at most half of the picture
+constexpr double kWidth = 128;  ///< width in pixels of the larger sample, at most half of the picture's
 constexpr int kFewerRays = 4;   ///< of a record
 constexpr std::array kSamples{"small", "large"};
 
-/// How often a stage runs for the frames asked for, and how much more its files take than those of a sample, but for
-/// the size of the picture: mean factors of work and of bytes.
+/// How often a stage runs for the frames asked for, and the mean factors by which its work and bytes exceed a sample's,
+/// apart from the size of the picture.
 struct Runs {
   double count = 0, work = 0, bytes = 0;
 };
@@ -31,13 +31,13 @@ struct Runs {
 bool makes_photons(const GraphFile& file) { return file.name.ends_with(".photons"); }
 bool makes_records(const GraphFile& file) { return file.name.ends_with(".irradcache"); }
 
-/// The value of --rays among words; 0: it is not there.
+/// The value of --rays among the options; 0 if missing.
 double rays_of(const std::string& words) {
   const std::size_t at = words.find("--rays ");
   return at == std::string::npos ? 0 : std::stod(words.substr(at + 7));
 }
 
-/// Cameras for which records are placed: frames of --frames.
+/// Number of cameras for which records are placed: the frames of --frames.
 double cameras_of(const std::string& words) {
   const std::size_t at = words.find("--frames ");
   return at == std::string::npos ? 1
@@ -67,7 +67,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sam
   return runs;
 }
 
-/// The first frame asked for, and the first that is warped.
+/// The first frame asked for, and the first warped frame.
 std::vector<int> sampled_frames(const Planned& planned) {
   std::vector<int> frames{planned.plan.frames.front()};
   const auto warped = std::ranges::find_if(
@@ -76,7 +76,7 @@ std::vector<int> sampled_frames(const Planned& planned) {
   return frames;
 }
 
-/// Of one file of a stage, the mean over those in a sample.
+/// Mean cost of one file of a stage in a sample.
 struct Cost {
   double fixed_cpu_s = 0, work_cpu_s = 0, bytes = 0;
 };
@@ -88,7 +88,7 @@ std::set<std::string> work_phases(const StageInfo& stage) {
   return work;
 }
 
-/// `stems`: of the files, in `folder`. None: they have no statistics.
+/// `stems`: names of the files in `folder`. Empty if they have no statistics.
 std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage, const std::vector<std::string>& stems) {
   const std::set<std::string> work = work_phases(stage);
   Cost mean;

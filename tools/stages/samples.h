@@ -1,5 +1,5 @@
-// tools/stages/samples.h -- make estimate: small plans that make runs, from whose statistics the whole run is
-// estimated.
+// tools/stages/samples.h -- make estimate: two small plans that make runs, from whose statistics the whole run's cost
+// follows.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace tempolux::tools {
 
-/// Writes two plans into the folder, small.mk and large.mk, which make the first picture of the plan, and the first
-/// that is warped, 64 and 128 pixels wide, with fewer photons, gather rays and cameras that share records; and
-/// samples.json: their files, and how often each stage runs in the plan itself.
+/// Writes two plans into the folder, small.mk and large.mk, 64 and 128 pixels wide, with fewer photons, gather rays and
+/// cameras that share records. They make the first picture of the plan and the first warped picture. samples.json lists
+/// their files, and how often each stage runs in the full plan.
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish);
 
-/// What the plan will cost, from the samples after make has made them: of each stage its mean file in both. Start and
-/// scene are the same in the whole run; work and bytes go on by the power law of the width of the picture that the two
-/// samples show, times photons, rays and cameras. InputError if the folder does not hold that.
+/// Estimates the cost of the full plan after make has made the samples, from each stage's mean cost in both. The time
+/// to start and to load the scene is constant; work and bytes follow the power law of the picture's width through the
+/// two samples, times photons, rays and cameras. Throws InputError if the folder does not hold the samples.
 std::vector<StageEstimate> estimate_from(const std::string& folder);
 
 }  // namespace tempolux::tools

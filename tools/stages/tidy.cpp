@@ -1,4 +1,4 @@
-// tools/stages/tidy.cpp
+// tools/stages/tidy.cpp -- finds and removes temporary files of dead processes.
 #include "tools/stages/tidy.h"
 
 #include <fcntl.h>
@@ -20,13 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Who wrote a temporary file, as its name says.
+/// The process that wrote a temporary file, from its name.
 struct Writer {
   std::string host;
   pid_t process = 0;
 };
 
-/// Of ".NAME.tmp.HOST.PROCESS", with a NAME and a HOST; nothing for any other name.
+/// Parses ".NAME.tmp.HOST.PROCESS"; empty for any other name.
 std::optional<Writer> writer_of(const std::string& name) {
   const std::size_t dot = name.rfind('.'), mark = name.rfind(".tmp.", dot);
   if (name.empty() || name[0] != '.' || mark == std::string::npos || mark < 2 || mark + 5 >= dot) return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<Writer> writer_of(const std::string& name) {
   return process > 0 ? std::optional(Writer{name.substr(mark + 5, dot - mark - 5), process}) : std::nullopt;
 }
 
-/// Nobody holds the file open for writing: Output locks what it writes.
+/// True if no process holds the file's lock: Output locks the file that it writes.
 bool is_unlocked(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (file < 0) return false;

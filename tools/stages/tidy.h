@@ -1,4 +1,4 @@
-// tools/stages/tidy.h -- removes what killed runs have left.
+// tools/stages/tidy.h -- removes temporary files of killed runs.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,13 @@
 namespace tempolux::tools {
 
 struct Tidied {
-  std::size_t removed = 0, kept = 0;  ///< kept: of a process that may still live
-  std::uintmax_t bytes = 0;           ///< of the removed
+  std::size_t removed = 0, kept = 0;  ///< kept: files of processes that may still run
+  std::uintmax_t bytes = 0;           ///< of the removed files
 };
 
-/// Removes temporary files of our outputs (`.NAME.tmp.HOST.PROCESS`, Output) from a folder and all folders in it:
-/// those of this host whose process is gone and whose lock is free, and those of other hosts not written to for
-/// `other_hosts_s` seconds. Nothing else is touched; symbolic links are not followed. Throws InputError if it is
-/// no folder.
+/// Removes temporary files of Output (`.NAME.tmp.HOST.PROCESS`) from a folder and its subfolders: files of this host
+/// whose process has ended and whose lock is free, and files of other hosts that were not written for `other_hosts_s`
+/// seconds. Other files stay; symbolic links are not followed. Throws InputError if the path is not a folder.
 Tidied tidy(const std::string& folder, double other_hosts_s);
 
 }  // namespace tempolux::tools

@@ -22,7 +22,7 @@ const std::map<std::string, UpdateStrategy> kStrategies{
     {"fde", UpdateStrategy::fde},       {"dip", UpdateStrategy::dip},       {"hybrid", UpdateStrategy::hybrid},
     {"path", UpdateStrategy::path},     {"all", UpdateStrategy::all}};
 
-/// "10%" or "10" as .1.
+/// Converts "10%" or "10" to .1.
 double share_of(const std::string& text, const char* option) {
   std::size_t read = 0;
   double percent = -1;
@@ -34,18 +34,18 @@ double share_of(const std::string& text, const char* option) {
   return percent / 100;
 }
 
-/// Are all states of the scene that light depends on those of the map?
+/// True if all states of the scene that light depends on are the map's.
 bool is_still(const formats::Identity& a, const formats::Identity& b) {
   return a.known() && a.static_geometry == b.static_geometry && a.moving_geometry == b.moving_geometry &&
          a.materials == b.materials && a.lights == b.lights && a.media == b.media;
 }
 
-/// --refine works on the map of the frame itself, an update on that of the frame before.
+/// --refine reads the map of the frame itself, --update the map of the previous frame.
 std::string previous_name(const UpdateArguments& arguments, int frame) {
   return frame_name(arguments.update, parse_count(arguments.refine) > 0 ? frame : frame - 1);
 }
 
-/// Groups that the share has room for beside `spent` paths of pilots; with corrective photons a group counts twice.
+/// Groups that fit into the share besides `spent` paths of pilots; with corrective photons a group counts twice.
 std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& photons, std::uint64_t spent) {
   if (arguments.share.empty()) return arguments.max_groups;
   const double paths = share_of(arguments.share, "--share") * double(photons.photon_count()) - double(spent);
@@ -53,7 +53,7 @@ std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& 
   return std::uint64_t(std::max(0.0, spent > 0 || arguments.corrective ? std::floor(groups) : std::ceil(groups)));
 }
 
-/// A quarter of the memory at most, as other parts need some.
+/// True if the map takes at most a quarter of the memory.
 bool may_keep(const Tool& tool, std::uint64_t photons) {
   constexpr std::uint64_t bytes_of_photon = sizeof(formats::Photon) + sizeof(std::array<std::uint16_t, 2>);
   auto memory = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
@@ -115,7 +115,7 @@ void add_update_options(CLI::App& app, UpdateArguments& arguments) {
                  "least one, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
-  // For comparisons with the papers: no part of the help. docs/methods/volume_photons.md has what they do.
+  // For comparison with the papers, so --help does not show them: docs/methods/volume_photons.md.
   app.add_option("--age-floor", arguments.how.age_floor,
                  "of --update: groups as many frames old go before all others; 0: none")
       ->group("")
@@ -177,7 +177,7 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   tool.depends_on(name, InputRole::replaceable);
   if (const std::uint64_t extra = parse_count(arguments.refine); extra > 0)
     return refine_map(tool, name, extra, map, sink);
-  // Where nothing has changed no group is traced: nobody need look.
+  // If nothing has changed no group is traced, so changes need not be measured.
   const bool is_here = kept.name == name && kept.map.is_kept();
   const formats::PhotonHeader before =
       is_here ? kept.map.header : formats::PhotonReader(name, {.digest = false}).header();

@@ -1,4 +1,4 @@
-// tools/stages/update_photons.h -- photon-trace --update and --refine: a map made from an earlier one.
+// tools/stages/update_photons.h -- photon-trace --update and --refine: makes a map from an earlier one.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 namespace tempolux::tools {
 
 struct UpdateArguments {
-  std::string update;  ///< file or pattern; "": trace anew
+  std::string update;  ///< file or pattern; "": no earlier map
   std::string share, pilots = "0%", strategy = "oldest";
   std::uint64_t max_groups = 0;
   std::string refine = "0";
@@ -22,32 +22,32 @@ struct UpdateArguments {
 };
 
 void add_update_options(CLI::App& app, UpdateArguments& arguments);
-/// Refuses what does not fit together; sets `how`. `static_or_dynamic`: --map is not global.
+/// Refuses options that contradict each other; sets `how`. `static_or_dynamic`: --map is not global.
 void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments);
 
-/// Pilots of each group in the map to come: of an update those of the map before.
+/// Pilots per group of the new map; for an update those of the earlier map.
 std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& photons, int frame);
 
-/// What a new map is made from.
+/// Inputs of a new map.
 struct MapToUpdate {
   const SceneFrame& frame;
   const PhotonTracer& photons;
   const PhotonOptions& options;
-  const formats::PhotonHeader& header;  ///< of a map made anew
-  std::string output;                   ///< name of the file to come
+  const formats::PhotonHeader& header;  ///< of the map, if it were traced whole
+  std::string output;                   ///< name of the new file
   std::function<std::shared_ptr<const PhotonTracer>(int frame)>
-      tracer_at;  ///< the same through the smoke of another frame
+      tracer_at;  ///< the tracer for the smoke of another frame
 };
-/// Of a range: the map before stays in memory for the next frame, if it takes at most a quarter of it (--max-memory, or
-/// the machine's).
+/// The previous map, kept in memory for the next frame of a range if it takes at most a quarter of the memory
+/// (--max-memory, or the machine's).
 struct KeptMap {
-  bool wanted = false;  ///< there is a next frame
-  std::string name;     ///< of the map's file; "": none is kept
+  bool wanted = false;  ///< true if there is a next frame
+  std::string name;     ///< of the map's file; "": no map is kept
   PreviousMap map;
 };
 
-/// Writes the map of the frame through `sink`, as --update, --refine and --corrective ask. Counts groups and pilots for
-/// --stats. `kept`: the map before, if it is there; becomes the new one, if that can be kept.
+/// Writes the map of the frame through `sink`, according to --update, --refine and --corrective. Adds the numbers of
+/// groups and pilots to stats. `kept`: the previous map, if it is in memory; becomes the new map, if that can be kept.
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
                            const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept);
 

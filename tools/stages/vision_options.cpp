@@ -1,4 +1,4 @@
-// tools/stages/vision_options.cpp
+// tools/stages/vision_options.cpp -- aqm-compare's options of viewer and display.
 #include "tools/stages/vision_options.h"
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,8 @@ void declare_vision(Tool& tool, VisionWords& w) {
       ->type_name("NAME")
       ->capture_default_str()
       ->check(CLI::IsMember({"office", "hdr", "dark"}));
-  app.add_option("--peak", w.peak, "largest luminance of the display, cd/m2, and what white has; else --display's")
+  app.add_option("--peak", w.peak,
+                 "largest luminance of the display and luminance of white, cd/m2; default: --display's")
       ->type_name("VALUE")
       ->check(number_between(1, 1e5));
   app.add_option("--ppd", w.pixels_per_degree, "pixels per degree of the eye; else --display's")
@@ -42,11 +43,11 @@ void declare_vision(Tool& tool, VisionWords& w) {
                  "stops, as of tempolux-info --png; auto: the first frame's, for the whole sequence")
       ->type_name("{auto,STOPS}")
       ->capture_default_str();
-  app.add_option("--eye", w.eye, "track: eyes follow what moves; fixed: they do not")
+  app.add_option("--eye", w.eye, "track: eyes follow moving objects; fixed: they do not")
       ->type_name("{track,fixed}")
       ->capture_default_str()
       ->check(CLI::IsMember({"track", "fixed"}));
-  app.add_option("--fps", w.frames_per_second, "frames per second; else what the flow or the frame says, else 24")
+  app.add_option("--fps", w.frames_per_second, "frames per second; default: that of the flow or of the frame, else 24")
       ->type_name("VALUE")
       ->check(number_between(1e-3, 1e4));
 }
@@ -65,7 +66,7 @@ VisionOptions vision_options(const VisionWords& w, const LoadedFrame& first) {
   VisionOptions options;
   options.display = vision::display_named(w.display);
   if (w.peak > 0) {
-    const double scale = w.peak / options.display.peak;  // a brighter display of the same contrast
+    const double scale = w.peak / options.display.peak;  // a brighter display with the same contrast
     options.display.peak = options.display.white = w.peak;
     options.display.black *= scale;
   }

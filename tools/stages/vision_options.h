@@ -1,4 +1,4 @@
-// tools/stages/vision_options.h -- aqm-compare's options about who looks at which display.
+// tools/stages/vision_options.h -- aqm-compare's options of viewer and display.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,19 @@
 
 namespace tempolux::tools {
 
-/// Values of the options; numbers below 0 were not given.
+/// Values of the options; numbers below 0 mean that the option is not given.
 struct VisionWords {
   std::string flow, map, display = "office", exposure = "auto", eye = "track";
   double peak = -1, pixels_per_degree = -1, frames_per_second = -1;
 
-  /// One of the options that need the model of vision is there.
+  /// True if an option is given that needs the vision model.
   bool used() const { return !flow.empty() || !map.empty(); }
 };
 
 void declare_vision(Tool& tool, VisionWords& words);
-/// Throws InputError about words that do not go together, before anything is read.
+/// Throws InputError for options that contradict each other, before any file is read.
 void check_vision(const VisionWords& words, bool several_frames);
-/// What the words mean for a sequence whose first frame is `first`: it chooses the exposure and the frame
-/// rate that were not given.
+/// The options for a sequence whose first frame is `first`, from which exposure and frame rate are taken if not given.
 VisionOptions vision_options(const VisionWords& words, const LoadedFrame& first);
 
 /// Writes a frame's map: EXR, or PNG with the map over the frame.

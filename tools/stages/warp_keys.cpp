@@ -28,7 +28,7 @@ LoadedKey load_key(Tool& tool, const std::string& file) {
 
 bool is_foreign(const LoadedKey& key) { return key.history.empty() && !key.identity.known(); }
 
-/// One warning for all keys of other programs.
+/// Gives one warning about all keys from other programs.
 void warn_of_foreign(Tool& tool, const std::vector<LoadedKey>& keys) {
   std::string files;
   for (const LoadedKey& key : keys)
@@ -37,14 +37,14 @@ void warn_of_foreign(Tool& tool, const std::vector<LoadedKey>& keys) {
     tool.warn(files + ": by another program: taken as linear radiance of this scene, Z along the view axis in metres");
 }
 
-/// Do two frames show the same light on what stands? Unknown: not said.
+/// True if two frames are known to have different light on static surfaces.
 bool light_differs(const formats::Identity& a, const formats::Identity& b) {
   const auto differ = [](const std::string& x, const std::string& y) { return !x.empty() && !y.empty() && x != y; };
   return differ(a.lights, b.lights) || differ(a.moving_geometry, b.moving_geometry) ||
          differ(a.materials, b.materials) || differ(a.media, b.media);
 }
 
-/// Cameras of one frame are equal to float32, as attributes hold them.
+/// True if cameras of one frame are equal within float32, the precision of attributes.
 bool same_attributes(const FrameCamera& a, const FrameCamera& b, const std::vector<Vec3d>& points) {
   for (const Vec3d& point : points) {
     const auto x = a.project(a.camera_from_world().point(point)), y = b.project(b.camera_from_world().point(point));
@@ -121,7 +121,7 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     const SceneFrame& there = frames.at(*key.frame);
     if (!is_foreign(key)) check_identity(tool, key.file, key.identity, there);
     const bool same = same_attributes(key.key->camera(), frames.camera(*key.frame), key.points);
-    // The scene's camera in double, of which the attributes are a rounding.
+    // The scene's camera in double; the attributes are its rounded values.
     const FrameCamera& camera = same ? frames.camera(*key.frame) : key.key->camera();
     if (!same) {
       const std::string message =
@@ -136,7 +136,7 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     const int step = number < *key.frame ? -1 : 1;
     for (int f = *key.frame; f != number && !keys_.back().cut_off; f += step) {
       keys_.back().cut_off = is_cut(key.points, frames.camera(f), frames.camera(f + step));
-      std::vector<int> needed{number, f + step};  // of a key far away not all frames between are kept
+      std::vector<int> needed{number, f + step};  // for a distant key, not all frames between are kept
       for (const LoadedKey& each : keys) needed.push_back(each.frame.value_or(number));
       frames.keep(needed);
     }

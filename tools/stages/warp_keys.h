@@ -1,4 +1,4 @@
-// tools/stages/warp_keys.h -- the key frames of a warp: read, checked, and set beside the frame to make.
+// tools/stages/warp_keys.h -- reads and checks the key frames of a warp.
 #pragma once
 
 #include <map>
@@ -15,29 +15,29 @@
 
 namespace tempolux::tools {
 
-/// A key as it was read.
+/// A loaded key.
 struct LoadedKey {
   std::string file, history;
   formats::Identity identity;
-  std::optional<int> frame;  ///< tempolux:frame
+  std::optional<int> frame;  ///< from tempolux:frame
   std::unique_ptr<KeyFrame> key;
-  std::vector<Vec3d> points;  ///< grid_of_points()
+  std::vector<Vec3d> points;  ///< grid_of_points() of the key
 };
 
-/// One or two keys of one size and with the same colour channels. InputError otherwise, and for a key without depth,
-/// colour or camera. A key that another program wrote is taken with one warning.
+/// Loads one or two keys. Throws InputError if their sizes or colour channels differ, or a key lacks depth, colour or
+/// camera. A key from another program is accepted with one warning.
 std::vector<LoadedKey> load_keys(Tool& tool, const std::vector<std::string>& files);
 
-/// Frames of a scene as a warp needs them, each evaluated once.
+/// Frames of a scene for a warp, each evaluated once.
 class FramesOfScene {
  public:
   FramesOfScene(Tool& tool, SceneInput& input, int width, int height);
 
-  /// Frames outside the animation hold its ends. asked: the user has named it, and is warned then.
+  /// Frames outside the animation have its first or last state. asked: the user asked for this frame, and is warned.
   const SceneFrame& at(int frame, bool asked = false);
   const CameraView& view(int frame);
   const FrameCamera& camera(int frame);
-  /// Forgets all but these, and what lies within one frame of them.
+  /// Drops all frames except these and their neighbours.
   void keep(const std::vector<int>& frames);
 
  private:
@@ -49,13 +49,12 @@ class FramesOfScene {
   std::map<int, std::shared_ptr<Kept>> frames_;
 };
 
-/// Checks each key against the scene at its own frame: identity, and that it was seen by the camera asked for
-/// (InputError; with
-/// --allow-stale a warning). `number`: the frame to make. Says which keys are cut off from it.
+/// Checks each key against the scene at the key's frame: its identity, and its camera (InputError; with --allow-stale a
+/// warning). `number`: the frame to make. Finds the keys that a cut separates from the frame.
 class KeysOfFrame {
  public:
   KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesOfScene& frames, int number);
-  /// Without a scene: nothing is known to move, no cut is looked for.
+  /// Without a scene: motion is unknown, and no cut is searched for.
   KeysOfFrame(const std::vector<LoadedKey>& keys, const FrameCamera& target, const formats::Identity& target_identity);
 
   const std::vector<WarpKey>& get() const { return keys_; }

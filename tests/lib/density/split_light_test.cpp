@@ -46,9 +46,9 @@ PhotonBlock floor_with_spot(int count, int spot, std::uint64_t seed) {
   return block;
 }
 
-EnergyCells cells_of(const PhotonBlock& block, double edge, const EnergyLimit& limit) {
-  EnergyCells cells(edge, 0);
-  add_energy(block, cells);
+FluxCells cells_of(const PhotonBlock& block, double edge, const BrightLimit& limit) {
+  FluxCells cells(edge, 0);
+  add_flux(block, cells);
   cells.close(limit);
   return cells;
 }
@@ -88,7 +88,7 @@ TEST(PlanarHull, AreaOfPointsInASquareAndATriangleIsRightInTheMean) {
 }
 
 TEST(PlanarHull, EightPointsTellTheAreaToAHalf) {
-  // What EnergyCells leaves alone with fewer: the estimates' rms deviation from the square's area.
+  // What FluxCells leaves alone with fewer: the estimates' rms deviation from the square's area.
   double squares[2]{};
   for (const std::uint32_t count : {8u, 4u})
     for (int run = 0; run < 2000; ++run) {
@@ -144,13 +144,13 @@ TEST(Divide, PartsAddUpToTheLastBit) {
     }
 }
 
-TEST(EnergyCells, ASpotKeepsItsMultipleOfTheMean) {
+TEST(FluxCells, ASpotKeepsItsMultipleOfTheMean) {
   // 20000 photons on 64 m^2 and 20000 more on one of them. Mean irradiance 625, in the spot 20312.
   const PhotonBlock block = floor_with_spot(20000, 20000, 1);
-  const EnergyCells cells = cells_of(block, 0.5, {4});
+  const FluxCells cells = cells_of(block, 0.5, {4});
   // Each cell's area deviates by less than 10 %, 1 / sqrt(256 cells) of that in the sum.
   EXPECT_NEAR(cells.area(), 64, 64 * 0.02);
-  EXPECT_EQ(cells.energy(), 3 * 40000);
+  EXPECT_EQ(cells.flux(), 3 * 40000);
   const double kept = cells.low_share({{2.5f, 2.5f, 0}, kUp, 1});
   EXPECT_NEAR(kept, 4 * 625 / 20312.5, 0.2 * 4 * 625 / 20312.5);  // a cell's area and count: 10 % each
   EXPECT_EQ(cells.low_share({{6.5f, 6.5f, 0}, kUp, 1}), 1);
@@ -159,33 +159,33 @@ TEST(EnergyCells, ASpotKeepsItsMultipleOfTheMean) {
   EXPECT_LE(cells.bright_count(), 9u);
 }
 
-TEST(EnergyCells, OrderAndBlocksDoNotMatter) {
+TEST(FluxCells, OrderAndBlocksDoNotMatter) {
   PhotonBlock block = floor_with_spot(5000, 5000, 2);
-  const EnergyCells forwards = cells_of(block, 0.5, {});
+  const FluxCells forwards = cells_of(block, 0.5, {});
   std::shuffle(block.photons.begin(), block.photons.end(), std::minstd_rand(1));
-  const EnergyCells shuffled = cells_of(block, 0.5, {});
+  const FluxCells shuffled = cells_of(block, 0.5, {});
   for (const Photon& p : block.photons) ASSERT_EQ(forwards.low_share(place_of(p)), shuffled.low_share(place_of(p)));
   EXPECT_EQ(forwards.area(), shuffled.area());
 }
 
-TEST(EnergyCells, LimitsZeroAndInfinityAreAllAndNothing) {
+TEST(FluxCells, LimitsZeroAndInfinityAreAllAndNothing) {
   const PhotonBlock block = floor_with_spot(2000, 2000, 3);
   constexpr double inf = std::numeric_limits<double>::infinity();
-  for (const EnergyLimit limit : {EnergyLimit{0}, EnergyLimit{4, 0}}) {
+  for (const BrightLimit limit : {BrightLimit{0}, BrightLimit{4, 0}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     EXPECT_EQ(parts.high.photons, block.photons);
     EXPECT_TRUE(parts.low.photons.empty());
   }
-  for (const EnergyLimit limit : {EnergyLimit{inf}, EnergyLimit{4, 1e12}}) {
+  for (const BrightLimit limit : {BrightLimit{inf}, BrightLimit{4, 1e12}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     EXPECT_EQ(parts.low.photons, block.photons);
     EXPECT_TRUE(parts.high.photons.empty());
   }
 }
 
-TEST(EnergyCells, SidesAndObjectsAreCellsOfTheirOwn) {
+TEST(FluxCells, SidesAndObjectsAreCellsOfTheirOwn) {
   // A bright and a dark side of one wall, a bright and a dark object on one floor.
-  EnergyCells cells(1, 0.01);
+  FluxCells cells(1, 0.01);
   for (int i = 0; i < 100; ++i) {
     const float x = float(i % 10) * 0.05f, y = float(i / 10) * 0.05f;
     cells.add({{x, y, 0}, kUp, 1}, {100, 100, 100});
@@ -200,20 +200,20 @@ TEST(EnergyCells, SidesAndObjectsAreCellsOfTheirOwn) {
   EXPECT_EQ(cells.low_share({{0, 0, 0}, kUp, 2}), 1);
 }
 
-TEST(EnergyCells, ASurfaceAtZeroIsNotDealtOutToTwoCells) {
+TEST(FluxCells, ASurfaceAtZeroIsNotDealtOutToTwoCells) {
   // Heights of a floor at 0 come out as +-1e-8: without the grid's shift they alternate between two cubes.
-  EnergyCells cells(1, 0);
+  FluxCells cells(1, 0);
   for (int i = 0; i < 400; ++i)
     cells.add({{float(i % 20) * 0.01f, float(i / 20) * 0.01f, i % 2 ? 1e-8f : -1e-8f}, kUp, 1}, {1, 1, 1});
   EXPECT_EQ(cells.size(), 1u);
 }
 
-TEST(EnergyCells, AllInOnePointAndNothingAreNoError) {
+TEST(FluxCells, AllInOnePointAndNothingAreNoError) {
   PhotonBlock block;
-  EnergyCells none = cells_of(block, 1, {});
+  FluxCells none = cells_of(block, 1, {});
   EXPECT_EQ(none.mean_irradiance(), 0);
   for (int i = 0; i < 1000; ++i) block.photons.push_back(photon(1, 2, 3, 1));
-  const EnergyCells cells = cells_of(block, 1, {});  // no area, no mean: nothing is above it
+  const FluxCells cells = cells_of(block, 1, {});  // no area, no mean: nothing is above it
   EXPECT_EQ(divide(block, cells).low.photons.size() + divide(block, cells).high.photons.size(), 1000u);
   for (Photon& p : block.photons) p.flux = {-1, 0, -2};  // a dynamic map: negative only
   const DividedPhotons parts = divide(block, cells_of(block, 1, {4, 10}));
@@ -221,7 +221,7 @@ TEST(EnergyCells, AllInOnePointAndNothingAreNoError) {
   EXPECT_NEAR(parts.low.photons[0].flux[0], -0.01f, 0x1p-24f);  // the larger part's rounding
 }
 
-TEST(EnergyCells, ReflectedShareMakesDarkSurfacesLessBright) {
+TEST(FluxCells, ReflectedShareMakesDarkSurfacesLessBright) {
   PhotonBlock block = floor_with_spot(5000, 5000, 4);
   for (const Photon& p : block.photons) {
     const bool spot = p.position[0] > 2 && p.position[0] < 3 && p.position[1] > 2 && p.position[1] < 3;
@@ -253,7 +253,7 @@ TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   block.photons[5].flux = {0, 0, 0};
   block.photons[7] = block.photons[6];  // two photons that differ in nothing
   block.directions[7] = block.directions[6];
-  for (const EnergyLimit& limit : {EnergyLimit{2}, EnergyLimit{0}, EnergyLimit{1e9}}) {
+  for (const BrightLimit& limit : {BrightLimit{2}, BrightLimit{0}, BrightLimit{1e9}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     formats::PhotonMap low, high;
     low.photons = parts.low.photons, low.directions = parts.low.directions;
@@ -283,8 +283,8 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
     p.direct = {bright ? 60.0f : 1.0f, 0, 0};
     p.indirect = {bright ? 40.0f : 0.0f, 0, 0};
   }
-  EnergyCells cells(0.4, 0.01);
-  add_energy(points, 0.01, cells);
+  FluxCells cells(0.4, 0.01);
+  add_flux(points, 0.01, cells);
   cells.close({4});
   const double mean = (100 + 16 * 100) / 116.0;
   EXPECT_NEAR(cells.mean_irradiance(), mean, 1e-5 * mean);  // floats of the products

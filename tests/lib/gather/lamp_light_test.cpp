@@ -70,7 +70,7 @@ TEST(LampLight, PhotonsBesideALamp) {
       flux += double(photon.flux.g);
       EXPECT_LT(photon.lamp_distance, kBesideLamp * kSpacing);
       ASSERT_NE(photon.point, kNone);
-      EXPECT_FALSE(lookup.is_even(lookup.light(photon.point)));
+      EXPECT_FALSE(lookup.is_uniform(lookup.light(photon.point)));
     }
     EXPECT_NEAR(flux / (2 * M_PI * (1 - d / (kBesideLamp * kSpacing))), 1, 2e-3) << d;
     const Vec3 far{2.75f, 1, 2.75f};

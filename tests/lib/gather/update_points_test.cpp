@@ -51,14 +51,14 @@ struct Room {
                {1, 6, 5}},
               test::matte(Rgb(0.3f)), true);
     frame = scene.frame();
-    standing = standing_scene(frame);
+    standing = static_scene_of(frame);
     table = build_emission_table(std::span(&frame, 1));
     PhotonOptions photons;
     photons.photon_count = photon_count;
     photons.group_count = 1;
     const Tracer whole(frame), without(standing);
-    const Lights lights(frame, table), standing_lights(standing, table);
-    const PhotonTracer a(whole, lights, photons), b(without, standing_lights, photons);
+    const Lights lights(frame, table), static_lights(standing, table);
+    const PhotonTracer a(whole, lights, photons), b(without, static_lights, photons);
     global = test::photons_of(a);
     fixed = test::photons_of(b);
     std::vector<std::uint64_t> paths(a.photon_count());

@@ -79,8 +79,8 @@ TEST(PointLookup, APointsOwnLightHasNoSayInWhetherItIsRead) {
       ASSERT_NE(read, nullptr);
       if (!is_lit(points[read->point])) continue;  // another's cell
       ++lit;
-      marked += !lookup.is_even(*read);
-      mean += !lookup.is_even(*read) ? 1.0 : double(read->all.g);
+      marked += !lookup.is_uniform(*read);
+      mean += !lookup.is_uniform(*read) ? 1.0 : double(read->all.g);
     }
     EXPECT_NEAR(mean / lit, 1, 0.03) << sheets;
     EXPECT_GT(marked, 0.3 * lit) << sheets;  // there are such edges
@@ -243,7 +243,7 @@ TEST(Points, TheOtherLeafOfADoubleWallIsNoContrast) {
         points.push_back(point);
       }
     const PointLookup lookup(points, 1);
-    EXPECT_EQ(lookup.is_even_indirect(lookup.light(4)), other);
+    EXPECT_EQ(lookup.is_uniform_indirect(lookup.light(4)), other);
   }
 }
 
@@ -255,8 +255,8 @@ TEST(Points, APointAloneShowsNothing) {
     std::vector<IrradiancePoint> points;
     for (int i = 0; i < count; ++i) points.push_back(point_at({0.5f * float(i), 0, 0}, {0, 1, 0}, 1, 0));
     const PointLookup lookup(points, 1);
-    EXPECT_EQ(lookup.is_even(lookup.light(0)), count > 2) << count;
-    EXPECT_TRUE(lookup.is_even_indirect(lookup.light(0))) << count;
+    EXPECT_EQ(lookup.is_uniform(lookup.light(0)), count > 2) << count;
+    EXPECT_TRUE(lookup.is_uniform_indirect(lookup.light(0))) << count;
   }
 }
 

@@ -72,7 +72,7 @@ TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
       EXPECT_NEAR(
           double(lights.pdf_solid_angle({0, 0, 0}, normal, 0, 0, s.position, {0, 0, -1})) / double(s.pdf_solid_angle),
           1, 2e-3);
-      const double e = double(s.radiance.r) * double(dot(normal, s.wi));
+      const double e = double(s.facing_irradiance.r) * double(dot(normal, s.wi));
       sum += e / kCount;
       square += e * e / kCount;
     }

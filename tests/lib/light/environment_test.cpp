@@ -45,7 +45,7 @@ double sampled_irradiance(const Lights& lights, Vec3 normal, int n, std::uint64_
     LightSample s;
     const PathRandom random(seed, std::uint64_t(i));
     if (!lights.sample({}, normal, random.get2(0, Purpose::light_point), s)) continue;
-    sum += double(s.radiance.g) * std::max(0.0f, dot(s.wi, normal));
+    sum += double(s.facing_irradiance.g) * std::max(0.0f, dot(s.wi, normal));
   }
   return sum / n;
 }

@@ -24,11 +24,11 @@ Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double
   for (std::uint32_t i = 0; i < std::uint32_t(count); ++i) {
     LightSample s;
     if (!lights.sample(point, normal, sobol_owen_1d(i, 3), sobol_owen_2d(i, 5), s)) continue;
-    EXPECT_TRUE(is_finite(s.wi) && is_finite(s.radiance) && is_finite(s.position));
+    EXPECT_TRUE(is_finite(s.wi) && is_finite(s.facing_irradiance) && is_finite(s.position));
     EXPECT_NEAR(length(s.wi), 1, 1e-5);
     const double cos = std::max(0.0f, dot(normal, s.wi));
-    sum += Rgbd(s.radiance) * cos;
-    squares += s.radiance.r * cos * (s.radiance.r * cos);
+    sum += Rgbd(s.facing_irradiance) * cos;
+    squares += s.facing_irradiance.r * cos * (s.facing_irradiance.r * cos);
   }
   const Rgbd mean = sum / double(count);
   if (sigma) *sigma = std::sqrt(std::max(0.0, squares / count - mean.r * mean.r) / count);
@@ -155,7 +155,7 @@ TEST(PunctualLights, ArePointsWithoutNaN) {
   LightSample s;
   EXPECT_FALSE(scene.lights().sample({1, 1, 1}, {}, 0.5f, {}, s));
   ASSERT_TRUE(scene.lights().sample({1, 1, 1 + 1e-7f}, {}, 0.5f, {}, s));
-  EXPECT_TRUE(is_finite(s.radiance) && is_finite(s.wi));
+  EXPECT_TRUE(is_finite(s.facing_irradiance) && is_finite(s.wi));
 }
 
 /// Many lights of all kinds: a sphere of triangles, two-sided flakes, points and spots, and suns if wanted.
@@ -296,7 +296,7 @@ TEST(Lights, SurviveExtremeNumbers) {
     LightSample s;
     if (lights.sample(point, i % 2 ? kUp : Vec3{}, random.get1(i, Purpose::light_choice),
                       random.get2(i, Purpose::light_point), s)) {
-      EXPECT_TRUE(is_finite(s.radiance) && is_finite(s.wi) && is_finite(s.position) &&
+      EXPECT_TRUE(is_finite(s.facing_irradiance) && is_finite(s.wi) && is_finite(s.position) &&
                   std::isfinite(s.pdf_solid_angle));
     }
     for (std::uint32_t surface = 0; surface < 5; ++surface)

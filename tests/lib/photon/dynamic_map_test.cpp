@@ -71,7 +71,7 @@ struct Room {
       sun.direction = normalize(Vec3{-0.1f, -0.8f, -0.3f});
       frame.lights.push_back(sun);
     }
-    standing = standing_scene(frame);
+    standing = static_scene_of(frame);
     table = build_emission_table(std::span(&frame, 1));
   }
 };
@@ -124,9 +124,9 @@ std::vector<Photon> photons_in(const std::string& bytes) {
 Maps maps_of(const Room& room, std::uint64_t count, bool all_paths = false) {
   const PhotonOptions options = options_of(count);
   const Tracer whole(room.frame), without(room.standing);
-  const Lights lights(room.frame, room.table), standing_lights(room.standing, room.table);
+  const Lights lights(room.frame, room.table), static_lights(room.standing, room.table);
   const PhotonTracer global(whole, lights, options);
-  PhotonTracer fixed(without, standing_lights, options);
+  PhotonTracer fixed(without, static_lights, options);
   const MoverWatch watch({moving_boxes(room.frame)});
   fixed.watch(&watch);
   Maps maps;

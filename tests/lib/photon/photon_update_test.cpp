@@ -320,7 +320,7 @@ TEST(BesideGroups, LeavesOutOnesOwn) {
     for (std::size_t g = 0; g < 6; ++g) {
       std::vector<double> values(6, 1.0);
       values[g] = 1000;
-      const std::vector<double> beside = beside_groups(values, seed);
+      const std::vector<double> beside = neighbour_means(values, seed);
       EXPECT_EQ(beside[g], 1);
       // In 3 x 2 boxes a corner has two neighbours, a middle one three, and each of those sees the 1000 among its own
       // two or three.
@@ -328,8 +328,9 @@ TEST(BesideGroups, LeavesOutOnesOwn) {
       for (std::size_t o = 0; o < 6; ++o) seen += beside[o] > 1;
       EXPECT_TRUE(seen == 2 || seen == 3) << seen;
     }
-  EXPECT_EQ(beside_groups(std::vector<double>(11, 2.0), 0), std::vector<double>(11, 2.0));  // no boxes: the mean of all
-  EXPECT_EQ(beside_groups(std::vector<double>{3}, 0), std::vector<double>{3});
+  EXPECT_EQ(neighbour_means(std::vector<double>(11, 2.0), 0),
+            std::vector<double>(11, 2.0));  // no boxes: the mean of all
+  EXPECT_EQ(neighbour_means(std::vector<double>{3}, 0), std::vector<double>{3});
 }
 
 /// Refined maps have the light of plain ones in the mean: 63 groups of 4 paths, of which a twentieth of the tentative

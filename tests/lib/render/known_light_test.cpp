@@ -171,7 +171,7 @@ TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   known.points = &chain.lookup;
   const PointLookup::Light* light = chain.lookup.find(seen->first.position, {0, 1, 0});
   ASSERT_TRUE(light);
-  ASSERT_TRUE(chain.lookup.is_even(*light));
+  ASSERT_TRUE(chain.lookup.is_uniform(*light));
   const float limit = PointLookup::kNear * light->radius;
   for (const float u : {0.0f, 0.5f, 0.999f}) {
     EXPECT_FALSE(known.told(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;

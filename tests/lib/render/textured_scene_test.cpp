@@ -66,7 +66,7 @@ TEST(EmissiveTexture, IrradianceIsThatOfTheBrightHalf) {
         for (int j = 0; j < kSide; ++j) {
           LightSample light;
           if (lights.sample(point, normal, {(float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide}, light))
-            sum += double(light.radiance.g) * double(std::max(0.0f, dot(light.wi, normal)));
+            sum += double(light.facing_irradiance.g) * double(std::max(0.0f, dot(light.wi, normal)));
         }
       EXPECT_NEAR(sum / (kSide * kSide), expected, 0.01 * expected) << alpha << " " << point.x;
     }

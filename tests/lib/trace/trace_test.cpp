@@ -135,7 +135,7 @@ TEST(Tracer, WhatStandsIsTakenFromTheFrameBefore) {
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)));
   scene.add_quad({-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1}, matte(Rgb(0.9f)), true);
   using Heights = std::array<float, 2>;
-  StandingTree standing;
+  StaticTree standing;
   const SceneFrame first = scene.frame(), second = with_height(first, 1, 2);
   const Tracer a(first, standing), b(second, standing);
   EXPECT_EQ(heights(b), (Heights{0, 2}));
@@ -158,7 +158,7 @@ TEST(Tracer, WhatStandsIsNotTakenWhereRaysMayPass) {
   auto hidden = std::make_unique<SceneFrame>(solid);
   hidden->materials[0].alpha_mode = Material::Alpha::mask;
   hidden->materials[0].alpha = 0;
-  StandingTree standing;
+  StaticTree standing;
   EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
   EXPECT_TRUE(std::isnan(heights(Tracer(*hidden, standing))[0]));
   hidden.reset();  // a filter left in the tree would ask it

@@ -1,4 +1,4 @@
-#include "lib/density/energy_cells.h"
+#include "lib/density/flux_cells.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,13 +13,13 @@ namespace {
 /// The grid begins beside the origin by an irrational part of an edge: surfaces lie at round coordinates more often
 /// than anywhere else, and one on a face between two cubes would be dealt out to both of them by rounding.
 constexpr double kShift = 0.38196601125;  // 2 - golden ratio
-/// Cells of which the hull tells the area keep all if they have fewer records: of eight, it tells the area to a half
-/// (rms; measured in tests/lib/density/split_light_test.cpp), which is too little to call a cell bright.
+/// A cell whose area comes from the hull keeps all light if it has fewer records. With eight records the estimated area
+/// is wrong by half (rms; measured in tests/lib/density/split_light_test.cpp), which is too uncertain to call a cell
+/// bright.
 constexpr std::uint64_t kFewest = 8;
 constexpr std::size_t kPlaces = 16384;
-/// Of a cell's records the hull tells the area, and with few of them it finds little of it: on S3 (frame 1, 200 000
-/// paths, lit area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and 380 records in the
-/// mean.
+/// Records per cell. If areas come from hulls, fewer records underestimate the area: on S3 (frame 1, 200 000 paths, lit
+/// area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and 380 records on average.
 constexpr double kRecordsPerCell = 256;
 
 int axis_of(Vec3 normal) {
@@ -27,22 +27,22 @@ int axis_of(Vec3 normal) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-/// Where a coordinate lies in the grid, in edges.
+/// Position of a coordinate in the grid, in edges.
 double grid_of(float x, double edge) { return double(x) / edge + kShift; }
 
 }  // namespace
 
-EnergyCells::EnergyCells(double edge, double area_of_record) : edge_(edge), area_of_record_(area_of_record) {}
+FluxCells::FluxCells(double edge, double area_of_record) : edge_(edge), area_of_record_(area_of_record) {}
 
-std::size_t EnergyCells::Hash::operator()(const Key& key) const {
+std::size_t FluxCells::Hash::operator()(const Key& key) const {
   std::uint64_t h = key.side;
   for (const std::int64_t i : key.cube) h = mix64(h ^ std::uint64_t(i) * 0x9e3779b97f4a7c15ull);
   return h;
 }
 
-EnergyCells::Key EnergyCells::key_of(const CellPlace& place) const {
+FluxCells::Key FluxCells::key_of(const CellPlace& place) const {
   Key key{};
-  constexpr double most = 4e18;  // a cube far away keeps its number within 64 bits
+  constexpr double most = 4e18;  // keeps the number of a distant cube within 64 bits
   for (int a = 0; a < 3; ++a)
     key.cube[std::size_t(a)] = std::int64_t(std::clamp(std::floor(grid_of(place.position[a], edge_)), -most, most));
   const int axis = axis_of(place.normal);
@@ -50,7 +50,7 @@ EnergyCells::Key EnergyCells::key_of(const CellPlace& place) const {
   return key;
 }
 
-void EnergyCells::add(const CellPlace& place, const std::array<float, 3>& flux) {
+void FluxCells::add(const CellPlace& place, const std::array<float, 3>& flux) {
   Cell& cell = cells_[key_of(place)];
   for (std::size_t c = 0; c < 3; ++c) cell.flux[c].add(flux[c]);
   ++cell.count;
@@ -61,44 +61,44 @@ void EnergyCells::add(const CellPlace& place, const std::array<float, 3>& flux) 
     return at - std::floor(at);
   };
   cell.hull.add(within((axis + 1) % 3), within((axis + 2) % 3));
-  // The largest of three components of a unit vector is at least 1 / sqrt(3).
+  // The largest component of a unit vector is at least 1 / sqrt(3).
   cell.slant += std::uint64_t(65536.0 / std::max(0.577, double(std::abs(place.normal[axis]))));
 }
 
-double EnergyCells::area_of(const Cell& cell) const {
+double FluxCells::area_of(const Cell& cell) const {
   if (area_of_record_ > 0) return double(cell.count) * area_of_record_;
   return cell.hull.area() * edge_ * edge_ * (double(cell.slant) / 65536 / double(cell.count));
 }
 
-void EnergyCells::close(const EnergyLimit& limit) {
+void FluxCells::close(const BrightLimit& limit) {
   struct Figures {
     Key key;
     Cell* cell;
-    double area, energy;
+    double area, flux;
   };
   std::vector<Figures> all;
   std::uint64_t records = 0;
   for (auto& [key, cell] : cells_) {
-    const double energy = cell.flux[0].value() + cell.flux[1].value() + cell.flux[2].value();
-    if (energy > 0) all.push_back({key, &cell, area_of(cell), energy});
+    const double flux = cell.flux[0].value() + cell.flux[1].value() + cell.flux[2].value();
+    if (flux > 0) all.push_back({key, &cell, area_of(cell), flux});
     records += cell.count;
   }
   std::sort(all.begin(), all.end(), [](const Figures& a, const Figures& b) { return a.key < b.key; });
-  area_ = energy_ = 0;
-  for (const Figures& f : all) area_ += f.area, energy_ += f.energy;
+  area_ = flux_ = 0;
+  for (const Figures& f : all) area_ += f.area, flux_ += f.flux;
 
   bright_ = 0;
   for (const Figures& f : all) {
     const double kept =
-        limit.records ? *limit.records * energy_ / double(records) : limit.times_mean * mean_irradiance() * f.area;
+        limit.records ? *limit.records * flux_ / double(records) : limit.times_mean * mean_irradiance() * f.area;
     const bool unknown = !limit.records && limit.times_mean > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
-    // Where limit or mean are without bound, inf - inf and 0 * inf are no verdict: the cell keeps all.
-    f.cell->low_share = unknown || !(kept < f.energy) ? 1 : kept / f.energy;
+    // If limit or mean are infinite, inf - inf and 0 * inf give NaN: the cell then keeps all light.
+    f.cell->low_share = unknown || !(kept < f.flux) ? 1 : kept / f.flux;
     bright_ += f.cell->low_share < 1;
   }
 }
 
-double EnergyCells::low_share(const CellPlace& place) const {
+double FluxCells::low_share(const CellPlace& place) const {
   const auto cell = cells_.find(key_of(place));
   return cell == cells_.end() ? 1 : cell->second.low_share;
 }
@@ -114,7 +114,7 @@ void CellEdge::add(Vec3 position) {
   if (places_.size() >= 2 * kPlaces) trim();
 }
 
-/// Keeps the smallest hashes; later records with larger ones pass by.
+/// Keeps the smallest hashes; later records with larger hashes are ignored.
 void CellEdge::trim() {
   const auto middle = places_.begin() + std::ptrdiff_t(kPlaces - 1);
   std::nth_element(places_.begin(), middle, places_.end(),
@@ -133,8 +133,9 @@ double CellEdge::edge() const {
   for (const Place& place : kept.places_) bounds.add(place.position), records += place.count;
   if (kept.places_.size() < 2) return 1;
   double edge = double(max_component(bounds.upper - bounds.lower));
-  if (!(edge > 0)) return 1;  // 0 and -0 are one place
-  // From all in one cell, a quarter of an octave at a time, until a cell holds so many of those kept.
+  if (!(edge > 0)) return 1;  // -0 and 0 are the same position
+  // Starts with all records in one cell and shrinks the edge by a quarter of an octave until a cell holds the wanted
+  // number of the kept records.
   for (int step = 0; step < 100; ++step, edge *= 0.8408964152537145) {  // 2^(-1/4)
     std::set<std::array<std::int64_t, 3>> cells;
     for (const Place& place : kept.places_) {
@@ -144,7 +145,7 @@ double CellEdge::edge() const {
     }
     if (double(records) <= kRecordsPerCell * double(cells.size())) break;
   }
-  // On surfaces the number in a cell grows with the square of its edge.
+  // On surfaces the number of records in a cell grows with the square of its edge.
   return std::max(edge * std::sqrt(double(records) / double(total_)), 1e-30);
 }
 

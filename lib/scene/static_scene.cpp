@@ -1,4 +1,4 @@
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 namespace tempolux {
 namespace {
 
-/// Boxes of rays' targets are this much larger, of the largest coordinate: that of the search trees (trees.h).
+/// Boxes are widened by this share of the largest coordinate, as in the search trees (trees.h).
 constexpr float kMargin = 0x1p-18f;
-/// A piece for as many triangles at least: what is kept of a surface is then less than its own vertices and indices.
+/// Least triangles in a piece: the pieces of a surface then take less memory than its vertices and indices.
 constexpr double kTrianglesOfPiece = 4;
 constexpr std::size_t kMostAlong = 4;  ///< cells along each axis (docs/methods/dynamic.md)
 
@@ -19,21 +19,22 @@ bool moves(const SceneFrame& frame, std::uint32_t node) {
   return node < frame.segment.node_moves.size() && frame.segment.node_moves[node] != 0;
 }
 
-/// A surface with all vertices in one place has no area: it can neither be hit nor emit.
+/// Moves all vertices to one place: a surface without area can neither be hit nor emit.
 void shrink(Surface& surface) {
   surface.positions = std::vector<Vec3>(surface.primitive->positions.size());
   surface.normals = {};
   surface.tangents = {};
 }
 
-/// A little larger, of the largest coordinate.
+/// Widens a box by a share of the largest coordinate.
 Box3 widened(const Box3& box) {
   if (box.empty()) return box;
   const float margin = kMargin * max_component(max(abs(box.lower), abs(box.upper)));
   return {box.lower - Vec3{margin, margin, margin}, box.upper + Vec3{margin, margin, margin}};
 }
 
-/// Boxes of the surface's pieces; `box`: its own. None where there are too few triangles for more than one.
+/// Boxes of the surface's pieces; `box` is the surface's own. Empty if the surface has too few triangles for two
+/// pieces.
 std::vector<Box3> pieces_of(const Surface& surface, const Box3& box) {
   const auto& triangles = surface.primitive->triangles;
   const auto along = std::min(std::size_t(std::cbrt(double(triangles.size()) / kTrianglesOfPiece)), kMostAlong);
@@ -59,21 +60,21 @@ std::vector<Box3> pieces_of(const Surface& surface, const Box3& box) {
 
 }  // namespace
 
-SceneFrame standing_scene(SceneFrame frame) {
+SceneFrame static_scene_of(SceneFrame frame) {
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) shrink(frame.surfaces[s]);
-  std::vector<PlacedLight> standing;
+  std::vector<PlacedLight> static_lights;
   for (PlacedLight& placed : frame.lights) {
     if (moves(frame, placed.node)) placed.light.intensity = Rgb(0.0f);
-    else standing.push_back(placed);
+    else static_lights.push_back(placed);
   }
-  if (!frame.scene) return frame;  // of no file: there is nothing to compare with
+  if (!frame.scene) return frame;  // the scene is not from a file, so there is no other frame to compare with
   const Scene& scene = *frame.scene;
   const std::span<const Surface> fixed(frame.surfaces.data(), frame.static_count);
   const std::span<const std::uint8_t> left_out(frame.segment.node_moves);
   frame.hashes.static_geometry = geometry_hash(scene, frame.origin, fixed, left_out);
   frame.hashes.moving_geometry = geometry_hash(scene, frame.origin, {}, left_out);
   frame.hashes.materials = materials_hash(scene, frame.materials, left_out);
-  frame.hashes.lights = lights_hash(scene, frame.origin, standing, frame.materials, fixed);
+  frame.hashes.lights = lights_hash(scene, frame.origin, static_lights, frame.materials, fixed);
   return frame;
 }
 
@@ -92,7 +93,8 @@ void MovingBoxes::add(const MovingBoxes& other) {
     surfaces[i].add(other.surfaces[i]);
     const std::span<const Box3> more = other.pieces_of(i);
     if (i >= known) pieces[i].assign(more.begin(), more.end());
-    else if (pieces[i].size() != more.size()) pieces[i].clear();  // of one frame the whole box is all that is known
+    // If one frame has no pieces, the surface's box must do.
+    else if (pieces[i].size() != more.size()) pieces[i].clear();
     else
       for (std::size_t k = 0; k < more.size(); ++k) pieces[i][k].add(more[k]);
   }

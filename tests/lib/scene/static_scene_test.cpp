@@ -1,6 +1,6 @@
 // The scene without what moves: hashes of the file with the mover taken out, surfaces that no ray meets, lights that
 // are off.
-#include "lib/scene/standing.h"
+#include "lib/scene/static_scene.h"
 
 #include <algorithm>
 #include <tuple>
@@ -37,8 +37,8 @@ SceneFrame frame_of(const Scene& scene, int frame) {
 
 TEST(Standing, HashesAreThoseOfTheFileWithoutTheMover) {
   const Scene with = scene_with(true), without = scene_with(false);
-  const SceneFrame moving = frame_of(with, 5), standing = standing_scene(moving);
-  const SceneFrame other = frame_of(without, 0), still = standing_scene(other);
+  const SceneFrame moving = frame_of(with, 5), standing = static_scene_of(moving);
+  const SceneFrame other = frame_of(without, 0), still = static_scene_of(other);
   ASSERT_EQ(moving.surfaces.size(), 2u);
   EXPECT_EQ(moving.static_count, 1u);
   EXPECT_EQ(standing.hashes.materials, still.hashes.materials);
@@ -48,14 +48,14 @@ TEST(Standing, HashesAreThoseOfTheFileWithoutTheMover) {
   EXPECT_EQ(standing.hashes.moving_geometry, still.hashes.moving_geometry);
   EXPECT_NE(standing.hashes.lights, moving.hashes.lights);  // the mover emits
   // Every frame of the segment has the same.
-  const SceneFrame later = standing_scene(frame_of(with, 9));
+  const SceneFrame later = static_scene_of(frame_of(with, 9));
   EXPECT_EQ(later.hashes.static_geometry, standing.hashes.static_geometry);
   EXPECT_EQ(later.hashes.lights, standing.hashes.lights);
 }
 
 TEST(Standing, MoversAreThereAndHaveNoArea) {
   const Scene scene = scene_with(true);
-  const SceneFrame standing = standing_scene(frame_of(scene, 5));
+  const SceneFrame standing = static_scene_of(frame_of(scene, 5));
   ASSERT_EQ(standing.surfaces.size(), 2u);
   for (const Vec3& p : standing.surfaces[1].positions) EXPECT_EQ(p, Vec3{});
   EXPECT_GT(length(standing.surfaces[0].position(1) - standing.surfaces[0].position(0)), 0);
@@ -65,7 +65,7 @@ TEST(Standing, MoversAreThereAndHaveNoArea) {
 
 TEST(Standing, MovingLampsAreOff) {
   const Scene scene = scene_with(false, true);
-  const SceneFrame moving = frame_of(scene, 5), standing = standing_scene(moving);
+  const SceneFrame moving = frame_of(scene, 5), standing = static_scene_of(moving);
   ASSERT_EQ(standing.lights.size(), 1u);
   EXPECT_EQ(standing.lights[0].light.intensity, Rgb(0.0f));
   EXPECT_NE(moving.lights[0].light.intensity, Rgb(0.0f));

@@ -1,0 +1,103 @@
+// lib/density/flux_cells.h -- sums flux by cells and finds the bright cells (docs/methods/split.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/density/planar_hull.h"
+#include "lib/density/window_sum.h"
+
+namespace tempolux {
+
+/// Position, normal and object of a record, by which it belongs to a cell.
+struct CellPlace {
+  Vec3 position;             ///< m
+  Vec3 normal;               ///< unit, on the lit side
+  std::uint16_t object = 0;  ///< id.object
+};
+
+/// The limit above which a cell is bright.
+struct BrightLimit {
+  double times_mean = 4;  ///< >= 0: a cell keeps at most this multiple of the mean irradiance
+  /// If given, used instead: a cell keeps at most the flux of this many records of mean flux.
+  std::optional<double> records = {};
+};
+
+/// Cells of one edge length. Records belong to one cell if their positions are in the same cube of a grid, they lie on
+/// the same object, and their normals are closest to the same of the six axes. Each cell sums the flux of its records
+/// [W] exactly, so that no result depends on their order.
+class FluxCells {
+ public:
+  /// `edge`: m, > 0. `area_of_record`: area that each record represents, m^2. 0: unknown; a cell's area is then the
+  /// area of the convex hull of its records' positions, projected along its axis (PlanarHull).
+  FluxCells(double edge, double area_of_record);
+
+  /// First pass: adds a record with this flux [W], times its reflectance if known. The flux must be finite; its
+  /// magnitude counts.
+  void add(const CellPlace& place, const std::array<float, 3>& flux);
+  /// Ends the first pass: computes the share of its light that each cell keeps.
+  void close(const BrightLimit& limit);
+
+  /// Second pass: the share in [0, 1] of a record's light that stays in the low part; 1 if its cell got no record.
+  double low_share(const CellPlace& place) const;
+
+  std::size_t size() const { return cells_.size(); }
+  std::size_t bright_count() const { return bright_; }  ///< number of cells that keep less than all
+  double area() const { return area_; }                 ///< m^2: of all cells with flux
+  double flux() const { return flux_; }                 ///< W: of all records, sum over the channels
+  /// W/m^2, sum over the channels: flux over area; 0 without area.
+  double mean_irradiance() const { return area_ > 0 ? flux_ / area_ : 0; }
+
+ private:
+  struct Key {
+    std::array<std::int64_t, 3> cube;
+    std::uint32_t side;  ///< axis and object
+    bool operator==(const Key&) const = default;
+    auto operator<=>(const Key&) const = default;
+  };
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  struct Cell {
+    std::array<WindowSum, 3> flux;
+    std::uint64_t count = 0;
+    std::uint64_t slant = 0;  ///< sum of 1 / |cosine of the normal to the axis|, in units of 2^-16
+    PlanarHull hull;
+    double low_share = 1;
+  };
+  Key key_of(const CellPlace& place) const;
+  double area_of(const Cell& cell) const;
+
+  double edge_, area_of_record_;
+  std::unordered_map<Key, Cell, Hash> cells_;
+  std::size_t bright_ = 0;
+  double area_ = 0, flux_ = 0;
+};
+
+/// Finds the edge of cells that hold 256 records each on average: on surfaces, squares 16 mean distances wide. Keeps
+/// 16384 records, those whose positions have the smallest hashes, so that memory is bounded and the order of records
+/// does not matter.
+class CellEdge {
+ public:
+  void add(Vec3 position);
+  /// m, > 0. 1 if there are no records or all are at one point.
+  double edge() const;
+
+ private:
+  struct Place {
+    std::uint64_t hash;
+    Vec3 position;
+    std::uint64_t count;
+  };
+  std::unordered_map<std::uint64_t, std::size_t> index_;  ///< index into places_, by hash
+  std::vector<Place> places_;
+  std::uint64_t limit_ = ~std::uint64_t(0), total_ = 0;
+  void trim();
+};
+
+}  // namespace tempolux
