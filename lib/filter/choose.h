@@ -13,10 +13,12 @@ namespace tempolux {
 /// R, G and B of a layer, row after row.
 using Colours = std::array<std::vector<float>, 3>;
 
-/// A layer by each half of the samples alone: uncorrelated.
+/// A layer by each half of the samples alone: uncorrelated. The layer is the mean of both.
 struct Halves {
   Colours a, b;
 };
+/// Halved first: the sum may not be a number.
+inline float mean_of(float a, float b) { return a / 2 + b / 2; }
 
 /// What counts as around a pixel: pixels of the same kind within 7 x 7, and theirs again, so that near ones count more.
 class Neighbourhood {
@@ -38,7 +40,8 @@ class Neighbourhood {
   Plane share_;  ///< 1 / number of pixels of the kind within 7 x 7
 };
 
-/// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel.
+/// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel; in halves, of
+/// which either is mixed of one half of the samples alone, with the same shares.
 ///
 /// With A, B the raw halves, f, g a candidate of A alone and of B alone, M = (A + B) / 2 and F = (f + g) / 2, unbiased
 /// estimates at a pixel are
@@ -58,7 +61,7 @@ class Neighbourhood {
 ///
 /// All planes have as many elements as there are pixels; `candidates` is not empty. Thread-safe; the same result for
 /// any number of threads.
-Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
+Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
 
 /// Light so dark that a layer is not looked at more closely: 2 % of its mean over the picture [W/m^2/sr].
 float dark_of(const std::array<const std::vector<float>*, 3>& layer);

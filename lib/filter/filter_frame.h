@@ -9,6 +9,7 @@
 
 #include "lib/filter/collect.h"
 #include "lib/filter/fit.h"
+#include "lib/filter/left_noise.h"
 #include "lib/filter/light.h"
 
 namespace tempolux {
@@ -48,8 +49,10 @@ class FrameFilter {
   /// The frames of the window in the order in which they are followed: the `before` ones, the nearest first, then the
   /// `after` ones. None is looked at after the call. InputError if it differs from the middle's in size or layers.
   void add(const WindowLight& frame, const FlowFrame& flow);
-  /// Once, after all were added.
+  /// Once, after all were added. The image says what noise is left (tell_left_noise in left_noise.h).
   Image finish(Image image);
+  /// After that: by pixel (left_noise.h); empty where nothing was filtered.
+  LeftError left_error() const;
 
  private:
   struct State;
