@@ -195,10 +195,12 @@ void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
 }
 
 Image FrameFilter::finish(Image image) {
-  state_->filter(image);
+  filter(image);
   tell_left_noise(left_error(), image);
   return image;
 }
+
+void FrameFilter::filter(Image& image) { state_->filter(image); }
 
 LeftError FrameFilter::left_error() const { return state_->left.error(); }
 
@@ -245,7 +247,7 @@ Image filter_alone(Image image, const FilterOptions& options) {
       const WindowLight light(tile, true);
       const FlowFrame flow;
       FrameFilter filter(light, flow, 0, 0, of_tile);
-      tile = filter.finish(std::move(tile));
+      filter.filter(tile);
       const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
         to.resize(image.pixel_count());
         for (int y = top; y < std::min(image.height, top + kHigh); ++y)

@@ -51,7 +51,9 @@ class FrameFilter {
   void add(const WindowLight& frame, const FlowFrame& flow);
   /// Once, after all were added. The image says what noise is left (tell_left_noise in left_noise.h).
   Image finish(Image image);
-  /// After that: by pixel (left_noise.h); empty where nothing was filtered.
+  /// The same of a part of a picture, whose attributes stay.
+  void filter(Image& image);
+  /// After either: by pixel (left_noise.h); empty where nothing was filtered.
   LeftError left_error() const;
 
  private:
