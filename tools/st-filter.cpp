@@ -8,6 +8,7 @@
 // docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -72,6 +73,7 @@ class FilterRun {
       if (!options_.channels.empty()) keep_channels(options_.channels, image);
     });
     image.text["tempolux:history"] += tool_.history_line(number);
+    say_noise(image);
     tool_.stats().phase("write");
     save_exr(output.temporary_path(), image,
              {false,
@@ -83,6 +85,16 @@ class FilterRun {
   }
 
  private:
+  /// The root mean square over frames goes into the statistics.
+  void say_noise(const Image& image) {
+    for (const std::string name : {"noise.codes", "noise.linear"})
+      if (const auto found = image.numbers.find("tempolux:" + name); found != image.numbers.end()) {
+        auto& [squares, frames] = noise_[name];
+        squares += found->second * found->second;
+        tool_.stats().set(name, std::sqrt(squares / ++frames));
+      }
+  }
+
   Image filter_window(std::size_t first, std::size_t at, std::size_t last, LoadedFrame& middle) {
     FrameFilter filter(*middle.light, middle.flow, at - first, last - at, options_.filter);
     const auto add = [&](std::size_t i) {
@@ -172,6 +184,7 @@ class FilterRun {
   bool sequence_, windowed_;
   std::map<std::size_t, LoadedFrame> loaded_;  ///< frames of the current window
   std::map<std::string, bool> warned_;
+  std::map<std::string, std::pair<double, int>> noise_;  ///< by name: sum of squares, frames
 };
 
 void filter_files(tools::Tool& tool, const Options& options) {

@@ -59,23 +59,24 @@ class Choice {
         if (!(std::abs(raw.a[c][p]) < kLargestLight && std::abs(raw.b[c][p]) < kLargestLight)) counts_[p] = 0;
   }
 
-  Colours run() {
+  Halves run() {
     take_scale();
     take_best();
-    Colours out;
-    for (std::vector<float>& plane : out) plane.resize(count_);
     for_each_pixel([&](std::size_t p, int x, int y) {
       const float w = share(p, x, y);
       for (std::size_t c = 0; c < 3; ++c) {
-        const float m = raw_.a[c][p] / 2 + raw_.b[c][p] / 2, f =  // halves first: their sum may not be a number
-                                                             (best_.a[c][p] + best_.b[c][p]) / 2;
-        const float mixed = m + w * (f - m);  // rounding must not make light negative
-        out[c][p] = counts_[p]         ? (m >= 0 ? std::max(mixed, 0.0f) : mixed)
-                    : std::isfinite(m) ? m
-                                       : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
+        const float a = raw_.a[c][p], b = raw_.b[c][p];
+        if (counts_[p]) {
+          best_.a[c][p] = a + w * (best_.a[c][p] - a);
+          best_.b[c][p] = b + w * (best_.b[c][p] - b);
+        } else {
+          const Halves& taken = std::isfinite(mean_of(a, b)) ? raw_ : candidates_.back();
+          best_.a[c][p] = taken.a[c][p];
+          best_.b[c][p] = taken.b[c][p];
+        }
       }
     });
-    return out;
+    return std::move(best_);
   }
 
  private:
@@ -237,7 +238,7 @@ Plane Neighbourhood::mean(const Plane& values) const {
   return means;
 }
 
-Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark) {
+Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark) {
   return Choice(raw, candidates, around, dark).run();
 }
 

@@ -17,6 +17,8 @@ using Colours = std::array<std::vector<float>, 3>;
 struct Halves {
   Colours a, b;
 };
+/// Halved first: the sum may not be a number.
+inline float mean_of(float a, float b) { return a / 2 + b / 2; }
 
 /// The neighbourhood of a pixel: the pixels of its kind within 7 x 7, and again their pixels of the kind within 7 x 7,
 /// so that close pixels weigh more.
@@ -39,7 +41,8 @@ class Neighbourhood {
   Plane share_;  ///< 1 / number of pixels of the kind within 7 x 7
 };
 
-/// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel.
+/// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel; in halves, of
+/// which each is mixed from one half of the samples alone, with the same shares.
 /// A and B are the raw halves, f and g are a candidate made from A alone and from B alone, M = (A + B) / 2 and F = (f +
 /// g) / 2. Unbiased estimates at a pixel are
 ///     the squared error of M:   V = (A - B)^2 / 4
@@ -53,11 +56,10 @@ class Neighbourhood {
 /// Zwicker: Adaptive rendering with non-local means filtering, 2012.
 /// The result is w F + (1 - w) M with w = (V - C + s) / (mean of (F - M)^2), clamped to [0, 1]. Inside surfaces s is
 /// the standard error that V - C - (F - M)^2 would have with noise alone; at edges s = 0. Where both halves are equal,
-/// the result is M to the bit. A pixel of which a half is not finite, or too bright for squares in float32, enters no
-/// estimate; its result is M, or the last candidate if M is not finite.
-/// All planes have one element per pixel; `candidates` is not empty. Thread-safe; the same result for any number of
-/// threads.
-Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
+/// the result is M, to the bit if (A + B) / 2 is. A pixel of which a half is not finite, or too bright for squares in
+/// float32, enters no estimate; its result is M, or the last candidate if M is not finite. All planes have one element
+/// per pixel; `candidates` is not empty. Thread-safe; the same result for any number of threads.
+Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
 
 /// The light up to which a layer counts as dark: 2 % of its mean over the picture [W/m^2/sr].
 float dark_of(const std::array<const std::vector<float>*, 3>& layer);

@@ -8,6 +8,7 @@
 #include "formats/error.h"
 #include "lib/filter/choose.h"
 #include "lib/filter/fit.h"
+#include "lib/filter/left_noise.h"
 #include "lib/filter/picture.h"
 #include "lib/filter/resolve.h"
 #include "lib/filter/rows.h"
@@ -121,6 +122,7 @@ struct FrameFilter::State {
   std::size_t before, after, added = 0;
   std::array<std::optional<Collector>, 2>
       collectors;  ///< for the matte layers, by half; light of mirrors has no flow of its own
+  LeftNoise left;
 
   float dark(const Image& image, const std::string& layer) const {
     if (const auto found = options.dark.find(layer); found != options.dark.end()) return found->second;
@@ -140,16 +142,36 @@ struct FrameFilter::State {
     const Neighbourhood around(std::move(kinds), on.width, on.height);
     for (std::size_t l = 0; l < group.layers.size(); ++l) {
       if (candidates.of(l).empty() || group.raw[0].layers[l][0].empty()) continue;
-      Colours chosen = choose(raw_halves(image, group, l), candidates.of(l), around, dark(image, group.layers[l]));
+      const Halves raw = raw_halves(image, group, l),
+                   chosen = choose(raw, candidates.of(l), around, dark(image, group.layers[l]));
+      left.add(raw, chosen);
       for (std::size_t c = 0; c < 3; ++c)
-        float_channel(image, channel_name(group.layers[l], c))->values = std::move(chosen[c]);
+        put_mean(chosen, c, float_channel(image, channel_name(group.layers[l], c))->values);
     }
+  }
+
+  /// Of light that is not negative already the mean is not, either: rounding must not make it so.
+  static void put_mean(const Halves& halves, std::size_t c, std::vector<float>& values) {
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      const float mean = mean_of(halves.a[c][p], halves.b[c][p]);
+      values[p] = values[p] >= 0 ? std::max(mean, 0.0f) : mean;
+    }
+  }
+
+  void filter(Image& image) {
+    if (added != before + after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
+    const LayerSums raw = sum_layers(image);
+    const Coverage coverage(image);
+    for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
+      if (middle.light.group(g)) filter_group(g, coverage, image);
+    renew_picture(raw, sum_layers(image), image);
+    leave_numbers(image);
   }
 };
 
 FrameFilter::FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
                          const FilterOptions& options)
-    : state_(new State{middle, flow, options, before, after, 0, {}}) {
+    : state_(new State{middle, flow, options, before, after, 0, {}, {}}) {
   if (options.scales < 0 || options.scales > kMostScales) throw std::invalid_argument("FrameFilter: scales");
   if (before + after > 0 && middle.guides)
     for (std::size_t h = 0; h < 2; ++h)
@@ -173,16 +195,14 @@ void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
 }
 
 Image FrameFilter::finish(Image image) {
-  if (state_->added != state_->before + state_->after)
-    throw std::invalid_argument("FrameFilter: frames of the window are missing");
-  const LayerSums before = sum_layers(image);
-  const Coverage coverage(image);
-  for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
-    if (state_->middle.light.group(g)) state_->filter_group(g, coverage, image);
-  renew_picture(before, sum_layers(image), image);
-  leave_numbers(image);
+  filter(image);
+  tell_left_noise(left_error(), image);
   return image;
 }
+
+void FrameFilter::filter(Image& image) { state_->filter(image); }
+
+LeftError FrameFilter::left_error() const { return state_->left.error(); }
 
 namespace {
 
@@ -218,6 +238,7 @@ Image filter_alone(Image image, const FilterOptions& options) {
         holds(image, channel_name(layer, 2)))
       of_tile.dark[layer] = dark_of(image.rgb(layer));
   Image out{image.width, image.height, {}, {}, {}, {}};
+  LeftError left_error;
   for (int top = 0; top < image.height; top += kHigh)
     for (int left = 0; left < image.width; left += kWide) {
       const int x0 = std::max(0, left - reach()), y0 = std::max(0, top - reach());
@@ -225,20 +246,31 @@ Image filter_alone(Image image, const FilterOptions& options) {
       Image tile = cut_out(image, x0, y0, x1 - x0, y1 - y0);
       const WindowLight light(tile, true);
       const FlowFrame flow;
-      tile = FrameFilter(light, flow, 0, 0, of_tile).finish(std::move(tile));
+      FrameFilter filter(light, flow, 0, 0, of_tile);
+      filter.filter(tile);
+      const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
+        to.resize(image.pixel_count());
+        for (int y = top; y < std::min(image.height, top + kHigh); ++y)
+          std::copy_n(from.data() + std::size_t(y - y0) * std::size_t(tile.width) + std::size_t(left - x0),
+                      std::min(kWide, image.width - left),
+                      to.data() + std::size_t(y) * std::size_t(image.width) + std::size_t(left));
+      };
       for (const Channel& channel : tile.channels) {
         if (channel.values.empty() || !(is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA")))
           continue;
         Channel* to = float_channel(out, channel.name);
-        std::vector<float>& values = to ? to->values : out.add(channel.name).values;
-        for (int y = top; y < std::min(image.height, top + kHigh); ++y)
-          std::copy_n(channel.values.data() + std::size_t(y - y0) * std::size_t(tile.width) + std::size_t(left - x0),
-                      std::min(kWide, image.width - left),
-                      values.data() + std::size_t(y) * std::size_t(image.width) + std::size_t(left));
+        copy(channel.values, to ? to->values : out.add(channel.name).values);
+      }
+      const LeftError of_this = filter.left_error();
+      for (std::size_t c = 0; c < 3 && !of_this.whole[c].empty(); ++c) {
+        copy(of_this.whole[c], left_error.whole[c]);
+        copy(of_this.noise[c], left_error.noise[c]);
+        copy(of_this.known[c], left_error.known[c]);
       }
     }
   for (Channel& channel : out.channels) float_channel(image, channel.name)->values = std::move(channel.values);
   leave_numbers(image);
+  tell_left_noise(left_error, image);
   return image;
 }
 

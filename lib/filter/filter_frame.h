@@ -9,6 +9,7 @@
 
 #include "lib/filter/collect.h"
 #include "lib/filter/fit.h"
+#include "lib/filter/left_noise.h"
 #include "lib/filter/light.h"
 
 namespace tempolux {
@@ -50,8 +51,12 @@ class FrameFilter {
   /// ones. The frame is not used after the call. Throws InputError if it differs from the middle frame in size or
   /// layers.
   void add(const WindowLight& frame, const FlowFrame& flow);
-  /// Call once, after all frames were added.
+  /// Call once, after all frames were added. The image says the noise that is left (tell_left_noise in left_noise.h).
   Image finish(Image image);
+  /// The same of a part of a picture, whose attributes stay.
+  void filter(Image& image);
+  /// After either: by pixel (left_noise.h); empty where nothing was filtered.
+  LeftError left_error() const;
 
  private:
   struct State;

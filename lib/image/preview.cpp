@@ -55,10 +55,16 @@ Content find_content(const Image& image, const std::string& layer) {
   throw InputError("no layer or channel \"" + (layer.empty() ? "RGB" : layer) + "\"; the image has " + known);
 }
 
-bool any_negative(const Planes& planes) {
-  return std::any_of(planes.begin(), planes.end(), [](const auto* plane) {
-    return std::any_of(plane->begin(), plane->end(), [](float v) { return v < 0; });
-  });
+/// Of signed layers the least share that values below 0 have in the sum of all magnitudes. Differences of noise have
+/// half; light has none but for rounding and the lobes of a sharp pixel filter.
+constexpr double kSigned = 0.02;
+
+bool is_signed(const Planes& planes) {
+  double below = 0, all = 0;
+  for (const auto* plane : planes)
+    for (const float v : *plane)
+      if (std::isfinite(v)) all += double(std::abs(v)), below += double(std::max(-v, 0.0f));
+  return below > kSigned * all;
 }
 
 /// The pixel's component of largest magnitude, with its sign.
@@ -81,7 +87,7 @@ float percentile(std::vector<float>& values, double fraction) {
 double stops_of(const Content& content) {
   if (content.kind != Content::Kind::colour && content.kind != Content::Kind::motion) return 0;
   const Planes& planes = content.planes;
-  const bool by_luminance = planes.size() == 3 && !any_negative(planes);
+  const bool by_luminance = planes.size() == 3 && !is_signed(planes);
   std::vector<float> values;
   for (std::size_t i = 0; i < planes[0]->size(); ++i) {
     const float value = by_luminance ? luminance(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]))
@@ -110,7 +116,7 @@ Picture shade_pixels(const Image& image, Shade shade) {
 }
 
 Picture colour_picture(const Image& image, const Planes& planes, float scale) {
-  if (any_negative(planes)) {
+  if (is_signed(planes)) {
     return shade_pixels(image, [&](std::size_t i) {
       const float d = largest_component(planes, i), t = linear_to_srgb(scale * std::abs(d));
       const Encoded end = d > 0 ? Encoded{1, 0.2f, 0} : Encoded{0, 0.25f, 1};

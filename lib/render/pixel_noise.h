@@ -55,8 +55,10 @@ class PixelNoise {
     float onward_rays = 0;  ///< of one of them
   };
   static constexpr double kOnLattice = 4096;  ///< pixels, about: their mean errs by 1 % where they differ by 60 %
-  // Pixels: one is judged by the 24 around it; by 8 for what has edges, which are narrow: all that see one pay for it.
-  static constexpr int kNear = 2, kNearSharp = 1;
+  // Pixels: one is judged by the 24 around it and by the 80; by 8 for what has edges, which are narrow: all that see
+  // one pay for it.
+  static constexpr int kNear = 2, kWide = 4, kNearSharp = 1;
+  struct Around;
 
   template <class Body>
   void for_each_neighbour(int x, int y, int near, const Body& body) const;

@@ -31,6 +31,15 @@ Colours noise(unsigned seed, float sigma) {
 const Neighbourhood kInside(std::vector<std::uint8_t>(kCount, 1), kSide, kSide);
 constexpr float kDark = 0.02f;
 
+/// The mixture.
+Colours chosen(const Halves& raw, const std::vector<Halves>& candidates) {
+  const Halves halves = choose(raw, candidates, kInside, kDark);
+  Colours colours = halves.a;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t p = 0; p < kCount; ++p) colours[c][p] = mean_of(halves.a[c][p], halves.b[c][p]);
+  return colours;
+}
+
 double mean(const std::vector<float>& values) {
   double sum = 0;
   for (const float v : values) sum += double(v);
@@ -45,7 +54,7 @@ double squared_error(const std::vector<float>& values, double truth) {
 
 TEST(Choose, WhereHalvesAgreeThePictureStays) {
   const Colours light = noise(1, 0.25f);
-  const Colours out = choose({light, light}, {{constant(1), constant(1)}}, kInside, kDark);
+  const Colours out = chosen({light, light}, {{constant(1), constant(1)}});
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(out[c], light[c]);
 }
 
@@ -56,7 +65,7 @@ TEST(Choose, WhereHalvesAgreeThePictureStays) {
 /// the inverse of a noisy mean is too large.
 TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
   const float sigma = 0.1f, variance = sigma * sigma / 2, b = std::sqrt(variance);
-  const Colours out = choose({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kDark);
+  const Colours out = chosen({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}});
   EXPECT_NEAR(mean(out[1]) - 1, double(b) / 2, 0.06 * double(b));
   EXPECT_NEAR(squared_error(out[1], 1), double(variance) / 2, 0.08 * double(variance));
 }
@@ -64,7 +73,7 @@ TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
 /// Off by 10 standard deviations of M: the share is 1 / 101.
 TEST(Choose, AWrongCandidateLeavesTheRawPicture) {
   const float sigma = 0.05f, b = 10 * sigma / std::sqrt(2.0f);
-  const Colours out = choose({noise(4, sigma), noise(5, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kDark);
+  const Colours out = chosen({noise(4, sigma), noise(5, sigma)}, {{constant(1 + b), constant(1 + b)}});
   EXPECT_LT(squared_error(out[0], 1), 1.03 * double(sigma) * double(sigma) / 2);
 }
 
@@ -75,7 +84,7 @@ TEST(Choose, TheBetterCandidateIsTaken) {
   const Halves right{constant(1), constant(1)}, wrong{constant(1.5f), constant(1.5f)},
       raw{noise(6, sigma), noise(7, sigma)};
   for (const auto& candidates : {std::vector{right, wrong}, std::vector{wrong, right}})
-    EXPECT_LT(squared_error(choose(raw, candidates, kInside, kDark)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
+    EXPECT_LT(squared_error(chosen(raw, candidates)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
 }
 
 /// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2,
@@ -88,13 +97,13 @@ TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   for (Colours* half : {&candidate.a, &candidate.b})
     for (auto& plane : *half)
       for (float& v : plane) v = (v + 1 + b) / 2;
-  const Colours out = choose(raw, {candidate}, kInside, kDark);
+  const Colours out = chosen(raw, {candidate});
   EXPECT_NEAR(mean(out[0]) - 1, double(b) / 4, 0.05 * double(b));
 }
 
 TEST(Choose, ACandidateThatFiltersNothingChangesNothing) {
   const Halves raw{noise(8, 0.2f), noise(9, 0.2f)};
-  const Colours out = choose(raw, {raw}, kInside, kDark);
+  const Colours out = chosen(raw, {raw});
   for (std::size_t p = 0; p < kCount; ++p) EXPECT_FLOAT_EQ(out[0][p], (raw.a[0][p] + raw.b[0][p]) / 2);
 }
 
@@ -104,7 +113,7 @@ TEST(Choose, WhatIsNoNumberIsFilledAndDecidesNothing) {
   raw.a[0][100] = std::numeric_limits<float>::quiet_NaN();
   raw.b[1][5000] = std::numeric_limits<float>::infinity();
   raw.a[2][7000] = 1e30f;
-  const Colours out = choose(raw, {candidate}, kInside, kDark);
+  const Colours out = chosen(raw, {candidate});
   for (const auto& plane : out)
     for (std::size_t p = 0; p < kCount; ++p)
       if (p != 7000) { EXPECT_EQ(plane[p], 1.0f); }

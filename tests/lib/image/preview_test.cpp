@@ -67,6 +67,19 @@ TEST(Preview, SignedLayersAreGreyRedAndBlue) {
   EXPECT_LT(pixel(picture, 3)[2], 60);
 }
 
+/// Light with a rounding error below 0, or a sharp filter's lobe that holds 1 % of it, is light: .5 is code 188 and
+/// what is below 0 is black. As a difference .5 would be red.
+TEST(Preview, LightWithALittleBelowZeroIsLight) {
+  for (const float below : {-1e-11f, -0.015f}) {
+    const Picture picture = make_picture(grey_row({0.5f, below, 1}), {"", 0.0});
+    EXPECT_EQ(pixel(picture, 0), (std::vector<int>(3, 188))) << below;
+    EXPECT_EQ(pixel(picture, 1), (std::vector<int>(3, 0))) << below;
+    EXPECT_NEAR(auto_exposure_stops(grey_row({0.5f, below, 1}), ""), std::log2(0.9), 1e-6);
+  }
+  // 3 % of it is a difference.
+  EXPECT_EQ(pixel(make_picture(grey_row({0.5f, -0.05f, 1}), {"", 0.0}), 2), (std::vector<int>{255, 51, 0}));
+}
+
 TEST(Preview, DepthIsBrightNearDarkFarAndBlackForNothing) {
   const Picture picture = make_picture(row({{"Z", {1, 2, 3, INFINITY, 1e10f}}}), {"Z", {}});
   EXPECT_EQ(pixel(picture, 0)[0], 255);

@@ -1,0 +1,136 @@
+#include "lib/filter/left_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "lib/filter/picture.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kBlock = 32;        ///< pixels
+constexpr double kMiddle = 0.18;  ///< where exposure puts the median of the pixels' means
+const std::string kNoise = "tempolux:noise.";
+
+/// The factor that puts the median of pixels' means at kMiddle; if more than half are black, the median of those that
+/// are not; 1 of a black picture.
+double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
+  std::vector<float> means(picture[0]->size());
+  for (std::size_t p = 0; p < means.size(); ++p)
+    means[p] = ((*picture[0])[p] + (*picture[1])[p] + (*picture[2])[p]) / 3;
+  const auto median = [&] {
+    const auto middle = means.begin() + std::ptrdiff_t(means.size() / 2);
+    std::nth_element(means.begin(), middle, means.end());
+    return double(*middle);
+  };
+  if (!means.empty() && !(median() > 0)) std::erase_if(means, [](float mean) { return !(mean > 0); });
+  return means.empty() ? 1 : kMiddle / median();
+}
+
+/// Slope of the sRGB code, 0 to 255, at an exposed value; 0 where the code is clipped.
+double slope_of_code(double value) {
+  if (value < 0 || value > 1) return 0;
+  return 255 * (value <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(value, 1 / 2.4 - 1));
+}
+
+/// Means of squared errors over pixels, and the standard error by blocks.
+class Mean {
+ public:
+  void add(double sum, double count) {
+    sum_ += sum, count_ += count;
+    squares_ += sum * sum, products_ += sum * count, counts_ += count * count;
+  }
+  double value() const { return count_ > 0 ? sum_ / count_ : 0; }
+  double error() const {
+    if (!(count_ > 0)) return 0;
+    const double mean = value();
+    return std::sqrt(std::max(0.0, squares_ - 2 * mean * products_ + mean * mean * counts_)) / count_;
+  }
+
+ private:
+  double sum_ = 0, count_ = 0, squares_ = 0, products_ = 0, counts_ = 0;
+};
+
+/// Of the squared errors in one unit.
+struct Errors {
+  std::string name;
+  double unknown = 0;  ///< the least noise that the raw frame says to have
+  Mean whole, noise, known;
+
+  Errors(const char* unit, const Image& frame) : name(kNoise + unit) {
+    const auto said = frame.numbers.find(name), error = frame.numbers.find(name + "_error");
+    if (said != frame.numbers.end() && error != frame.numbers.end())
+      unknown = std::max(0.0, said->second - error->second);
+  }
+  void write(Image& frame) const {
+    const double missed = std::max(0.0, unknown * unknown - known.value());
+    const double root = std::sqrt(std::max({whole.value(), noise.value(), 0.0}) + missed), error = whole.error();
+    frame.numbers[name] = root;
+    frame.numbers[name + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
+  }
+};
+
+/// Adds a block whose pixel (0, 0) is (left, top).
+void add_block(const LeftError& error, const Image& frame, int left, int top, double exposure, Errors& linear,
+               Errors& codes) {
+  const auto picture = frame.rgb("");
+  std::array<double, 3> sums{}, in_codes{};
+  double count = 0;
+  for (int y = top; y < std::min(frame.height, top + kBlock); ++y)
+    for (int x = left; x < std::min(frame.width, left + kBlock); ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
+        const std::array<float, 3> squares{error.whole[c][p], error.noise[c][p], error.known[c][p]};
+        if (!std::ranges::all_of(squares, [](float v) { return std::isfinite(v); })) continue;
+        const double slope = exposure * slope_of_code(exposure * double((*picture[c])[p]));
+        for (std::size_t i = 0; i < squares.size(); ++i)
+          sums[i] += double(squares[i]), in_codes[i] += slope * slope * double(squares[i]);
+        ++count;
+      }
+  const auto add = [&](const std::array<double, 3>& to_add, Errors& errors) {
+    errors.whole.add(to_add[0], count), errors.noise.add(to_add[1], count), errors.known.add(to_add[2], count);
+  };
+  add(sums, linear);
+  add(in_codes, codes);
+}
+
+}  // namespace
+
+void LeftNoise::add(const Halves& raw, const Halves& filtered) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (Colours* sums : {&raw_, &left_, &change_}) (*sums)[c].resize(raw.a[c].size());
+    for (std::size_t p = 0; p < raw.a[c].size(); ++p) {
+      const float a = raw.a[c][p], b = raw.b[c][p], f = filtered.a[c][p], g = filtered.b[c][p];
+      raw_[c][p] += (a - b) / 2;
+      left_[c][p] += (f - g) / 2;
+      change_[c][p] += mean_of(f, g) - mean_of(a, b);
+    }
+  }
+}
+
+LeftError LeftNoise::error() const {
+  LeftError error{change_, left_, raw_};
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t p = 0; p < change_[c].size(); ++p) {
+      const float n = raw_[c][p], k = left_[c][p], off = change_[c][p];
+      error.whole[c][p] = off * off + n * (2 * k - n);
+      error.noise[c][p] = k * k;
+      error.known[c][p] = n * n;
+    }
+  return error;
+}
+
+void tell_left_noise(const LeftError& error, Image& frame) {
+  Errors linear("linear", frame), codes("codes", frame);
+  std::erase_if(frame.numbers, [](const auto& number) { return number.first.starts_with(kNoise); });
+  if (error.whole[0].empty() || !holds(frame, "R") || !holds(frame, "G") || !holds(frame, "B")) return;
+  const double exposure = exposure_of(frame.rgb(""));
+  for (int top = 0; top < frame.height; top += kBlock)
+    for (int left = 0; left < frame.width; left += kBlock) add_block(error, frame, left, top, exposure, linear, codes);
+  linear.write(frame);
+  codes.write(frame);
+  frame.numbers[kNoise + "exposure"] = exposure;
+}
+
+}  // namespace tempolux
