@@ -23,7 +23,6 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: validity, after clamping
   float radius_unclamped = 0;           ///< m: before pixels limited it
-  float seen_rays = INFINITY;           ///< gather rays that met something; not in files
   float further_share = 0;              ///< further rays per cell that its unevenness would call for; not in files
   Clearance clearance;                  ///< what was seen around it, about `normal`: beyond it does not count
   std::uint32_t object = 0;             ///< the object it rides on

@@ -31,7 +31,7 @@ bool is_bright(const TemporalScene& scene, std::uint32_t point);
 /// bring has changed.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,
                 SampleUnits units, std::vector<std::uint8_t>& marks);
-/// Has something moved where a record looks around itself?
-bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes);
+/// Has something moved nearer than `reach` [m] to a record?
+bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes, float reach);
 
 }  // namespace tempolux
