@@ -33,7 +33,8 @@ struct Wish {
   int rays = 0;                   ///< of a record at most; 0: the preset's
   double pixel_error = 0;         ///< 0: the preset's
   std::string points, records,
-      pixels;  ///< words for irradcache-build points, records and frame-render; "": the preset's
+      pixels;                  ///< words for irradcache-build points, records and frame-render; "": the preset's
+  bool preset_pixels = false;  ///< `pixels` are the preset's, without --pixel-error: Decisions has it
   std::string channels = "RGBA,Z,N,id";
   bool textures = false;  ///< SURFACES=textures: indirect light in smoke by light textures
   std::string texture_words, smoke_words;
@@ -67,6 +68,7 @@ struct Decisions {
   bool caustic_map = false;              ///< caustic light where the eye looks is read from photons; else paths find it
   std::uint64_t photon_paths = 700'000;  ///< of a photon map
   int record_rays = 500;
+  double pixel_error = 0;     ///< of frames, where the wish leaves their pixels to the preset
   double texture_width = 0;   ///< of a preview's light textures, m: deviation of their filter; 0: no preview
   bool learn_lights = false;  ///< light from far away comes through openings: it is learned which way
   bool split = false;         ///< bright points are divided from the others and sampled explicitly
