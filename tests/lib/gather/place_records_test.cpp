@@ -232,9 +232,9 @@ IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic) {
 
 TEST(RadiusOf, EachLimitDecidesWhereItIsTheSmallest) {
   const PlacementOptions options{.error_bound = 0.2f, .min_radius_px = 4, .unseen_radius_px = 500};
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);            // bound x harmonic mean
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);         // bound x harmonic mean
   EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY), 1e-3f, options), 0.5f);  // nothing seen
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);     // smallest: 4 pixels
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);    // smallest: 4 pixels
   IrradianceRecord near =
       gathered(1, {1, 0, 0}, 5e-3f);  // bound x R = 1 mm, widened fourfold: the gradient shrinks as much
   limit_radius(near, 1e-3f, options);
