@@ -47,7 +47,10 @@ struct Shots {
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                          const GatherOptions& options)
-    : reach_(tracer), incoming_(tracer, lights, points, options.near_factor, options.bright), options_(options) {
+    : tracer_(tracer),
+      reach_(tracer),
+      incoming_(tracer, lights, points, options.near_factor, options.bright),
+      options_(options) {
   for (std::size_t i = 0; i < strata_.size(); ++i)
     strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }
@@ -55,6 +58,30 @@ FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const Point
 void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record) const {
   const Vec3 lit = dot(from.normal_geometric, record.normal) < 0 ? -from.normal_geometric : from.normal_geometric;
   record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);
+}
+
+float FinalGather::distance(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
+  const GatherStrata& strata = distance_strata_;
+  const GatherDirections directions(from, normal, strata.rings, strata.sectors,
+                                    gather_key(from.position, normal, ~options_.seed));
+  const float closest = closest_distance(from);
+  thread_local std::vector<Ray> rays;
+  thread_local std::vector<Hit> hits;
+  double met = 0, inverse = 0;
+  for (std::uint32_t draw = 0; draw < kMostDraws && met < kEnoughMet; ++draw) {
+    rays.clear();
+    for (const std::uint32_t c : strata.order) {
+      Ray ray;
+      std::uint64_t key = 0;
+      if (directions.aim(c, draw, ray, key)) rays.push_back(ray);
+    }
+    hits.assign(rays.size(), Hit{});
+    tracer_.intersect(rays, hits);
+    counts.distance_rays += rays.size();
+    for (const Hit& hit : hits)
+      if (hit.surface != kNone) ++met, inverse += 1 / double(std::max(hit.t, closest));
+  }
+  return met > 0 ? float(met / inverse) : INFINITY;
 }
 
 IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts,
@@ -84,6 +111,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);  // 0 for a miss
   }
   IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal);
+  record.radius_unclamped = distance(from, normal, counts);
 
   // More rays where light is uneven: a cell's value becomes the mean of all of its own.
   sky.further_rays(further);

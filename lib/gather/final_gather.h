@@ -29,10 +29,15 @@ class FinalGather {
   /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
   /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Under a coat light
   /// counts by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the
-  /// Lambert lobe. radius_unclamped receives the harmonic mean distance; limit_radius makes the radius of it. Random
-  /// numbers come from the position: the record of a place does not depend on which records were made before.
+  /// Lambert lobe. radius_unclamped receives distance(); limit_radius makes the radius of it. Random numbers come
+  /// from the position: the record of a place does not depend on which records were made before.
   /// ray_share: of `rays` that the place needs, 1/8 to 1; the next power of two that is not less.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
+  /// R [m], the harmonic mean distance to what rays over the hemisphere meet, drawn by the cosine; infinite where they
+  /// meet nothing. 64 rays are sent, and 64 more up to 512 until 8 have met something, which leaves R an error of 1/3.
+  /// They are others than those that bring light: were they the same, records that happen to meet a small bright thing
+  /// would reach less far than records that miss it, so weigh less, and their mean would be dark.
+  float distance(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
   /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
   /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright
@@ -45,11 +50,16 @@ class FinalGather {
   std::span<const std::uint32_t> cell_order() const { return strata_[kFewer].order; }
 
  private:
+  static constexpr int kDistanceRays = 64, kEnoughMet = 8;
+  static constexpr std::uint32_t kMostDraws = 8;
+
+  const Tracer& tracer_;
   Reach reach_;
   IncomingRadiance incoming_;
   GatherOptions options_;
   static constexpr std::size_t kFewer = 3;
   std::array<GatherStrata, kFewer + 1> strata_;  ///< of 1/8, 1/4, 1/2 and 1 times `rays`
+  const GatherStrata distance_strata_{kDistanceRays};
 };
 
 }  // namespace tempolux

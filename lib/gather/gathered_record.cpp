@@ -13,8 +13,6 @@ IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame,
   record.normal = normal;
   record.object = place.object;
   sky.translational_gradient(frame, record);
-  record.radius_unclamped = sky.harmonic_distance();
-  record.seen_rays = sky.seen_rays();
   return record;
 }
 

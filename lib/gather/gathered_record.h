@@ -10,8 +10,8 @@ namespace tempolux {
 /// m: nothing counts as nearer than this to a place; 1 / distance stays finite.
 float closest_distance(const SurfacePoint& place);
 
-/// Sets of a record what follows from one ray a cell: translational gradient and radius_unclamped (harmonic mean
-/// distance), seen_rays. Position, normal and object are the place's.
+/// Sets of a record what follows from one ray a cell: translational gradient. Position, normal and object are the
+/// place's.
 IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame, const SurfacePoint& place,
                                       Vec3 normal);
 

@@ -141,18 +141,4 @@ void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
     }
 }
 
-float Hemisphere::harmonic_distance() const {
-  double sum = 0, hits = 0;
-  for (const float inverse : inverse_distance) {
-    sum += double(inverse);
-    hits += inverse > 0;
-  }
-  return sum > 0 ? float(hits / sum) : INFINITY;
-}
-
-float Hemisphere::seen_rays() const {
-  return float(
-      std::count_if(inverse_distance.begin(), inverse_distance.end(), [](float inverse) { return inverse > 0; }));
-}
-
 }  // namespace tempolux

@@ -45,11 +45,6 @@ class Hemisphere {
   void further_rays(std::vector<std::uint8_t>& counts) const;
   static constexpr int kMostFurther = 8;
 
-  /// Harmonic mean of the distances of what is there, m; infinity if there is nothing.
-  float harmonic_distance() const;
-  /// Number of cells in which something is, a ray each.
-  float seen_rays() const;
-
  private:
   std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }
 

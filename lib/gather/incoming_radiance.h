@@ -18,9 +18,10 @@ namespace tempolux {
 /// near_hits: went on though a point stood for them, as it was near or its indirect light not that of the hit;
 /// unanswered: went on as none did.
 struct GatherCounts {
-  std::uint64_t rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
+  std::uint64_t rays = 0, distance_rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
     rays += o.rays;
+    distance_rays += o.distance_rays;
     near_hits += o.near_hits;
     shadow_rays += o.shadow_rays;
     points_read += o.points_read;

@@ -12,8 +12,6 @@ namespace tempolux {
 namespace {
 
 constexpr int kCoarsest = 16;
-/// Rays that met something, by which R is known to 1 / sqrt(n): to a third, hence not to be relied on; to a sixth.
-constexpr float kFewRays = 8, kEnoughRays = 32;
 
 /// Pixels of the lattice of `stride` that are on no coarser one, row by row.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
@@ -136,9 +134,8 @@ namespace {
 
 /// r before min_radius_px.
 float radius_by_distances(const IrradianceRecord& record, float footprint, const PlacementOptions& options) {
-  const float unseen = options.unseen_radius_px * footprint;
-  const float known = std::clamp((record.seen_rays - kFewRays) / (kEnoughRays - kFewRays), 0.0f, 1.0f);
-  return 1 / (known / (options.error_bound * record.radius_unclamped) + (1 - known) / unseen);
+  return std::isinf(record.radius_unclamped) ? options.unseen_radius_px * footprint
+                                             : options.error_bound * record.radius_unclamped;
 }
 
 }  // namespace

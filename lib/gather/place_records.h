@@ -14,8 +14,8 @@ namespace tempolux {
 struct PlacementOptions {
   float error_bound = 0.2f;  ///< validity radius / harmonic mean distance to what is seen
   float min_radius_px = 4;   ///< a record is valid this many pixels around it at least
-  /// And as many where its rays met nothing, so that no distance says how far it holds; Mitsuba and PBRT limit all
-  /// radii to 7 and 6 times the least.
+  /// And as many where nothing is met, so that no distance says how far it holds; Mitsuba and PBRT limit all radii to 7
+  /// and 6 times the least.
   float unseen_radius_px = 32;
   float min_weight = 0.9f;  ///< sum of weights that counts as covered; a record has 1 at its own place
 };
@@ -56,15 +56,9 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
 
-/// Radius r [m] of a record by R, the harmonic mean distance to what its rays met, those that met nothing left out
-/// [Ward, Rubinstein and Clear 1988]:
-///
-///     1 / r = k / (error_bound R) + (1 - k) / (unseen_radius_px footprints),     k = 0 for 8 such rays or fewer, 1 for
-///     32 or more
-///
-/// but r is at least min_radius_px footprints [Tabellion and Lamorlette 2004]. The radius follows from distances
-/// alone, and a small thing that few rays meet has no say. If it had, records whose rays missed the thing would reach
-/// farther than those that met it, and the mean would be dark.
+/// Radius r [m] of a record by R, the harmonic mean distance to what is seen (FinalGather::distance) [Ward, Rubinstein
+/// and Clear 1988]: error_bound R, or unseen_radius_px footprints where R is infinite, but at least min_radius_px
+/// footprints [Tabellion and Lamorlette 2004].
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 /// Sets the radius of a gathered record, whose radius_unclamped is R; radius_unclamped keeps r before min_radius_px.

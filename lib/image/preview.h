@@ -30,12 +30,14 @@ double auto_exposure_stops(const Image& image, const std::string& layer);
 
 /// Converts a layer to a picture by its kind:
 ///     colour L.R .G .B     2^stops, then sRGB transfer, clipped to [0, 1]
-///     signed colour        (negative values hold more than 2 % of all magnitudes, as in differences) the component d
-///     of largest magnitude: 2^stops |d|, clipped, sRGB transfer; 0 grey, above red, below blue Z linear between the
-///     1st percentile (bright, 1) and the 99th (dark, 0.1); no surface (infinite or >= 1e10) black N or any L.X .Y .Z
-///     with values in [-1, 1]: n/2 + 1/2; P and other vectors: each axis over its range L.u .v (motion)      no motion
-///     grey; u on red, v on green, |u| 2^stops = 1 full ids                  a colour per id; 0xffffffff (no object)
-///     black any other channel    grey, as colour
+///     signed colour        (negative values hold more than 2 % of all magnitudes, as in differences)
+///     the component d of largest magnitude: 2^stops |d|, clipped, sRGB transfer; 0 grey, above red, below blue
+///     Z                    linear between the 1st percentile (bright, 1) and the 99th (dark, 0.1);
+///     no surface (infinite or >= 1e10) black
+///     N or any L.X .Y .Z   with values in [-1, 1]: n/2 + 1/2; P and other vectors: each axis over its range
+///     L.u .v (motion)      no motion grey; u on red, v on green, |u| 2^stops = 1 full
+///     ids                  a colour per id; 0xffffffff (no object) black
+///     any other channel    grey, as colour
 /// Values that are not finite are black. Throws as auto_exposure_stops.
 Picture make_picture(const Image& image, const PreviewOptions& options);
 

@@ -23,7 +23,6 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
-  float seen_rays = INFINITY;           ///< number of gather rays that hit a surface; not in files
   float further_share = 0;   ///< further rays per cell that the unevenness of its light calls for; not in files
   Clearance clearance;       ///< the record does not count beyond it; measured about `normal`
   std::uint32_t object = 0;  ///< the object it lies on

@@ -2,6 +2,7 @@
 #include "lib/plan/decide.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -45,9 +46,20 @@ std::vector<int> spread(const std::vector<int>& frames) {
   return some;
 }
 
+constexpr int kPlaces = 2048;  ///< of rough frames, all together
+
+/// Is the way one that the user and the scene allow? Media are lit by photons, which points read, too.
+bool is_allowed(const Way& way, const Wish& wish, bool media) {
+  return !(media && way.method == IndirectMethod::paths) &&
+         (wish.indirect == "auto" || kIndirectMethods[std::size_t(way.method)] == wish.indirect);
+}
+
 /// The needs of one looked frame.
 struct Look {
   std::vector<Way> ways;
+  bool knows(IndirectMethod method) const {
+    return std::ranges::all_of(ways, [&](const Way& way) { return way.method != method || way.measured; });
+  }
   std::uint64_t paths = 0;  ///< of light
   bool learn = false;
 };
@@ -63,17 +75,21 @@ class FramePilot {
         tracer_(frame_),
         lights_(frame_, table_) {}
 
-  Look look() {
+  /// places: of the rough frame. enough(look): is what is measured all that is asked for?
+  Look look(int places, const std::function<bool(const Look&)>& enough) {
     const Lights& aimed_lights = aimed();
-    const RoughFrame rough =
-        rough_frame({tracer_, lights_}, aimed_lights, view_, {kinds_, wish_.pixel_error, wish_.photons, spheres_, 0});
-    Look look;
-    look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
-    look.paths =
-        lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons) : wish_.photons;
-    look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays},
-                              kinds_.find("caustic") != std::string::npos);
-    return look;
+    const auto look_of = [&](const RoughFrame& rough) {
+      Look look;
+      look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
+      look.paths = lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons)
+                                                             : wish_.photons;
+      look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays},
+                                kinds_.find("caustic") != std::string::npos);
+      return look;
+    };
+    RoughOptions options{kinds_, wish_.pixel_error, wish_.photons, spheres_, 0, places};
+    options.enough = [&](const RoughFrame& rough) { return enough(look_of(rough)); };
+    return look_of(rough_frame({tracer_, lights_}, aimed_lights, view_, options));
   }
 
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
@@ -121,29 +137,60 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
   return kinds;
 }
 
-/// Joins the needs of the looked frames. Media are lit by photons, which need points, too.
-void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
+std::vector<Way> joined_ways(const std::vector<Look>& looks) {
   std::vector<std::vector<Way>> of_frames;
+  for (const Look& look : looks) of_frames.push_back(look.ways);
+  return joined(of_frames);
+}
+
+/// The best way that is allowed, if there is one.
+std::optional<Way> best_of(const std::vector<Way>& ways, const Wish& wish, bool media) {
+  const auto best = std::ranges::find_if(ways, [&](const Way& way) { return is_allowed(way, wish, media); });
+  return best == ways.end() ? std::nullopt : std::optional(*best);
+}
+
+/// Looks at frames, each as far as its best way is known; then at those again that do not know the best way of all.
+/// middle: the pilot of the frame in the middle.
+std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool media,
+                          const std::function<std::unique_ptr<FramePilot>(int)>& pilot_of,
+                          std::unique_ptr<FramePilot>& middle) {
+  const int places = (kPlaces + int(frames.size()) - 1) / int(frames.size());
+  std::vector<Look> looks;
+  for (const int frame : frames) {
+    std::unique_ptr<FramePilot> pilot = pilot_of(frame);
+    looks.push_back(pilot->look(places, [&](const Look& look) {
+      const std::optional<Way> best = best_of(look.ways, wish, media);
+      return !best || best->measured;
+    }));
+    if (looks.size() == (frames.size() + 1) / 2) middle = std::move(pilot);
+  }
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const std::optional<Way> best = best_of(joined_ways(looks), wish, media);
+    if (!best || looks[i].knows(best->method)) continue;
+    looks[i] = pilot_of(frames[i])->look(places, [&](const Look& look) { return look.knows(best->method); });
+    i = std::size_t(-1);  // the best way may be another one now
+  }
+  return looks;
+}
+
+/// Joins what the looked frames ask for.
+void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
   for (const Look& look : looks) {
     d.photon_paths = std::max(d.photon_paths, look.paths);
     d.learn_lights |= look.learn;
-    of_frames.push_back(look.ways);
   }
-  std::vector<Way> ways = joined(of_frames);
+  const std::vector<Way> ways = joined_ways(looks);
   std::string words = because(ways);
-  std::erase_if(ways, [&](const Way& way) {
-    return (media && way.method == IndirectMethod::paths) ||
-           (wish.indirect != "auto" && kIndirectMethods[std::size_t(way.method)] != wish.indirect);
-  });
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
   // Where the camera sees no Lambert lobe, the only way is paths.
-  const Way way = !ways.empty()
-                      ? ways.front()
-                      : Way{named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather),
-                            false, wish.rays, 0, 0};
+  const Way way =
+      best_of(ways, wish, media)
+          .value_or(Way{named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather), false,
+                        wish.rays, 0, 0});
   d.indirect = way.method;
   d.caustic_map = way.map;
   d.record_rays = way.rays;
+  d.pixel_error = wish.pixel_error * way.pixel_error;
   if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
   d.reasons.push_back({"irradcache-build records", words});
 }
@@ -215,7 +262,7 @@ void decide_preview(const PlannedSegment& segment, const Wish& wish, const Scene
   std::vector<PreviewPilot> pilots;
   for (const int frame : d.looked) {
     FramePilot pilot(wish, source, frame, d.kinds);
-    d.learn_lights |= pilot.look().learn;
+    d.learn_lights |= pilot.look(kPlaces, [](const Look&) { return true; }).learn;
     pilots.push_back(pilot.preview());
   }
   const PreviewChoice choice = choose_preview(pilots, wish.photons, kPreviewWindow);
@@ -266,6 +313,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
 
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source) {
   Decisions d;
+  d.pixel_error = wish.pixel_error;
   d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
   d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe"
@@ -275,15 +323,10 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   } else if (d.photons()) {
     if (wish.indirect == "paths" && media)
       throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
-    std::vector<Look> looks;
     d.photon_paths = 0;
     std::unique_ptr<FramePilot> middle;
-    for (const int frame : d.looked) {
-      auto pilot = std::make_unique<FramePilot>(wish, source, frame, d.kinds);
-      looks.push_back(pilot->look());
-      if (looks.size() == (d.looked.size() + 1) / 2) middle = std::move(pilot);
-    }
-    join(looks, wish, media, d);
+    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds); };
+    join(look_at(d.looked, wish, media, pilot_of, middle), wish, media, d);
     if (d.records()) d.new_share = middle->new_share(segment);
     d.together = pictures_together(segment.pictures().size(), d);
     decide_moving(segment, wish, media, source, d);

@@ -51,6 +51,7 @@ struct Wish {
   double pixel_error = 0;         ///< 0: from the preset
   std::string points, records,
       pixels;  ///< options of irradcache-build points and records, and of frame-render; "": from the preset
+  bool preset_pixels = false;  ///< `pixels` are the preset's, without --pixel-error: Decisions has it
   std::string channels = "RGBA,Z,N,id";
   bool textures = false;  ///< SURFACES=textures: light textures give the indirect light in smoke
   std::string texture_words, smoke_words;
@@ -85,6 +86,7 @@ struct Decisions {
   bool caustic_map = false;  ///< true: visible caustic light is read from photons; false: camera paths find it
   std::uint64_t photon_paths = 700'000;  ///< light paths of a photon map
   int record_rays = 500;
+  double pixel_error = 0;     ///< --pixel-error of frames, if the wish leaves their pixels to the preset
   double texture_width = 0;   ///< m, standard deviation of the filter of a preview's light textures; 0: no preview
   bool learn_lights = false;  ///< true if light comes through openings: the distant lights are learned
   bool split = false;         ///< true: bright points are divided from the other points and sampled explicitly

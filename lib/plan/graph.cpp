@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <iomanip>
 #include <set>
 #include <sstream>
 
@@ -408,6 +409,13 @@ class Builder {
     }
     c.file("--lights", lights(frame));
   }
+  /// Words for the pixels of a frame.
+  std::string pixels_of(int frame) const {
+    if (!wish_.preset_pixels) return pixels_;
+    std::ostringstream words;
+    words << pixels_ << " --pixel-error " << std::setprecision(2) << decided(frame).pixel_error;
+    return words.str();
+  }
   Command frame_command(int frame, const std::string& pixels, const std::string& channels) {
     Command c{"--frame " + std::to_string(frame), {}, cameras({frame}) + in_motion(frame, channels)};
     add_light(frame, c);
@@ -451,14 +459,15 @@ class Builder {
                          (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
     if (walk) return walked_picture(frame);
     if (wish_.filter > 0) return filtered_picture(frame, wish_.channels);
-    return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
+    return add(stage::pictures, frame, frame_command(frame, pixels_of(frame), wish_.channels));
   }
 
   /// A frame with the halves of its samples, filtered alone or with its neighbours. The window ends at the animation's
   /// ends.
   std::string filtered_picture(int frame, const std::string& channels) {
     // The frames of a window need independent noise.
-    const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
+    const std::string pixels =
+        pixels_of(frame) + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
     const std::string raw_names = raw_channels(wish_, channels);
     Command c;
     std::size_t position = 0;
@@ -486,7 +495,7 @@ class Builder {
     const std::string channels = with_channels(wish_.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
     frame = shown(frame, channels);
     if (wish_.filter > 0) return filtered_picture(frame, channels);
-    return add(stage::keys, frame, frame_command(frame, pixels_, channels));
+    return add(stage::keys, frame, frame_command(frame, pixels_of(frame), channels));
   }
   /// The interval of equal light between first keys that strictly holds a frame; false: the frame is a key. Intervals
   /// start at fixed multiples; an interval whose light changes is halved until it does not.
@@ -536,7 +545,7 @@ class Builder {
     c.option(frame_digits(frame));
     c.option(wish_.filter > 0 ? wish_.channels : "-");
     for (const std::string& words :
-         {light.words, size_, pixels_,
+         {light.words, size_, pixels_of(frame),
           "--channels " + (wish_.filter > 0 ? raw_channels(wish_, wish_.channels) : wish_.channels)})
       c.option(words);
     c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());

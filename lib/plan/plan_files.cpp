@@ -20,6 +20,7 @@ Json decisions_json(const Decisions& d) {
                {"caustic_map", d.caustic_map},
                {"paths", d.photon_paths},
                {"rays", d.record_rays},
+               {"pixel_error", d.pixel_error},
                {"learn_lights", d.learn_lights},
                {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
@@ -131,6 +132,7 @@ Decisions read_decisions(const std::string& text) {
     d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
+    d.pixel_error = json.at("pixel_error");
     d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");

@@ -33,8 +33,9 @@ Wish with_preset(Wish wish) {
     wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
   if (wish.pixels.empty()) {
     std::ostringstream words;
-    words << "--spp " << preset.first_samples << " --pixel-error " << wish.pixel_error << " --learn-lights";
+    words << "--spp " << preset.first_samples << " --learn-lights";
     wish.pixels = words.str();
+    wish.preset_pixels = true;
   }
   return wish;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "lib/gather/irradiance_points.h"
+#include "lib/render/pixel_noise.h"
 
 namespace tempolux {
 namespace {
@@ -29,6 +30,9 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
     fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted};
+  if (rough.wanted_of > 0 && variance > rough.wanted_of)
+    way.pixel_error = error_for_variance(variance / rough.wanted_of);
+  way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);
   if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
@@ -67,6 +71,8 @@ std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
       same->work += way.work;
       same->error += way.error;
       same->rays = std::max(same->rays, way.rays);
+      same->pixel_error = std::min(same->pixel_error, way.pixel_error);
+      same->measured &= way.measured;
     }
   std::ranges::stable_sort(all, {}, &Way::score);
   return all;
@@ -77,8 +83,9 @@ std::string because(const std::vector<Way>& ways) {
   std::string words;
   const double least = ways.front().score();
   for (const Way& way : ways) {
-    std::snprintf(text, sizeof text, "%s%s %.3g", kIndirectMethods[std::size_t(way.method)],
-                  way.map ? " beside caustics of photons" : "", least > 0 ? way.score() / least : 1.0);
+    std::snprintf(text, sizeof text, "%s%s %s%.3g", kIndirectMethods[std::size_t(way.method)],
+                  way.map ? " beside caustics of photons" : "", way.measured ? "" : "at least ",
+                  least > 0 ? way.score() / least : 1.0);
     words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
   }
   return words;

@@ -25,10 +25,12 @@ struct Order {
 /// One way to a frame's light.
 struct Way {
   IndirectMethod method = IndirectMethod::paths;
-  bool map = false;  ///< caustic light where the eye looks is read from photons; else paths find it
-  int rays = 0;      ///< of a record
-  double work = 0;   ///< shadow rays, for a picture
-  double error = 0;  ///< squared, mean over the pixels, as SampleEffort has it
+  bool map = false;        ///< caustic light where the eye looks is read from photons; else paths find it
+  int rays = 0;            ///< of a record
+  double work = 0;         ///< shadow rays, for a picture
+  double error = 0;        ///< squared, mean over the pixels, as SampleEffort has it
+  double pixel_error = 1;  ///< of frames, so that their samples leave the error that all ways have alike: of the wish
+  bool measured = true;    ///< or the least that work and error can be
   double score() const { return work * error; }
 };
 

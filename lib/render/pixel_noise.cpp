@@ -32,6 +32,8 @@ double wanted_samples(double sigma, double cost, double error) {
   return error > 0 ? kTypical * std::pow(sigma / (kTypical * error) * std::sqrt(kWhole / cost), kStratified) : 0;
 }
 
+double error_for_variance(double times) { return std::pow(times, -(1 - kStratified / 2) / kStratified); }
+
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
     : view_(view),
       options_(options),

@@ -17,6 +17,9 @@ double allowed_error(double level, double picture, double pixel_error);
 /// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and
 /// `cost` what it costs in rays (docs/pixels.md); 0 of e = 0.
 double wanted_samples(double sigma, double cost, double error);
+/// By how much smaller an `error` makes wanted_samples() leave as much noise of a light whose variance is `times` as
+/// large: variance / samples ~ variance^(1 - k/2) error^k.
+double error_for_variance(double times);
 
 /// Samples of the parts lit and onward to a camera ray, at most. Samples of one place miss what differs between the
 /// places of a pixel: edges of shadows, folds.

@@ -22,15 +22,15 @@
 namespace tempolux {
 namespace {
 
-constexpr int kPlaces = 2048, kSamples = 4, kRecords = 64;
+constexpr int kSamples = 4;
+constexpr double kFirst = 4;               ///< samples of a pixel of a frame, at least
+constexpr int kRecords = 64;               ///< places with two records each
 constexpr int kColumns = 16, kRows = 9;    ///< of the picture, in whose parts the level of light is known
 constexpr std::uint64_t kPaths = 1 << 15;  ///< of light
 constexpr std::uint32_t kPoints = 500;     ///< of a side
 constexpr int kRays = 62;                  ///< of a rough record
-/// Records of a picture over those whose discs of validity would cover it without overlap: weights fall to 0 at a
-/// disc's border. Of five scenes: docs/pixels.md.
-constexpr double kOverlap = 20;
-constexpr double kTell = 7;  ///< records that tell the light of a pixel, likewise
+/// Pixels that are looked at for records: in a tenth of a second. Of a larger picture those of a lattice.
+constexpr double kLooks = 320 * 180;
 constexpr double kSure = 3;  ///< standard errors
 constexpr double kMapError2 =
     1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
@@ -65,12 +65,13 @@ Where where(int i, const CameraView& view, std::uint64_t seed) {
       std::size_t(std::min(kRows - 1, int(at.y * kRows)) * kColumns + std::min(kColumns - 1, int(at.x * kColumns)))};
 }
 
-/// Samples of all places, and the work of one in the mean.
-Samples take_samples(const RenderScene& scene, const CameraView& view, const KnownLight* known, std::uint64_t seed,
-                     RayCounts& counts) {
-  Samples samples(kPlaces);
-  std::vector<RayCounts> by_place(kPlaces);
-  parallel_chunks(kPlaces, 32, [&](std::size_t first, std::size_t last) {
+/// Samples of all places, and the rays of all.
+Samples take_samples(const RenderScene& scene, const CameraView& view, const KnownLight* known,
+                     const RoughOptions& options, RayCounts& counts) {
+  const std::uint64_t seed = options.seed;
+  Samples samples(std::size_t(options.places));
+  std::vector<RayCounts> by_place(samples.size());
+  parallel_chunks(samples.size(), 32, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Where at = where(int(i), view, seed);
       for (std::uint32_t s = 0; s < kSamples; ++s) {
@@ -85,9 +86,17 @@ Samples take_samples(const RenderScene& scene, const CameraView& view, const Kno
   return samples;
 }
 
-double work_of(const RayCounts& counts) {
+/// Of a sample.
+double work_of(const RayCounts& counts, const Samples& samples) {
   return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) + double(counts.points_read)) /
-         (kPlaces * kSamples);
+         (kSamples * double(samples.size()));
+}
+
+double mean_of(const Samples& samples, const std::function<double(const Sample&)>& light) {
+  double sum = 0;
+  for (const auto& some : samples)
+    for (const Sample& sample : some) sum += light(sample);
+  return sum / (kSamples * double(samples.size()));
 }
 
 /// What pixels show in the parts of the picture, and so what errors count there.
@@ -98,13 +107,11 @@ struct Levels {
 
   Levels(const Samples& samples, const CameraView& view, std::uint64_t seed) : allowed(kColumns * kRows) {
     std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
-    for (int i = 0; i < kPlaces; ++i) {
-      part.push_back(where(i, view, seed).part);
-      for (const Sample& sample : samples[std::size_t(i)]) {
-        sum[part.back()] += sample.sum(), ++count[part.back()];
-        picture += sample.sum() / (kPlaces * kSamples);
-      }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      part.push_back(where(int(i), view, seed).part);
+      for (const Sample& sample : samples[i]) sum[part.back()] += sample.sum(), ++count[part.back()];
     }
+    picture = mean_of(samples, [](const Sample& s) { return s.sum(); });
     for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : picture;
     for (std::size_t p = 0; p < sum.size(); ++p) allowed[p] = allowed_error(sum[p], picture, 1);
     std::ranges::nth_element(sum, sum.begin() + std::ptrdiff_t(sum.size() / 2));
@@ -149,20 +156,21 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
 
 /// Samples that the wish asks for, and the error that they leave of all light but layer indirect.
 void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
-  constexpr double kFirst = 4, kWholeSample = 4;  // of a pixel; shadow rays, as wanted_samples has it
+  constexpr double kWholeSample = 4;  // shadow rays, as wanted_samples has it
   for (const double variance :
        variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
     rough.samples += wanted / (kColumns * kRows);
     rough.wanted += variance / wanted / (kColumns * kRows);
   }
+  rough.wanted = std::max(rough.wanted, pixel_error * pixel_error);
 }
 
 /// The files that a frame would read, made roughly.
 class RoughLight {
  public:
-  RoughLight(const RenderScene& scene, const Lights& aimed, const RoughOptions& options)
-      : photons_(pilot_photons(scene.tracer, aimed, options.kinds, kPaths, options.seed ^ 0x61727269766564ull)) {
+  RoughLight(const RenderScene& scene, formats::PhotonBlock photons, const RoughOptions& options)
+      : photons_(std::move(photons)) {
     PointOptions placing;
     placing.seed = options.seed;
     placing.count = kPoints;
@@ -174,7 +182,6 @@ class RoughLight {
     const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
     if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
   }
-  PhotonView photons() const { return photons_; }
   KnownLight known() const {
     KnownLight known;
     known.points = &*lookup_;
@@ -211,13 +218,46 @@ struct Picture {
 
 /// Two records at one place.
 struct Pair {
-  double for_a_pixel = 0;  ///< records
-  double error2 = 0;       ///< squared error of one
+  bool gathered = false;
+  double error2 = 0;  ///< squared error of light that is interpolated there
   GatherCounts counts;
 };
 
+/// Where the picture needs records: distances alone say so, their light is not gathered.
+RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
+  const PlacementOptions options;
+  RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
+  const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& counts) {
+                              IrradianceRecord record;
+                              record.position = seen.surface.position;
+                              record.normal = seen.normal;
+                              record.object = seen.surface.object;
+                              record.radius_unclamped = gather.distance(seen.surface, seen.normal, counts);
+                              limit_radius(record, seen.footprint, options);
+                              gather.look_around(seen.surface, record);
+                              return record;
+                            },
+                            [](std::size_t) {}};
+  const double pixels = double(picture.view.width()) * picture.view.height();
+  const int step = std::max(1, int(std::ceil(std::sqrt(pixels / kLooks))));
+  const auto view = [&](const Look& look) {
+    return seen_through(picture.scene.tracer, picture.view, {look.x * float(step), look.y * float(step), look.random});
+  };
+  const auto steps = [step](int size) { return std::max(1, size / step); };
+  GatherCounts counts;
+  place_records(gather, view, steps(picture.view.width()), steps(picture.view.height()), options, store, counts, {},
+                &source);
+  return store;
+}
+
+/// Records whose mean has the variance of one over this, by how many are valid at a place. Places are spread evenly
+/// over a record's disc, so its weight w = 1 - d / r has the means 1/3 and, of its square, 1/6: (sum w)^2 / sum w^2 is
+/// 2/3 of their number.
+double independent(int records) { return std::max(1.0, 2.0 / 3 * records); }
+
 /// The two have random numbers of their own: half of their squared difference is the variance of one.
-Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathers, int place) {
+Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathers, const RecordStore& placed,
+                 int place) {
   Pair pair;
   const Where at = where(place, picture.view, picture.options.seed);
   std::optional<SeenPoint> seen = seen_through(picture.scene.tracer, picture.view, {at.x + 0.5f, at.y + 0.5f, {}});
@@ -226,14 +266,13 @@ Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathe
   const Rgb reflected = Bsdf(material, dot(seen->surface.normal_geometric, seen->normal) > 0).diffuse_albedo() * kInvPi;
   double difference = 0;
   for (const FinalGather& gather : gathers) {
-    IrradianceRecord record = gather.gather(seen->surface, seen->normal, pair.counts);
-    difference = double(channel_mean(reflected * record.irradiance)) - difference;
-    limit_radius(record, seen->footprint, {});
-    const double radius = double(record.radius) / double(seen->footprint);
-    pair.for_a_pixel += 0.5 * kOverlap / (double(kPi) * radius * radius);
+    const IrradianceRecord record = gather.gather(seen->surface, seen->normal, pair.counts);
+    difference = std::min(double(channel_mean(reflected * record.irradiance)), picture.levels.white) - difference;
   }
-  const double allowed = picture.levels.allowed[at.part];
-  if (allowed > 0) pair.error2 = difference * difference / 2 / (allowed * allowed);
+  pair.gathered = true;
+  const double allowed = picture.levels.allowed[at.part],
+               records = independent(placed.interpolate(seen->surface.position, seen->normal).count);
+  if (allowed > 0) pair.error2 = difference * difference / 2 / records / (allowed * allowed);
   return pair;
 }
 
@@ -243,60 +282,78 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
                        light.gathering(picture.options.photons, seed));
   };
   const std::array<FinalGather, 2> gathers{gather(picture.options.seed), gather(~picture.options.seed)};
+  const RecordStore placed = place_roughly(picture, gathers[0]);
+  rough.recorded = true;
+  rough.records = double(placed.records().size());
   std::vector<Pair> pairs(kRecords);
-  constexpr int kApart = kPlaces / kRecords;
-  parallel_chunks(kRecords, 1,
-                  [&](std::size_t i, std::size_t) { pairs[i] = gather_pair(picture, gathers, int(i) * kApart); });
+  parallel_chunks(pairs.size(), 1,
+                  [&](std::size_t i, std::size_t) { pairs[i] = gather_pair(picture, gathers, placed, int(i)); });
   GatherCounts all;
   double gathered = 0;
   for (const Pair& pair : pairs) {
-    rough.records += pair.for_a_pixel / kRecords * picture.view.width() * picture.view.height();
-    rough.record_error += pair.error2 / kRecords * kRays / kTell;
-    gathered += pair.for_a_pixel > 0 ? 2 : 0;
+    rough.record_error += pair.error2 / double(pairs.size()) * kRays;
+    gathered += pair.gathered ? 2 : 0;
     all += pair.counts;
   }
   if (gathered > 0)
-    rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays)) / (gathered * kRays);
+    rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays) + double(all.distance_rays)) /
+                       (gathered * kRays);
 }
 
 /// What paths surely miss of the light that photons show. n paths that miss light of radiance c have the variance n c^2
 /// at least (docs/methods/caustics.md).
-MissedLight missed_light(const SeenPhotons& photons, double found, double allowed2) {
+MissedLight missed_light(const SeenPhotons& photons, double found, double samples, double allowed2) {
   const double missed = std::max(0.0, photons.mean - found), error = kSure * photons.mean_error;
   const double sure = std::max(0.0, missed * missed - error * error);
   if (!(sure > 0)) return {};
-  return {photons.square * sure / (photons.mean * photons.mean) / allowed2, kPlaces * kSamples * sure / allowed2};
+  return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
 }
 
 /// Places that are seen, and how many of their rays leave the scene.
-void look_at_places(const RenderScene& scene, const CameraView& view, std::uint64_t seed, RoughFrame& rough) {
+void look_at_places(const RenderScene& scene, const CameraView& view, const RoughOptions& options, RoughFrame& rough) {
   int open = 0;
-  for (const SeenPlace& place : places_seen(scene, view, kPlaces, seed ^ 0x70696c6f74ull).places) {
+  for (const SeenPlace& place : places_seen(scene, view, options.places, options.seed ^ 0x70696c6f74ull).places) {
     rough.places += place.exists();
     open += place.exists() && place.open;
   }
   rough.open_share = rough.places > 0 ? double(open) / rough.places : 0;
 }
 
-double mean_of(const Samples& samples, const PartOfLight& light) {
-  double sum = 0;
-  for (const auto& some : samples)
-    for (const Sample& sample : some) sum += light(sample);
-  return sum / (kPlaces * kSamples);
-}
-
 /// By photons: what paths miss, and what a map of caustics would err by.
-void compare(const Picture& picture, const RoughLight& light, const Samples& paths, RoughFrame& rough) {
+void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
   const double allowed2 = picture.levels.picture * picture.levels.picture;
   if (!(allowed2 > 0)) return;
-  const auto seen = [&](formats::PathKind kind) {
-    return see_photons(picture.scene, picture.view, light.photons(), kind);
-  };
+  const auto seen = [&](formats::PathKind kind) { return see_photons(picture.scene, picture.view, photons, kind); };
   const SeenPhotons caustics = seen(formats::PathKind::caustic);
-  rough.missed_caustic = missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), allowed2);
+  const double samples = kSamples * double(paths.size());
+  rough.missed_caustic =
+      missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
   rough.missed = missed_light(seen(formats::PathKind::indirect),
-                              mean_of(paths, [](const Sample& s) { return s.indirect; }), allowed2);
+                              mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
   rough.map_error = kMapError2 * caustics.square / allowed2;
+}
+
+/// The least that gathering and records can cost and err: a camera ray and one onward from what has a Lambert lobe, and
+/// indirect light without any noise.
+void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
+  const double seen = double(rough.places) / options.places;
+  rough.gather = rough.path;
+  rough.gather.work = Work::kRay * (1 + seen);
+  rough.gather.all = rough.path.other;
+  rough.gather.without_caustic = rough.path.other_without_caustic;
+  rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
+}
+
+void measure_gathering(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
+  const KnownLight known = light.known();
+  RayCounts counts;
+  const Samples gathered = take_samples(picture.scene, picture.view, &known, picture.options, counts);
+  rough.gathered = true;
+  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
+  // Where a record is a ray still goes on from the Lambert lobe: it joins light sampling. It ends at the first thing
+  // that it meets.
+  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
+  rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
 }
 
 }  // namespace
@@ -304,27 +361,26 @@ void compare(const Picture& picture, const RoughLight& light, const Samples& pat
 RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view,
                        const RoughOptions& options) {
   RoughFrame rough;
-  look_at_places(scene, view, options.seed, rough);
+  look_at_places(scene, view, options, rough);
   RayCounts counts;
-  const Samples paths = take_samples(scene, view, nullptr, options.seed, counts);
+  const Samples paths = take_samples(scene, view, nullptr, options, counts);
   const Picture picture{scene, view, options, Levels(paths, view, options.seed)};
   rough.radiance = picture.levels.picture;
   ask(paths, picture.levels, options.pixel_error, rough);
-  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts));
+  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts, paths));
+  rough.wanted_of = std::max(rough.path.other, kFirst * options.pixel_error * options.pixel_error);
   if (rough.places == 0) return rough;
 
-  const RoughLight light(scene, aimed, options);
-  rough.photons_per_path = double(light.photons().photons.size()) / kPaths;
-  const KnownLight known = light.known();
-  counts = {};
-  const Samples gathered = take_samples(scene, view, &known, options.seed, counts);
-  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts));
-  // Where a record is a ray still goes on from the Lambert lobe: it joins light sampling. It ends at the first thing
-  // that it meets.
-  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
-  rough.record_sample = rough.gather.work + at_records / (kPlaces * kSamples);
-  measure_records(picture, light, rough);
-  compare(picture, light, paths, rough);
+  formats::PhotonBlock photons =
+      pilot_photons(scene.tracer, aimed, options.kinds, kPaths, options.seed ^ 0x61727269766564ull);
+  rough.photons_per_path = double(photons.photons.size()) / kPaths;
+  compare(picture, photons, paths, rough);
+  bound_by_paths(options, rough);
+  const auto enough = [&] { return options.enough && options.enough(rough); };
+  if (enough()) return rough;
+  const RoughLight light(scene, std::move(photons), options);
+  measure_gathering(picture, light, rough);
+  if (!enough()) measure_records(picture, light, rough);
   return rough;
 }
 

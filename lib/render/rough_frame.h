@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,19 +42,23 @@ struct MissedLight {
   double variance = 0;  ///< of one path that might find it, at least
 };
 
-/// What the surfaces that a camera sees scatter, and how it is found.
+/// What the surfaces that a camera sees scatter, and how it is found. What has not been measured is the least that it
+/// can be: where a way costs too much even so it need not be measured.
 struct RoughFrame {
-  int places = 0;         ///< seen that have a Lambert lobe; 0: none is
-  double radiance = 0;    ///< mean of the picture, as paths find it [W/m^2/sr]
-  double open_share = 0;  ///< of the rays of the surfaces' hemispheres: leave the scene
-  double wanted = 0;      ///< mean squared error that the wish leaves of all light but layer indirect
-  double samples = 0;     ///< of a pixel, that it takes
-  SampleEffort path;      ///< whole paths
-  SampleEffort
-      gather;  ///< ... that end at irradiance points; of all but layer indirect also what is left where records are
+  bool gathered = false, recorded = false;  ///< are gathering and records measured?
+  int places = 0;                           ///< seen that have a Lambert lobe; 0: none is
+  double radiance = 0;                      ///< mean of the picture, as paths find it [W/m^2/sr]
+  double open_share = 0;                    ///< of the rays of the surfaces' hemispheres: leave the scene
+  /// Mean squared error that the wish leaves of all light but layer indirect, and the variance of a sample of that
+  /// light; at least the wish's own error, and what the first samples make it of.
+  double wanted = 0, wanted_of = 0;
+  double samples = 0;  ///< of a pixel, that it takes
+  SampleEffort path;   ///< whole paths
+  /// ... that end at irradiance points; of all but layer indirect also what is left where records are.
+  SampleEffort gather;
   double record_sample = 0;  ///< shadow rays of a sample that reads a record
   /// Records: how many the picture needs, what a ray of one costs with all that follows, and squared error x rays of
-  /// what they tell.
+  /// the light interpolated between them.
   double records = 0, record_ray = 0, record_error = 0;
   MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
   double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
@@ -66,10 +71,14 @@ struct RoughOptions {
   std::uint64_t photons = 700'000;       ///< paths that the map would have
   std::span<const AimSphere> seen = {};  ///< where points lie; none: everywhere
   std::uint64_t seed = 0;
+  int places = 2048;  ///< of the picture
+  /// Is the answer known? Asked before gathering and before records are measured; empty: no.
+  std::function<bool(const RoughFrame&)> enough = {};
 };
 
-/// 2048 places of four samples each, by paths and by points of 32768 paths of light, and records at 64 places. A tenth
-/// or two of a second. `aimed`: lights that aim photons where the camera looks. Same result for any number of threads.
+/// Places of four samples each, by paths and by points of 32768 paths of light, and records at 64 places: a
+/// tenth or two of a second in all. `aimed`: lights that aim photons where the camera looks. Same result for any number
+/// of threads.
 RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view,
                        const RoughOptions& options);
 

@@ -90,10 +90,9 @@ bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const G
   return true;
 }
 
-bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes) {
-  return std::any_of(changes.boxes.begin(), changes.boxes.end(), [&](const Box3& box) {
-    return holds(grown(box, std::min(kept.record.clearance_reach, 1e15f)), kept.position());
-  });
+bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes, float reach) {
+  return std::any_of(changes.boxes.begin(), changes.boxes.end(),
+                     [&](const Box3& box) { return holds(grown(box, std::min(reach, 1e15f)), kept.position()); });
 }
 
 }  // namespace tempolux

@@ -32,7 +32,7 @@ bool is_bright(const TemporalScene& scene, std::uint32_t point);
 /// the cells.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,
                 SampleUnits units, std::vector<std::uint8_t>& marks);
-/// True if something has moved within the reach of the record's clearance.
-bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes);
+/// True if something has moved nearer than `reach` [m] to the record.
+bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes, float reach);
 
 }  // namespace tempolux

@@ -152,24 +152,30 @@ bool TemporalGather::outlived(const SurfacePoint& place, const formats::Radsampl
   return !eye || scene_.tracer.occluded(spawn_shadow_ray(place, *eye, 0));
 }
 
-/// Recomputes the record from its samples.
-void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born,
+/// Recomputes the record from its samples. `changes`: null for a new record. A mover nearer than the mean distance
+/// changes the record.
+void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes,
                             GatherCounts& counts) const {
+  const bool born = !changes;
   float further = kept.record.further_share;
   IrradianceRecord made = reconstruct(kept, place, units_, born ? &further : nullptr);
   made.further_share = further;
+  made.radius_unclamped = kept.record.radius_unclamped / placement_.error_bound;
+  if (born || near_a_mover(kept, *changes, made.radius_unclamped))
+    made.radius_unclamped = gather_.distance(place, kept.normal(), counts);
   gather_.add_explicit(place, kept.record.key, made, counts);
   PlacementOptions placement = placement_;
   if (!born && outlived(place, kept.record, made)) placement.min_radius_px *= kLeastOfHidden;
   limit_radius(made, kept.record.footprint, placement);
   made.clearance = result_of(kept.record).clearance;
+  const bool look_again = born || near_a_mover(kept, *changes, kept.record.clearance_reach);
   if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
   keep_result(made, kept.record);
 }
 
 /// Samples the bright points anew for a record whose cells do not change.
 void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const {
-  finish(place_of(kept), kept, near_a_mover(kept, changes), false, counts);
+  finish(place_of(kept), kept, &changes, counts);
 }
 
 KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const {
@@ -195,7 +201,7 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   kept.anchors.assign(strata.cells(), kNone);
   const std::vector<std::uint8_t> marks(strata.cells(), all);
   shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata, marks, counts);
-  finish(place, kept, true, true, counts);
+  finish(place, kept, nullptr, counts);
   return kept;
 }
 
@@ -244,7 +250,7 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     if (marks[c] == scaled) scale_radiance(kept, c, changes.ratios[kept.anchors[c]]);
   }
   shoot(place, kept, directions, strata_of(r.rings, r.sectors), marks, counts.update);
-  finish(place, kept, near_a_mover(kept, changes), false, counts.update);
+  finish(place, kept, &changes, counts.update);
 }
 
 /// First marks the cells of all records, then updates the records that change: the number of cells drawn by age depends

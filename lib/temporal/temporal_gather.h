@@ -97,7 +97,7 @@ class TemporalGather {
                   TemporalCounts& counts) const;
   void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
              const GatherStrata& strata, std::span<const std::uint8_t> marks, GatherCounts& counts) const;
-  void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const;
+  void finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes, GatherCounts& counts) const;
   void sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const;
   KeptHemisphere birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;

@@ -100,6 +100,36 @@ TEST(FinalGather, FurtherRaysKeepTheMean) {
   EXPECT_GT(double(counts.rays), 1.1 * 50 * kGathers);  // there were some
 }
 
+/// Below a ceiling at height h, much wider than high, rays of cosine c are h / c long; c drawn by the cosine has the
+/// mean 2/3, so R = 1.5 h. Its variance is 1/18: 64 rays leave 1 / sqrt(18) / 8 = 3 % of h / R or less, as they are
+/// stratified. Above nothing is met. A patch of which one ray in 100 knows is met by more than half of all records, as
+/// rays go on up to 512: R is the distance there, 1 to 1.005 h.
+TEST(FinalGather, DistanceIsTheHarmonicMeanOfWhatIsMet) {
+  const auto distance_below = [](float half, Vec3 normal, std::uint64_t seed) {
+    HandMadeScene scene;
+    scene.add_quad({-half, 2, -half}, {half, 2, -half}, {half, 2, half}, {-half, 2, half}, matte(Rgb(1.0f)));
+    const Tracer tracer(scene.frame());
+    const Lights lights(scene.frame(), EmissionTable{});
+    const PointLookup lookup({}, 1);
+    SurfacePoint from;
+    from.normal = from.normal_geometric = normal;
+    from.offset = 1e-6f;
+    GatherCounts counts;
+    return double(FinalGather(tracer, lights, lookup, {.seed = seed}).distance(from, normal, counts));
+  };
+  EXPECT_NEAR(distance_below(2000, {0, 1, 0}, 0) / 3, 1, 0.1);
+  EXPECT_EQ(distance_below(2000, {0, -1, 0}, 0), INFINITY);
+  constexpr float kHundredth = 0.177f;  // 4 a^2 / (pi h^2) = 1/100
+  int met = 0;
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    const double distance = distance_below(kHundredth, {0, 1, 0}, seed);
+    if (distance == INFINITY) continue;
+    ++met;
+    EXPECT_NEAR(distance / 2, 1.003, 0.006);
+  }
+  EXPECT_GT(met, 8);
+}
+
 /// A coated floor under a small bright patch seen at the angle of cosine c: the coat reflects of light from there what
 /// it does, so that arrival_weight(c) of what a matte floor would gather counts. Both follow the same rays: what is
 /// left is how the weight changes over the patch, 4 degrees wide: below 2 %.

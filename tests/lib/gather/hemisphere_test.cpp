@@ -18,16 +18,6 @@ TEST(Hemisphere, UniformLight) {
   IrradianceRecord record;
   sky.irradiance_and_rotational_gradient(Frame({0, 0, 1}), record);
   EXPECT_NEAR(record.irradiance.g, 0.7 * M_PI, 1e-5);
-  EXPECT_NEAR(sky.harmonic_distance(), 1.0 / 3, 1e-6);
-}
-
-/// One thing 2 m away in an empty landscape of 300 cells.
-TEST(Hemisphere, DistanceAndShareOfWhatIsThere) {
-  Hemisphere sky;
-  sky.reset(10, 30);
-  sky.inverse_distance[7] = sky.inverse_distance[120] = 0.5f;
-  EXPECT_FLOAT_EQ(sky.harmonic_distance(), 2);
-  EXPECT_EQ(sky.seen_rays(), 2);
 }
 
 /// Light in every cell to the right of a meridian: further rays along its border alone. Beside it three of eight
@@ -69,12 +59,6 @@ TEST(Hemisphere, ACellsOwnRayHasNoSayInItsFurtherOnes) {
     sky.radiance[c] = own;
   }
   EXPECT_TRUE(others);
-}
-
-TEST(Hemisphere, NothingThereIsFarAway) {
-  Hemisphere sky;
-  sky.reset(2, 7);
-  EXPECT_EQ(sky.harmonic_distance(), INFINITY);
 }
 
 }  // namespace

@@ -221,22 +221,20 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
   EXPECT_EQ(looked_within(0, {8, 0, 0}), 0);
 }
 
-IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic, float seen_rays = 300) {
+IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic) {
   IrradianceRecord r;
   r.normal = {0, 1, 0};
   r.irradiance = Rgb(irradiance);
   r.translational = {slope, slope, slope};
   r.radius_unclamped = harmonic;
-  r.seen_rays = seen_rays;
   return r;
 }
 
 TEST(RadiusOf, EachLimitDecidesWhereItIsTheSmallest) {
   const PlacementOptions options{.error_bound = 0.2f, .min_radius_px = 4, .unseen_radius_px = 500};
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);            // bound x harmonic mean
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY, 0), 1e-3f, options), 0.5f);  // nothing seen
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1, 20), 1e-3f, options), 2 / 7.0f);  // half known: 1 / (.5 / .2 + .5 / .5)
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);     // smallest: 4 pixels
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);         // bound x harmonic mean
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY), 1e-3f, options), 0.5f);  // nothing seen
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);    // smallest: 4 pixels
   IrradianceRecord near =
       gathered(1, {1, 0, 0}, 5e-3f);  // bound x R = 1 mm, widened fourfold: the gradient shrinks as much
   limit_radius(near, 1e-3f, options);
@@ -267,7 +265,7 @@ TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
 /// algorithms of the literature divide 0 by 0 in these; ours say the largest or smallest radius.
 TEST(LimitRadius, DegenerateGathers) {
   const PlacementOptions options{.unseen_radius_px = 500};
-  IrradianceRecord misses = gathered(0, {}, INFINITY, 0);
+  IrradianceRecord misses = gathered(0, {}, INFINITY);
   limit_radius(misses, 1e-3f, options);
   EXPECT_EQ(misses.radius, 0.5f);
   IrradianceRecord touching = gathered(1, {1e20f, 0, 0}, 0);

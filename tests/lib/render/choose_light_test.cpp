@@ -15,6 +15,7 @@ double samples(double variance) { return variance / 0.1; }
 RoughFrame example() {
   RoughFrame rough;
   rough.places = 2048;
+  rough.gathered = rough.recorded = true;
   rough.wanted = 0.1;
   rough.path = {10, 2, 2, 1, 1};
   rough.gather = {8, 1.5, 1.5, 1, 1};
@@ -47,6 +48,27 @@ TEST(WaysToLight, CostAndErrAsDerived) {
   EXPECT_NEAR(records.work, 6e6 * samples(1) + kPoints + 1e5 * records.rays, 1);
   EXPECT_NEAR(records.error, 0.1 + 1.0 / records.rays, 1e-12);
   EXPECT_EQ(ways.front().method, IndirectMethod::records);
+}
+
+/// Samples n ~ (sigma / e)^(7/8) leave variance^(1 - 7/16) e^(7/8) of noise: twice the variance is left at as much for
+/// e times 2^-(9/14). Records leave samples no indirect light, so their frames keep the wish's error.
+TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
+  RoughFrame rough = example();
+  rough.wanted_of = 1;
+  const std::vector<Way> ways = ways_to_light(rough, kOrder, false);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).pixel_error, std::pow(2, -9.0 / 14), 1e-12);
+  EXPECT_EQ(way(ways, IndirectMethod::records).pixel_error, 1);
+}
+
+/// What was not measured is said to be the least.
+TEST(WaysToLight, SayWhatWasNotMeasured) {
+  RoughFrame rough = example();
+  rough.recorded = false;
+  const std::vector<Way> ways = ways_to_light(rough, kOrder, false);
+  EXPECT_TRUE(way(ways, IndirectMethod::gather).measured);
+  EXPECT_FALSE(way(ways, IndirectMethod::records).measured);
+  EXPECT_NE(because(ways).find("records at least"), std::string::npos);
+  EXPECT_FALSE(way(joined({ways, ways_to_light(example(), kOrder, false)}), IndirectMethod::records).measured);
 }
 
 /// No other number of rays has a lower score.

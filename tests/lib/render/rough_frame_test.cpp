@@ -9,7 +9,8 @@
 namespace tempolux {
 namespace {
 
-RoughFrame rough_of(const SceneFrame& frame, int width = 64, std::uint64_t photons = 65536) {
+RoughFrame rough_of(const SceneFrame& frame, int width = 64, std::uint64_t photons = 65536,
+                    const std::function<bool(const RoughFrame&)>& enough = {}) {
   const EmissionTable table = build_emission_table(std::span(&frame, 1));
   const Tracer tracer(frame);
   const Lights lights(frame, table);
@@ -17,8 +18,9 @@ RoughFrame rough_of(const SceneFrame& frame, int width = 64, std::uint64_t photo
   camera.camera.kind = Camera::Kind::orthographic;
   camera.camera.ymag_m = 0.9f;
   camera.scene_from_camera.translation = {2, 2, 3.8};
-  return rough_frame({tracer, lights}, lights, CameraView(camera, {}, width, width * 9 / 16),
-                     {.kinds = "indirect", .pixel_error = 0.016, .photons = photons, .seen = {}, .seed = 0});
+  return rough_frame(
+      {tracer, lights}, lights, CameraView(camera, {}, width, width * 9 / 16),
+      {.kinds = "indirect", .pixel_error = 0.016, .photons = photons, .seen = {}, .seed = 0, .enough = enough});
 }
 
 SceneFrame room(test::HandMadeScene& scene) {
@@ -45,6 +47,26 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_GE(rough.samples, 4);
   EXPECT_EQ(rough.map_error, 0) << "nothing is caustic";
   EXPECT_EQ(rough.missed_caustic.square, 0);
+}
+
+/// Measuring ends when the answer is known: paths are measured all the same, and what is left out is at most what it is
+/// found to be.
+TEST(RoughFrame, EndsWhenTheAnswerIsKnown) {
+  test::HandMadeScene scene;
+  const SceneFrame frame = room(scene);
+  const RoughFrame whole = rough_of(frame);
+  const RoughFrame paths = rough_of(frame, 64, 65536, [](const RoughFrame&) { return true; });
+  const RoughFrame gathered = rough_of(frame, 64, 65536, [](const RoughFrame& rough) { return rough.gathered; });
+  EXPECT_TRUE(whole.gathered && whole.recorded);
+  EXPECT_FALSE(paths.gathered || paths.recorded);
+  EXPECT_TRUE(gathered.gathered && !gathered.recorded);
+  EXPECT_EQ(paths.path.all, whole.path.all);
+  EXPECT_EQ(gathered.gather.all, whole.gather.all);
+  EXPECT_GT(whole.records, 0);
+  EXPECT_EQ(gathered.records, 0);
+  EXPECT_LE(paths.gather.work, whole.gather.work);
+  EXPECT_LE(paths.record_sample, whole.record_sample);
+  EXPECT_LE(paths.gather.all, whole.gather.all);
 }
 
 /// Records do not get more when pixels do, as long as radii are not limited by pixels: 20 cm and more here, as what is
