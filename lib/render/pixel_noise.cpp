@@ -144,8 +144,8 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
     return first_.onward > 1 ? of.within / of.n : sample_variance(of.n, of.onward, of.onward_square);
   });
   const double error = error_at(near.level / near.n);
-  const auto further = [&](double variance, double cost, int first) {
-    const double wanted = times * wanted_samples(std::sqrt(variance), cost, error);
+  const auto further = [&](double squared, double cost, int first) {
+    const double wanted = times * wanted_samples(std::sqrt(squared), cost, error);
     return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
   };
   PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
