@@ -10,15 +10,15 @@
 namespace tempolux {
 namespace {
 
-/// Joins the sums over `count` samples of each part to the means over the `first` before.
+/// Joins sums over `count` new samples of each part to `means`, the means over the `first` samples before them.
 void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& count, PathParts& means) {
   join(sum.own, first.own, count.own, means.own);
   join(sum.lit, first.lit, count.lit, means.lit);
   join(sum.onward, first.onward, count.onward, means.onward);
 }
 
-/// What a pixel that has `have` lacks to `wanted`. Samples of lit and onward need camera rays that they start
-/// from.
+/// How many samples of each part a pixel that has `have` needs to reach `wanted`. Samples of the parts lit and onward
+/// start from camera rays, so these need further camera rays, too.
 PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
   const auto further = [](int has, int wants) { return std::max(0, wants - has); };
   PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
@@ -26,7 +26,7 @@ PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
   return more;
 }
 
-constexpr std::size_t kJudgedTogether = 64;  ///< pixels
+constexpr std::size_t kJudgedTogether = 64;  ///< pixels per piece of parallel work
 
 /// A frame whose pixels get samples in several passes.
 class AdaptiveFrame {
@@ -72,10 +72,10 @@ class AdaptiveFrame {
   PixelNoise noise_;
   NoiseCheck check_;
   FrameOptions of_check_;
-  std::vector<RayCounts> again_rays_;  ///< by slot
-  FrameOptions around_;                ///< of all pixels whose first samples are needed
-  std::vector<PartCounts> counts_;     ///< samples that pixels have
-  ParallelArray<PathParts> parts_;     ///< their means
+  std::vector<RayCounts> again_rays_;  ///< rays of the second rendering, by slot (NoiseCheck::slot)
+  FrameOptions around_;                ///< options with the mask of all pixels whose first samples are needed
+  std::vector<PartCounts> counts_;     ///< samples of each pixel, by part
+  ParallelArray<PathParts> parts_;     ///< means over these samples
   ParallelArray<BrightestSamples> brightest_;
 };
 
@@ -107,7 +107,8 @@ void AdaptiveFrame::take_first() {
   noise_.all_noted();
 }
 
-/// Returns how many camera rays that were.
+/// Takes the samples that pixels still need, `times` as many as pixel_error asks for. Returns the number of camera
+/// rays.
 std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void(double)>& progress) {
   const std::uint64_t before = frame_.rays.camera;
   for_each_pixel(view_, options_, frame_.rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
@@ -127,7 +128,7 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
   return frame_.rays.camera - before;
 }
 
-/// The picture from its parts, and its noise.
+/// Sums the parts into the picture and measures its noise.
 void AdaptiveFrame::put_together() {
   std::vector<Layers>& pixels = frame_.mean.pixels;
   parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
@@ -137,7 +138,7 @@ void AdaptiveFrame::put_together() {
   frame_.noise = check_.measure(pixels, [&](std::size_t pixel) { return parts_[pixel].sum(); });
 }
 
-/// Light that one sample alone claims, once enough of them have looked.
+/// Spreads outliers: first takes further samples where too few have judged a bright one, then calls spread_outliers.
 void AdaptiveFrame::spread() {
   std::vector<Layers>& pixels = frame_.mean.pixels;
   SampledPixels samples{
@@ -168,8 +169,8 @@ void AdaptiveFrame::spread() {
   for (std::size_t i = 0; i < judged.size(); ++i) keep_confirmed(judged[i], before[i]);
 }
 
-/// Gives both halves of a pixel their mean in the layer whose claim kJudges samples have confirmed. One half alone may
-/// have met the thing; a filter that takes the difference of the halves for noise would then remove the thing.
+/// Where kJudges samples have confirmed an outlier, sets both halves of that layer to their mean. Otherwise the light
+/// may lie in one half only, and a filter that takes the difference of the halves for noise would remove it.
 void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
   SampleHalves* const halves = frame_.mean.halves_of(pixel);
   if (!halves) return;
@@ -180,10 +181,10 @@ void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
     halves->join(claim.layer);
 }
 
-/// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as
-/// the number of samples to the power of -1/2 to -5/6: with -.6 passes come near from
-/// above. Most of what a pass brings is known only when it is there, so no pass has more than four times the
-/// samples of those before.
+/// Adds passes of samples until the measured noise is below seen_error. After each pass the noise is measured, and the
+/// noise that remains decides the size of the next pass. The error falls as the number of samples to the power of -1/2
+/// to -5/6; the exponent -.6 makes the passes approach the goal from above. How much a pass gains is only known after
+/// it, so no pass takes more than four times the samples taken so far.
 void AdaptiveFrame::reach_seen_error() {
   constexpr double kSteepness = 0.6, kMostTimes = 4, kLeastTimes = 1.1;
   constexpr int kMostIdle = 8;  // passes without a sample: all pixels are at their limit, or show no noise

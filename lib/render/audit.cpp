@@ -14,12 +14,14 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr std::size_t kFewestPaths = 64;  ///< that found light: of fewer no standard error is said
-constexpr double kFewestSplats = 32;      ///< likewise; equal photons that those in view are worth
-constexpr double kMostOfOne =
-    0.5;  ///< of the sum of squares: beyond that one map or path decides, and the error is not known
-constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;  ///< rays of a frame that take as long as a path of light with
-                                                      ///< what it leaves in view; as two paths from the eye
+constexpr std::size_t kFewestPaths = 64;  ///< paths that found light: an estimate from fewer gets no standard error
+/// Effective number of equal photons in view: an estimate from fewer gets no standard error.
+constexpr double kFewestSplats = 32;
+/// Largest share of one map or path in the sum of squares: above this the standard error is not known.
+constexpr double kMostOfOne = 0.5;
+/// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as two camera
+/// paths.
+constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;
 constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull;
 
 double light_of(const Layers& pixel) {
@@ -28,9 +30,9 @@ double light_of(const Layers& pixel) {
   return sum;
 }
 
-/// Both estimates joined by inverse variance; the one that is known if there is one only. Two that differ by more than
-/// kAuditErrors of their difference's standard errors are not both right (rare light that one way has not met), and
-/// nothing shows which is: no estimate.
+/// Mean of both estimates, weighted by inverse variance, or the only one that is known. If the two differ by more than
+/// kAuditErrors standard errors of their difference, one of them is wrong (for example because it missed rare light).
+/// Nothing decides which one, so the result is unknown.
 Estimate joined(const Estimate& a, const Estimate& b) {
   if (!a.known()) return b;
   if (!b.known()) return a;
@@ -74,7 +76,7 @@ FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::
   }
 }
 
-/// body(part) for the picture, the tile and the object that the pixel belongs to.
+/// Calls body(part) for the picture, for the pixel's tile and for the pixel's object.
 template <class Body>
 void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   const auto width = std::size_t(view_.width()), height = std::size_t(view_.height());
@@ -84,8 +86,7 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
-/// Map k is traced with a seed of its own, all of its paths in one group. Maps are traced side by side and added in
-/// order.
+/// Each map has its own seed and all of its paths in one group. Maps are traced in parallel and added in order.
 void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
   const PhotonSplats camera(tracer, view_);
   std::array<std::vector<Splat>, kMaps> seen;
@@ -135,7 +136,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
     for (std::size_t i = first; i < last; ++i) {
       Difference& difference = differences[i];
       const PixelRandom random(seed, i, 0);
-      // One pixel of each of `count` runs of them, row by row.
+      // The pixels are divided into `count` runs, row by row, and one pixel is drawn from each run.
       const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, i).get2(0, Purpose::pixel);
       difference.pixel =
           std::min(pixels - 1, std::size_t((double(i) + double(within.x)) * double(pixels) / double(count)));
@@ -199,7 +200,7 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
     }
   }
   const double m = double(sums.path_count);
-  // Direct light is sampled by the same random numbers both ways: no difference says nothing.
+  // With equal random numbers both ways sample the same direct light: a difference of 0 is no measurement.
   if (sums.paths_square[layer] > 0 && sums.met[layer] >= kFewestPaths &&
       sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
     entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m -

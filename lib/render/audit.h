@@ -1,4 +1,4 @@
-// lib/render/audit.h -- the bias of a frame's layers, measured by splats of photons and by paths.
+// lib/render/audit.h -- measures the bias of a frame's layers by photons and by camera paths.
 #pragma once
 
 #include <array>
@@ -12,63 +12,63 @@
 
 namespace tempolux {
 
-/// An estimate with its standard error; error < 0: not known.
+/// An estimate with its standard error. error < 0: nothing is known.
 struct Estimate {
   double value = 0, error = -1;
   bool known() const { return error >= 0; }
 };
 
-/// One layer over one part of the picture. Radiances are means over the part's pixels and channels
-/// [W/m^2/sr].
+/// One layer in one part of the picture. Radiances [W/m^2/sr] are means over the part's pixels and channels.
 struct AuditEntry {
   Layer layer = Layer::indirect;
   std::string part;              ///< "picture", "tile 2 3" (column, row of 4 x 4) or "object N"
   std::uint32_t object = kNone;  ///< id.object
   std::size_t pixels = 0;
-  double shown = 0;    ///< the frame's
-  Estimate splats;     ///< by photons
-  Estimate paths;      ///< shown minus this is the bias that paths find
-  Estimate bias;       ///< of the frame, by the two together
-  double picture = 0;  ///< radiance of all layers over the whole picture, times its pixels over the part's: what `bias`
-                       ///< is a share of
+  double shown = 0;  ///< radiance of the frame
+  Estimate splats;   ///< radiance estimated by splats of photons
+  Estimate paths;    ///< radiance estimated by camera paths: `shown` minus the bias that paths find
+  Estimate bias;     ///< bias of the frame, estimated from splats and paths together
+  /// The whole picture's radiance of all layers, times its pixels over the part's pixels: `bias` is reported as a share
+  /// of this.
+  double picture = 0;
   double share() const { return picture > 0 ? bias.value / picture : 0; }
   double share_error() const { return picture > 0 ? bias.error / picture : 0; }
   double of_layer() const { return shown - bias.value > 0 ? bias.value / (shown - bias.value) : 0; }
   double of_layer_error() const { return shown - bias.value > 0 ? bias.error / (shown - bias.value) : 0; }
 };
 
-/// Paths of light that an audit traces, from the lamps and from the eye.
+/// Number of paths that an audit traces, from the lights and from the camera.
 struct AuditEffort {
   std::uint64_t photon_paths = 0;  ///< rounded up to a multiple of FrameAudit::kMaps
   std::size_t eye_paths = 0;
   std::uint64_t seed = 0;
 };
 
-/// Effort of about `share` of the rays of a frame, half of it photons.
+/// The effort that costs about `share` of a frame's rays, half of it for photons.
 AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed);
 
-/// Audits the layers direct, caustic and indirect of a frame: by photons of the audit's own that the camera sees, and
-/// by paths.
+/// Audits the layers direct, caustic and indirect of a frame in two ways: by photons of its own that the camera sees,
+/// and by camera paths.
 ///
-/// The standard error of what photons say is that of the mean of kMaps photon maps. Each map has a seed of its own, so
-/// the maps are independent and of one distribution, however the starts of one map are stratified. An estimate one map
-/// (or path) of which holds more than half of the sum of squares has no known error and is not given; nor is one of
-/// photons that are worth fewer than 32 equal ones, (sum)^2 / sum of squares.
+/// The standard error of the photons' estimate is that of the mean of kMaps photon maps. Each map has its own seed, so
+/// the maps are independent and equally distributed, however the starts within one map are stratified. An estimate is
+/// not reported if one map or path holds more than half of its sum of squares, or if its photons count for fewer than
+/// 32 equal photons, by (sum)^2 / sum of squares.
 class FrameAudit {
  public:
   static constexpr std::size_t kMaps = 32;
 
-  /// objects: id.object by pixel. Pixels of `mask` 0 are left out. All must outlive the audit.
+  /// objects: id.object by pixel. Pixels with mask 0 are not audited. All arguments must outlive the audit.
   FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
              std::span<const std::uint8_t> mask);
-  /// Traces kMaps photon maps of effort.photon_paths in all and adds what the camera sees of them. Lights may aim
-  /// photons.
+  /// Traces kMaps photon maps with effort.photon_paths light paths in all, and adds the photons that the camera sees.
+  /// `lights` may aim photons.
   void add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort);
-  /// Of effort.eye_paths camera rays, spread over the picture, what the frame's way of finding light says less what
-  /// paths find from the same first hit: bias without photons, where none are in view. `scene` and `options` as the
-  /// frame was rendered.
+  /// Starts effort.eye_paths camera rays, spread over the picture. At each first hit, adds the difference between the
+  /// frame's estimate of light and a camera path's estimate. So bias is found also where no photon is in view. `scene`
+  /// and `options` are those that the frame was rendered with.
   void add_paths(const RenderScene& scene, const FrameOptions& options, const AuditEffort& effort);
-  /// Layers that any estimate was made of, over the picture, the tiles and the objects, in this order.
+  /// Entries of all layers that have an estimate: of the picture, the tiles and the objects, in this order.
   std::vector<AuditEntry> entries() const;
 
  private:
@@ -77,14 +77,14 @@ class FrameAudit {
     std::uint32_t object = kNone;
     std::size_t pixels = 0;
   };
-  /// Sums over a part by layer.
+  /// Sums over one part of the picture, by layer.
   struct Sums {
     std::array<double, kLayerCount> shown{};
     std::array<std::array<float, kMaps>, kLayerCount> splats{};  ///< by map
-    std::array<double, kLayerCount> splats_square{};             ///< sum over photons of what each adds, squared
+    std::array<double, kLayerCount> splats_square{};  ///< sum of the squares of the single photons' contributions
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
-    std::array<std::size_t, kLayerCount> met{};  ///< paths that found light
+    std::array<std::size_t, kLayerCount> met{};  ///< number of paths that found light
   };
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;
@@ -99,8 +99,8 @@ class FrameAudit {
   double picture_ = 0;                      ///< sum over pixels of the mean channel of all layers
 };
 
-/// What is to be said of the entries: bias of a layer over the picture that is above 2 % of the picture's
-/// light and above three standard errors.
+/// True if the entry is to be reported: a layer's bias over the picture above 2 % of the picture's light and above
+/// three standard errors.
 bool is_biased(const AuditEntry& entry);
 inline constexpr double kAuditLimit = 0.02, kAuditErrors = 3;
 

@@ -11,20 +11,20 @@
 namespace tempolux {
 namespace {
 
-/// Of min_weight: what covers a pixel once there are records for another frame's camera. All frames are interpolated
-/// from what the first was worth; a stricter first keeps the others from adding a few everywhere.
+/// Share of min_weight that covers a pixel when records of another frame's camera exist already. All frames interpolate
+/// the first frame's records; a lower limit for later frames avoids new records all over the picture.
 constexpr float kLaterWeight = 0.5f;
 
-/// Where records are placed and what they come from.
+/// Where records are placed, and where their light comes from.
 struct Placement {
   const FinalGather& gather;
   const Tracer& tracer;
   PlacementOptions options;
-  std::function<bool(const SeenPoint&)> takes;  ///< empty: all
-  const RecordSource* source = nullptr;         ///< in place of `gather`
+  std::function<bool(const SeenPoint&)> takes;  ///< decides whether a point gets a record; empty: every point does
+  const RecordSource* source = nullptr;         ///< makes the records; null: `gather` does
 };
 
-/// What the camera sees, but for pixels that are not wanted and points that are not taken.
+/// The camera's view without the pixels that are not wanted and the points that are not taken.
 PixelView looks_through(const Placement& place, const CameraView& view, const std::vector<std::uint8_t>& wanted) {
   return [&](const Look& look) -> std::optional<SeenPoint> {
     if (!wanted.empty() && !wanted[std::size_t(look.y) * std::size_t(view.width()) + std::size_t(look.x)])
@@ -65,8 +65,8 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const InfluenceField field(cache.standing, influences, input.influence);
   const MovingObjects moving(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
-  // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all
-  // leave where f is 1.
+  // E_y is blended with the share f, so its squared error counts by f^2. With the share f of the rays the error in the
+  // picture is at most the error of all rays where f is 1.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
                               const float share =
                                   rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);

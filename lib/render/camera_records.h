@@ -1,5 +1,5 @@
-// lib/render/camera_records.h -- irradiance records where the cameras of frames need them: gathered, or following from
-// those of what stands.
+// lib/render/camera_records.h -- irradiance records where the cameras of frames need them, gathered or updated from
+// static records.
 #pragma once
 
 #include <cstdint>
@@ -12,33 +12,36 @@
 
 namespace tempolux {
 
-/// Cameras for which records are placed, one after the other. All frames are lit and built alike.
+/// Cameras for which records are placed, one after the other. All frames have the same light and the same objects.
 struct RecordCameras {
   std::vector<int> frames;
   int camera_node = 0;
-  int width = 640, height = 360;                               ///< of the pictures, pixels
-  std::function<SceneFrame(int frame)> at;                     ///< InputError for a frame that is not lit as the first
-  std::function<std::vector<std::uint8_t>(int frame)> wanted;  ///< by pixel, 0: nobody looks there; empty: all
+  int width = 640, height = 360;  ///< of the pictures, pixels
+  /// The scene at a frame; throws InputError if its light differs from that of the first.
+  std::function<SceneFrame(int frame)> at;
+  /// By pixel, 0: no record is needed there; empty: all pixels.
+  std::function<std::vector<std::uint8_t>(int frame)> wanted;
   std::function<void(double done)> progress;
   std::function<void(int frame, std::size_t records)> added;
 };
 
-/// Records for all cameras: one store, valid while nothing but the camera changes.
+/// Places records for all cameras in one store. They are valid while nothing but the camera changes.
 GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, const RecordCameras& cameras,
                                const PlacementOptions& options, RecordStore& store);
 
-/// What localised gathering starts from.
+/// Inputs of localised gathering.
 struct UpdateInput {
   const FinalGather& gather;
   const Tracer& tracer;  ///< the scene at the frame
   const PointLookup& points;
-  std::span<const SignedDensity> changes;  ///< dynamic maps of the frame, its own first, over the scene as it stands
+  /// The frame's dynamic maps relative to the static scene; first the frame's own map.
+  std::span<const SignedDensity> changes;
   InfluenceThresholds influence;
   std::uint64_t seed = 0;
 };
 
-/// Changes of the standing records in `cache`, and new records where movers matter to the cameras, of which counts and
-/// least_cosine are.
+/// Updates the static records in `cache` and gathers new ones where movers change the light that the cameras see.
+/// Returns the counts and sets least_cosine.
 GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
                                 LocalisedRecords& cache);
 

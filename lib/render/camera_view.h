@@ -38,7 +38,7 @@ class CameraView {
   /// Where the camera is, scene space.
   Vec3 eye() const { return Vec3(camera_.scene_from_camera.translation); }
 
-  /// What a pixel's ray stands for, for textures.
+  /// The cone around a pixel's ray, which decides the level of textures.
   RayCone cone() const {
     return camera_.camera.kind == Camera::Kind::perspective ? RayCone{0, pixel_size(1)} : RayCone{pixel_size(0), 0};
   }

@@ -17,11 +17,14 @@ namespace {
 
 constexpr int kPlaces = 2048;
 constexpr std::uint64_t kPaths = 1 << 16;
-/// Static photons of a disc in which influence is looked for: at the threshold it holds .06 x 200 = 12 dynamic ones.
+/// Static photons in a disc in which influence is measured: at the lower threshold the disc holds .06 x 200 = 12
+/// dynamic photons.
 constexpr int kNeighbours = 200;
 
-constexpr double kLeastLight = 0.2, kLightByTouched = 3;  ///< of a state's photons and points
-constexpr double kLeastRecords = 0.1;                     ///< of a state's records
+/// Cost of the photons and points of a state of light, as a share of their cost without reuse: the constant part, and
+/// the part per touched path.
+constexpr double kLeastLight = 0.2, kLightByTouched = 3;
+constexpr double kLeastRecords = 0.1;  ///< cost of the records of a state of light, likewise: the constant part
 
 std::string per_cent(double share) {
   char text[16];
@@ -95,7 +98,7 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
     for (std::size_t i = first; i < last; ++i) {
       const SeenPlace& place = seen.places[i];
       if (!place.exists()) continue;
-      gathered[i] = place.surface.surface >= frame.static_count;  // what moves comes last
+      gathered[i] = place.surface.surface >= frame.static_count;  // surfaces of movers come last
       PhotonQuery query{place.surface.position, place.normal, INFINITY, 0.1f, 10, kAllKinds};
       fixed.find_nearest(query, kNeighbours, found);
       if (gathered[i] || found.count() == 0) continue;

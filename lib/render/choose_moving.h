@@ -1,5 +1,5 @@
-// lib/render/choose_moving.h -- does it pay to compute what movers change, instead of each frame's light? Told by a
-// pilot.
+// lib/render/choose_moving.h -- a pilot decides whether to compute the changes by movers instead of each frame's whole
+// light.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,20 @@
 
 namespace tempolux {
 
-/// What of each frame's light follows from that of the scene as it stands: nothing; photons and points; records, too.
-/// Or photons and points, and records from those of the frame before.
+/// What a frame reuses: nothing (anew); photons and points of the static scene (light); its photons, points and records
+/// (records); its photons and points, and the records of the frame before (time).
 enum class MovingMethod : std::uint8_t { anew, light, records, time };
 inline constexpr const char* kMovingMethods[] = {"anew", "light", "records", "time"};
 
-/// What a pilot saw of a frame and its movers.
+/// What a pilot measures in a frame with movers.
 struct MovingPilot {
-  double touched_share = 0;   ///< of the standing scene's paths: can be met by what moves, or start at what moves
-  double gathered_share = 0;  ///< of the places seen: influence above the lower threshold, or on what moves
+  double touched_share = 0;  ///< share of the static scene's light paths that can meet a mover or start at one
+  /// Share of the visible places that lie on a mover or have an influence above the lower threshold.
+  double gathered_share = 0;
 };
 
-/// 2^16 photon paths through the standing scene, those that movers touch through the whole scene as well, and 2048
-/// places seen: some tenths of a second. Same result for any number of threads.
+/// Traces 2^16 light paths through the static scene, traces those that movers touch through the whole scene as well,
+/// and looks at 2048 visible places. Takes some tenths of a second. Same result for any number of threads.
 MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                          std::uint64_t seed);
 
@@ -31,12 +32,12 @@ struct MovingChoice {
   std::string because;
 };
 
-/// What comes out cheapest for `states` of light. With what stands computed once, a state's photons and points cost
-/// 1 / states + .2 + 3 touched_share of what they cost anew, and its records standing_records + .1 + gathered_share
-/// (docs/methods/dynamic.md has the measurements). standing_records: what records of what stands cost for each frame
-/// that they serve, in records of a frame. Records over time are never chosen: a frame's records follow from those of
-/// all states before it in its segment, so a single frame of the middle of a segment costs as much as ten (S5,
-/// 320x180: 13.2 CPU s instead of 1.9). They are for whole ranges, by wish.
+/// The cheapest method for `states` states of light. If the static scene is computed once, photons and points of a
+/// state cost 1 / states + .2 + 3 touched_share of their full cost, and its records cost standing_records + .1 +
+/// gathered_share of theirs (docs/methods/dynamic.md has the measurements). standing_records: the cost of the static
+/// records per frame that uses them, in units of the cost of one frame's records. The method `time` is never chosen:
+/// the records of a frame then depend on all states before it in the segment, so a single frame in the middle of a
+/// segment costs as much as ten (S5, 320x180: 13.2 CPU s instead of 1.9). It serves whole ranges of frames, on request.
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double standing_records);
 
 }  // namespace tempolux

@@ -7,7 +7,7 @@ namespace tempolux {
 namespace {
 
 constexpr double kPathsAPhoton = 70;
-/// Then photons cost about what all other stages do: 16 times a quarter of a second.
+/// Factor at which photons cost about as much as all other stages: 16 times a quarter of a second.
 constexpr double kMost = 16;
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kPaths = 1 << 15;  ///< of the pilot
-constexpr double kMostPaths = 16;          ///< of the photons asked for
+constexpr std::uint64_t kPaths = 1 << 15;  ///< light paths of the pilot
+constexpr double kMostPaths = 16;          ///< largest number of paths, in multiples of the number of photons asked for
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// lib/render/choose_preview.h -- how many paths of light a preview starts for a frame, and how wide its light textures
-// are smoothed.
+// lib/render/choose_preview.h -- how many light paths a preview starts for a frame, and how wide its light textures are
+// smoothed.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,22 @@
 
 namespace tempolux {
 
-/// What a pilot of photons finds in a frame.
+/// What a pilot of photons measures in a frame.
 struct PreviewPilot {
-  double photons = 0;  ///< of a path
-  double area = 0;     ///< m^2, of all surfaces, one side
+  double photons = 0;  ///< photons that a light path leaves, mean
+  double area = 0;     ///< area of all surfaces, one side [m^2]
 };
-/// Photons of these kinds (photon-trace --kinds) that 32768 paths leave. The same result for any number of threads.
+/// Traces 32768 light paths and counts the photons of these kinds (photon-trace --kinds). Same result for any number of
+/// threads.
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
 struct PreviewChoice {
-  std::uint64_t paths = 0;  ///< of a frame
-  double width = 0;         ///< m: deviation of the Gaussian where windows are full
+  std::uint64_t paths = 0;  ///< light paths per frame
+  double width = 0;         ///< m: standard deviation of the Gaussian, for full windows
 };
-/// Paths that bring so many photons in a frame, at least as many and at most 16 times as many paths, as photon_paths()
-/// has it; means over the pilots, as all frames of a segment have the same elements. `frames`: of a full window.
+/// The number of light paths that leaves `photons` photons in a frame: at least `photons` paths and at most 16 times as
+/// many, in the steps of photon_paths(). Uses means over all pilots, because all frames of a segment share their
+/// elements. `frames`: number of frames in a full window.
 PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, std::uint64_t photons, int frames);
 
 }  // namespace tempolux

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kPlaces = 2048;
 constexpr std::uint64_t kPaths = 1 << 16;
-constexpr double kPays = 2;  ///< variance_ratio
+constexpr double kPays = 2;  ///< a split pays above this variance_ratio
 
-/// Mean and variance of numbers, one after the other.
+/// Mean and variance of a sequence of numbers.
 struct Moments {
   double sum = 0, squares = 0;
   std::size_t count = 0;

@@ -1,4 +1,5 @@
-// lib/render/choose_split.h -- is much of the light that lights what is seen in a few bright spots? Told by a pilot.
+// lib/render/choose_split.h -- a pilot decides whether much of the light comes from a few bright spots
+// (photonmap-split).
 #pragma once
 
 #include <cstdint>
@@ -9,16 +10,16 @@
 
 namespace tempolux {
 
-/// What a pilot saw of light on surfaces, as rays by the cosine from places that a camera sees meet it.
+/// What a pilot measures of the light that gather rays from visible places meet.
 struct SplitPilot {
-  /// Variance of the radiance that such rays meet, over what it is without the light that photonmap-split takes out of
-  /// bright cells; 1 where it takes nothing.
+  /// Variance of the radiance that gather rays meet, divided by the variance without the light that photonmap-split
+  /// takes out of bright cells. 1 if photonmap-split takes out nothing.
   double variance_ratio = 1;
-  double high_share = 0;  ///< of the radiance that the rays meet: what is taken out
+  double high_share = 0;  ///< the share of the radiance that is taken out
 };
 
-/// 2^16 photon paths of all kinds in cells (FluxCells, the default limit), 2048 places seen and a ray from each: a
-/// tenth of a second. Same result for any number of threads.
+/// Traces 2^16 light paths, sums their photons of all kinds in cells (FluxCells, the default limit), and sends one
+/// gather ray from each of 2048 visible places. Takes a tenth of a second. Same result for any number of threads.
 SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                        std::uint64_t seed);
 
@@ -27,7 +28,7 @@ struct SplitChoice {
   std::string because;
 };
 
-/// A split pays where the variance falls to less than half: explicit samples cost up to half of what rays cost
+/// Decides for a split if the variance falls below half: explicit samples cost up to half as much as the rays
 /// (docs/methods/split.md has the measurements).
 SplitChoice choose_split(const SplitPilot& pilot);
 

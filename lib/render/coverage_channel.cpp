@@ -14,13 +14,13 @@ namespace {
 constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4, kOther = 9;
 constexpr std::uint64_t kPattern = 0x636f766572616765ull;  // one pattern of rays for all pixels and frames
 
-/// What a ray meets.
+/// What a ray meets first.
 struct Seen {
   std::uint32_t object = kNone, material = kNone;
   Vec3 position, normal;
-  float footprint = 0;  ///< m: a pixel's width there
+  float footprint = 0;  ///< m: width of a pixel at the hit
 
-  /// Is `other` a place of the same smooth surface, about a pixel away? Its plane passes it within a pixel's width.
+  /// True if `other` lies on the same smooth surface: its plane passes this place within a pixel's width.
   bool same_as(const Seen& other) const {
     if (object == kNone || other.object == kNone) return object == other.object;
     return object == other.object && material == other.material &&
@@ -46,7 +46,7 @@ class PixelCoverage {
   }
 
   struct Counts {
-    std::uint32_t around = 0, other = 0;  ///< as in the two channels
+    std::uint32_t around = 0, other = 0;  ///< values of the channels "coverage" and "coverage.other"
   };
   Counts at(int x, int y) const {
     if (!is_edge(x, y)) return {};
@@ -69,7 +69,7 @@ class PixelCoverage {
   static constexpr std::size_t kTogether = 8;  // a packet
   static_assert(kRays % kTogether == 0);
 
-  /// places: raster positions, at most kTogether.
+  /// Follows rays through raster positions `places`, at most kTogether.
   void look(std::span<const Vec2> places, Seen* seen) const {
     std::array<Ray, kTogether> rays;
     std::array<Hit, kTogether> hits;
@@ -83,7 +83,7 @@ class PixelCoverage {
     }
   }
 
-  /// Centre of the pixel that is number `around` of the nine about (x, y); nullptr: beyond the picture.
+  /// What the centre of pixel number `around` of the nine about (x, y) sees; nullptr outside the picture.
   const Seen* centre(int x, int y, std::size_t around) const {
     x += int(around % 3) - 1;
     y += int(around / 3) - 1;
@@ -99,8 +99,8 @@ class PixelCoverage {
     return false;
   }
 
-  /// Which pixel's surface a ray meets that passes `place` in the pixel: the pixel's own, else that of the nearest one
-  /// around, else kOther.
+  /// Index of the pixel whose surface a ray through `place` meets: the pixel itself, else the closest of the eight
+  /// around it, else kOther.
   std::size_t nearest(int x, int y, Vec2 place, const Seen& ray) const {
     if (centre(x, y, kCentre)->same_as(ray)) return kCentre;
     std::size_t best = kOther;

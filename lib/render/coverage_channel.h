@@ -1,4 +1,4 @@
-// lib/render/coverage_channel.h -- which of the neighbouring pixels' surfaces a pixel sees too, and how much of them.
+// lib/render/coverage_channel.h -- how much a pixel sees of its neighbours' surfaces.
 #pragma once
 
 #include <string>
@@ -10,15 +10,19 @@
 
 namespace tempolux {
 
-/// The uint channel "coverage": four bits for each of the eight pixels around (order: rows from the top, bits 0-3 the
-/// upper left one, 28-31 the lower right one; the pixel itself is not among them): how many of 16 rays, spread evenly
-/// over the pixel, see the surface that the neighbour's centre sees, the nearest such neighbour counted. A count of 16
-/// is written as 15. The uint channel "coverage.other": how many see a surface that neither the pixel's own centre nor
-/// one around it sees. All others see that of its own centre. Both 0: the pixel sees one surface.
+/// Adds two uint channels, if `channels` has "coverage".
 ///
-/// One surface: the same object and material, normals within PixelSurfaces::kSameNormal, planes that pass within a
-/// pixel of the other point. Costs one ray for each pixel and 16 more where its centre and one around it see two
-/// surfaces; nothing is shaded. The rays do not depend on seed or frame. Adds nothing unless `channels` has "coverage".
+/// "coverage" holds four bits for each of the eight neighbouring pixels, in rows from the top: bits 0-3 for the upper
+/// left neighbour, bits 28-31 for the lower right one. The bits count how many of 16 rays, spread uniformly over the
+/// pixel, see the surface that the neighbour's centre sees; if several neighbours see this surface, the closest one
+/// counts. A count of 16 is stored as 15. "coverage.other" counts the rays that see a surface which neither the pixel's
+/// own centre nor a neighbour's centre sees. All other rays see the surface of the pixel's own centre. If both channels
+/// are 0, the pixel sees one surface.
+///
+/// Two hits are on one surface if they have the same object and material, their normals agree within
+/// PixelSurfaces::kSameNormal, and each one's plane passes within a pixel of the other point. Costs one ray per pixel,
+/// and 16 more where the pixel's centre and a neighbour's see two surfaces. Nothing is shaded. The rays do not depend
+/// on seed or frame.
 void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                           Image& image);
 

@@ -20,8 +20,8 @@ bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-/// Where the same point of the same surface is in another frame, deformed as it is there: the surface is the one of the
-/// same node with the same rank among that node's surfaces, the point has the same barycentrics.
+/// Finds the same point of the same surface in another frame, where movers have moved or deformed it. The same surface
+/// has the same node and the same rank among that node's surfaces; the same point has the same barycentric coordinates.
 class OtherFrame {
  public:
   OtherFrame(const NeighbourFrame& other, const SceneFrame& here) : view_(other.view), there_(here.surfaces.size()) {
@@ -37,7 +37,8 @@ class OtherFrame {
         there_[s] = candidates[r];
     }
   }
-  /// Pixels right and up from raster position `here`; zero if the point is not in front of that camera.
+  /// Motion in pixels, right and up, from raster position `here` to the point's position in the other frame. Zero if
+  /// the point is not in front of that frame's camera.
   Vec2 motion(const SurfacePoint& point, std::array<double, 2> here) const {
     const Surface* surface = there_[point.surface];
     if (!surface) return {};
@@ -50,7 +51,8 @@ class OtherFrame {
 
  private:
   const CameraView* view_;
-  std::vector<const Surface*> there_;  ///< by surface of this frame; nullptr: not there
+  /// The other frame's surface by surface of this frame; nullptr: it does not exist there.
+  std::vector<const Surface*> there_;
 };
 
 }  // namespace

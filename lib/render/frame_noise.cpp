@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr double kEnough = 1024;  ///< pixels: their RMS is known within 2.2 % where noise is normal
+constexpr double kEnough = 1024;  ///< pixels: enough to know their RMS to 2.2 % if noise is normally distributed
 constexpr int kLeastEdge = 5, kMostEdge = 8;
 
 Rgbd total(const Layers& layers) {
@@ -36,7 +36,7 @@ Squares squares(const Rgbd& a, const Rgbd& b, double exposure) {
   return sum;
 }
 
-/// Root of the mean of squared errors, pixel by pixel, and its standard error.
+/// Root of the mean of squared errors over pixels, and its standard error.
 class Mean {
  public:
   void add(const Squares& error) {
@@ -58,14 +58,13 @@ class Mean {
                  variance = std::max(0.0, square / n - sum * sum / (n * n)) / (n - 1);
     value = std::sqrt(mean);
     error = value > 0 ? std::sqrt(variance) / (2 * value)
-                      : std::sqrt(std::sqrt(variance));  // of a root: d sqrt(m) = dm / (2 sqrt(m))
+                      : std::sqrt(std::sqrt(variance));  // error of a root: d sqrt(m) = dm / (2 sqrt(m))
   }
   std::size_t count_ = 0;
   Squares sum_, square_;
 };
 
-/// error(colour) of a pixel's image and of its layers, with colour(layers) for the part of them that is
-/// looked at.
+/// Errors of a pixel's image and of its layers; colour(layers) selects what is compared.
 struct ImageAndLayers {
   Mean image, layer[kLayerCount];
   template <class Error>
@@ -117,7 +116,7 @@ std::uint32_t NoiseCheck::slot(int x, int y) const {
   const int i = x / edge_, j = y / edge_;
   if (i >= columns_ || j >= height_ / edge_) return kNone;
   const auto index = std::uint32_t(j * columns_ + i);
-  // A place of its own in each square: a grid of fixed places would fall in step with tiles and grooves.
+  // A random place in each square: a grid of fixed places could coincide with tiles or grooves of the scene.
   const auto place = int(mix64(index ^ 0x636865636bull) % std::uint64_t(edge_ * edge_));
   return x % edge_ == place % edge_ && y % edge_ == place / edge_ ? index : kNone;
 }
@@ -142,7 +141,7 @@ namespace {
 /// Sums over pixels and channels of a layer.
 struct ShareSums {
   double variance = 0, square = 0, fourth = 0;
-  /// Pixels that the squares are as good as, if all counted alike.
+  /// Effective number of pixels: how many equal ones would give the same uncertainty.
   double count() const { return fourth > 0 ? square * square / fourth : 0; }
 };
 

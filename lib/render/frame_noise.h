@@ -1,4 +1,4 @@
-// lib/render/frame_noise.h -- how noisy a frame is, measured: some pixels are rendered twice.
+// lib/render/frame_noise.h -- measures a frame's noise: some pixels are rendered twice.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace tempolux {
 
-/// RMSE that noise leaves, over pixels and channels, with its standard error; below 0: not known.
+/// RMSE by noise over pixels and channels, with its standard error. Below 0: not known.
 struct Noise {
   double linear = -1, linear_error = 0;  ///< W/m^2/sr
   double codes = -1, codes_error = 0;    ///< 8-bit sRGB codes, 0 to 255, at FrameNoise::exposure
@@ -21,39 +21,38 @@ struct Noise {
 
 struct FrameNoise {
   Noise image;
-  std::array<Noise, kLayerCount> layer;  ///< each layer looked at alone, at the exposure of the image
-  double exposure = 0;                   ///< factor that puts the median of pixels' mean channels at .18
-  std::size_t pixels = 0;                ///< that were rendered twice
+  std::array<Noise, kLayerCount> layer;  ///< noise of each layer alone, at the exposure of the whole picture
+  double exposure = 0;                   ///< factor that brings the median of the pixels' mean channels to .18
+  std::size_t pixels = 0;                ///< number of pixels that were rendered twice
   bool known() const { return pixels > 1; }
 };
 
 /// sRGB code of a linear value, 0 to 255, not rounded; the value is clipped at 0 and 1.
 double srgb_code(double value);
-/// Factor that puts the median of the pixels' mean channels at .18; if more than half are black, the median
-/// of those that are not; 1 of a black picture.
+/// Factor that brings the median of the pixels' mean channels to .18. If more than half of the pixels are black, the
+/// median of the others is used. 1 for a black picture.
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
 
-/// Pixels of a grid are rendered a second time, with random numbers of their own and as many samples: x and
-/// y. Then E (x - y)^2 / 2 is the variance of x,
-/// whatever stratification leaves of it. The two halves of a pixel's own samples do not say that: samples
-/// that are stratified together
-/// have halves with opposite errors, so their difference is too large, by up to 4 times in variance.
+/// Renders pixels of a grid a second time, with different random numbers and as many samples. For the two means x and
+/// y, E (x - y)^2 / 2 is the variance of x, with the gain by stratification included. The two halves of one pixel's
+/// samples would not give this variance: samples that are stratified together have halves with opposite errors, so
+/// their difference is too large, by up to a factor of 4 in variance.
 class NoiseCheck {
  public:
-  /// One pixel of each square of edge 5 to 8, so that a frame has 1000 or more of them where it can. Costs
-  /// 1/64 to 1/25 of the frame's rays.
+  /// Takes one pixel of each square of edge 5 to 8, so that 1000 or more pixels are taken if the picture is large
+  /// enough. Costs 1/64 to 1/25 of the frame's rays.
   NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask);
   /// Index of the pixel among those that are rendered twice, or kNone.
   std::uint32_t slot(int x, int y) const;
   std::size_t size() const { return again_.size(); }
-  /// The second rendering's.
+  /// Seed of the second rendering.
   std::uint64_t seed() const { return seed_; }
-  /// Mean of the second rendering by part. Thread-safe for different slots.
+  /// Mean of the second rendering of this slot, by part. Thread-safe for different slots.
   PathParts& again(std::uint32_t slot) { return again_[slot]; }
-  /// Noise of `picture`, whose pixels are `as_sampled(pixel)` where nothing has been done to them, else what
-  /// spread_outliers made of them. With z for the latter and g for what the pixel
-  /// got, x' = x + g and y' = y + g, the variance of z is about E (z - y')^2 - E (x' - y')^2 / 2: what x gave
-  /// away is taken off twice from that of x, as y has as much of it.
+  /// Noise of `picture`. A pixel holds either as_sampled(pixel) or what spread_outliers made of it. Let x be the
+  /// sampled value, y the second rendering, g the light that the pixel got from other pixels, z the value in `picture`,
+  /// x' = x + g and y' = y + g. The variance of z is then about E (z - y')^2 - E (x' - y')^2 / 2: the second term
+  /// removes the variance of y'.
   template <class AsSampled>
   FrameNoise measure(const std::vector<Layers>& picture, const AsSampled& as_sampled) const {
     std::vector<Triple> triples;
@@ -63,14 +62,16 @@ class NoiseCheck {
     return measure(triples, exposure_of(picture, mask_));
   }
 
-  /// Halves of the second rendering's samples. Thread-safe for different slots.
+  /// Halves of the samples of the second rendering. Thread-safe for different slots.
   SampleHalves& again_halves(std::uint32_t slot) { return again_halves_[slot]; }
-  /// By layer the variance of a pixel's mean over the mean square of SampleHalves::difference, at most 1. With x =
-  /// as_sampled(pixel), y the second rendering's mean, d and e their differences, that is the sum of (x - y)^2 over the
-  /// sum of d^2 + e^2, in squares of sRGB codes at x + y plus the layer's mean. A pixel counts by the inverse root of
-  /// the mean of d^2 around it and over the picture, so that the few noisiest do not decide alone. The ratio of n
-  /// pixels that count errs by about sqrt(3 / n) of itself, and layers differ by a factor of about 2, whose logarithm
-  /// has the variance .5: so the ratio of all layers together counts as 6 pixels in each.
+  /// By layer: the variance of a pixel's mean over the mean square of SampleHalves::difference, at most 1.
+  ///
+  /// Let x = as_sampled(pixel), y the mean of the second rendering, and d and e the differences of their halves. The
+  /// result is the sum of (x - y)^2 over the sum of d^2 + e^2, in squares of sRGB codes at x + y plus the layer's mean.
+  /// A pixel is weighted by the inverse root of the sum of the local and the global mean of d^2, so that a few noisy
+  /// pixels do not dominate. The ratio from n pixels has a relative error of about sqrt(3 / n), and layers differ by a
+  /// factor of about 2, whose logarithm has variance .5. So the ratio of all layers together enters each layer's ratio
+  /// as 6 further pixels.
   template <class AsSampled>
   std::array<double, kLayerCount> shares(const std::vector<SampleHalves>& halves, const AsSampled& as_sampled) const {
     std::vector<Twice> pixels;
@@ -93,7 +94,7 @@ class NoiseCheck {
     Layers once, again, first, second, around;  ///< x, y, d, e, sum of d^2 around
   };
   static std::array<double, kLayerCount> shares(std::vector<Twice>& pixels);
-  /// body(pixel) for the eight around in the picture.
+  /// Calls body(pixel) for the up to eight neighbours within the picture.
   template <class Body>
   void for_each_around(std::size_t pixel, const Body& body) const {
     const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
@@ -115,7 +116,7 @@ class NoiseCheck {
   std::vector<SampleHalves> again_halves_;
 };
 
-/// Of two independent halves of a frame: E (a - b)^2 / 4 is the variance of (a + b) / 2.
+/// Noise of (a + b) / 2 from two independent halves of a frame: the variance is E (a - b)^2 / 4.
 FrameNoise noise_of_halves(const std::vector<Layers>& a, const std::vector<Layers>& b);
 
 template <class Body>

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kChunk = 4096;  ///< pixels
 
-/// Samples [first, first + count) of every pixel of one half, joined to what `image` holds already.
+/// Adds samples [first, first + count) of every pixel of one half to `image`.
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
@@ -32,7 +32,7 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   image.samples += count;
 }
 
-/// All samples at once, and of some pixels a second time for the noise.
+/// Takes all samples at once, and renders some pixels a second time to measure noise.
 void render_fixed(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
   render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
   NoiseCheck check(view, options.seed, options.mask);
@@ -79,7 +79,7 @@ double mean_radiance(const LayerImage& image) {
   return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 
-/// Mean of the two halves, its error from their difference: E[(a-b)^2] / 4 is the variance of (a+b)/2.
+/// Mean of the two halves, and its error from their difference: E[(a-b)^2] / 4 is the variance of (a+b)/2.
 void join_halves(RenderedFrame& frame) {
   const LayerImage &a = frame.half[0], &b = frame.half[1];
   frame.mean = a;
@@ -96,8 +96,8 @@ void join_halves(RenderedFrame& frame) {
   frame.own_rmse = std::sqrt(difference2 / 4 / double(std::max<std::size_t>(1, 3 * a.pixels.size())));
 }
 
-/// All far from any user's seeds but that of a frame itself. A reference has two of its own: were one half made of the
-/// numbers of the frames that it judges, frames of equal seed and samples would seem better than they are.
+/// Seeds of the two halves of a reference, different from any frame's seed. If one half used a frame's random numbers,
+/// a frame with the same seed and number of samples would look better than it is.
 std::array<std::uint64_t, 2> seeds_of_halves(const FrameOptions& options) {
   constexpr std::uint64_t one = 0x68616c665f6f6e65ull, two = 0x68616c665f74776full, second = 0x7365636f6e645f32ull;
   if (options.halves) return {options.seed ^ one, options.seed ^ two};

@@ -1,4 +1,4 @@
-// lib/render/influence_channels.h -- where what moves matters, as a frame rendered from a localised cache has it.
+// lib/render/influence_channels.h -- channels that show where movers change the light of a localised cache.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace tempolux {
 
-/// The float channels "influence" (LocalisedLight::influence) and "blend" (gathered_share) at the first Lambert lobe
-/// that the ray through the pixel's centre comes to, mirrors and glass passed by the likelier of reflection and
-/// transmission; 0 where there is none. Where influence is infinite, as on what moves, the upper threshold stands for
-/// it. Adds nothing unless `channels` has "influence"; InputError if it has and light is nullptr: there is no such
-/// cache.
+/// Adds the float channels "influence" (LocalisedLight::influence) and "blend" (gathered_share), if `channels` has
+/// "influence". Both hold for the first Lambert lobe that the ray through the pixel's centre reaches; at mirrors and
+/// glass the ray follows the likelier of reflection and transmission. 0 where there is no Lambert lobe. An infinite
+/// influence, as on movers, is stored as the upper threshold. Throws InputError if "influence" is requested and `light`
+/// is nullptr.
 void add_influence_channels(const RenderScene& scene, const CameraView& view, const LocalisedLight* light,
                             const std::vector<std::string>& channels, Image& image);
 

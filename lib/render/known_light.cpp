@@ -45,12 +45,12 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
     const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(distance));
     const ShadingPoint shading(point, -ray.direction, material);
     if (shading.bsdf.has_diffuse()) {
-      // Size of a pixel there: the angle to the neighbouring pixel's ray times the whole way.
+      // Size of a pixel at the hit: the angle between the rays of neighbouring pixels times the length of the path.
       const float step = view.pixel_size(distance);
       return SeenPoint{point, shading.normal, step, mirrors > 0};
     }
     if (mirrors + 1 == kMirrorsInARow) break;
-    // u = 0.5 follows what is more than half of the light.
+    // u = 0.5 chooses the lobe that has more than half of the light.
     const float lobe = look.random ? look.random->get1(mirrors, Purpose::lobe) : 0.5f;
     const Vec2 within = look.random ? look.random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};
     const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, lobe, within);

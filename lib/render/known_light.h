@@ -1,4 +1,4 @@
-// lib/render/known_light.h -- light that is known at surfaces, so that eye paths may end there.
+// lib/render/known_light.h -- light that is known at surfaces, so that camera paths may end there.
 #pragma once
 
 #include <optional>
@@ -14,52 +14,54 @@ namespace tempolux {
 class LocalisedLight;
 class MeshLight;
 
-/// Irradiance [W/m^2] told by records, points and photons. Each part may be missing: the path then finds that light
-/// itself. All must outlive it. Thread-safe.
+/// Irradiance [W/m^2] from records, points and photons. A member may be null: camera paths then find that light
+/// themselves. All members must outlive this object. Thread-safe.
 class KnownLight {
  public:
-  const RecordStore* records = nullptr;       ///< kind indirect where the eye looks
-  const MeshLight* mesh = nullptr;            ///< in place of records: a light texture of kind indirect
-  bool mesh_has_caustic = false;              ///< and of kind caustic: all of it counts as indirect then
-  const LocalisedLight* localised = nullptr;  ///< in place of records: of what stands, and of what movers change
-  const PointLookup* points = nullptr;        ///< all kinds where a ray from a matte surface ends
-  const PhotonLight* photons = nullptr;       ///< kind caustic; indirect, too, if it has it and there are no records
-  /// Of `points` those that are sampled explicitly where no record tells: what paths meet first beyond then brings the
-  /// rest.
+  const RecordStore* records = nullptr;  ///< indirect light at the first Lambert lobe of a camera path
+  const MeshLight* mesh = nullptr;       ///< replaces records: a light texture of kind indirect
+  bool mesh_has_caustic = false;  ///< the light texture holds kind caustic, too; both kinds then count as indirect
+  const LocalisedLight* localised = nullptr;  ///< replaces records: static records and the changes by movers
+  const PointLookup* points = nullptr;        ///< light of all kinds at the hits of rays that start at a Lambert lobe
+  /// Caustic light; also indirect light if the map holds this kind and there are no records.
+  const PhotonLight* photons = nullptr;
+  /// Those of `points` that are sampled explicitly at places without a record. Rays from such a place bring the
+  /// remaining light.
   const BrightPoints* bright = nullptr;
-  int bright_samples = 0;  ///< at the first such place of an eye path; one at each later one
-  /// Can a ray meet a light: is there an environment, or a surface that emits? Where not, and indirect and caustic
-  /// light are known at a place, no ray goes on from its Lambert lobe: the ray would find nothing.
+  int bright_samples = 0;  ///< explicit samples at the first such place of a camera path; later places take one each
+  /// Can a ray meet a light, that is, is there an environment or an emitting surface? If not, and indirect and caustic
+  /// light are known at a place, no ray is sent from its Lambert lobe: the ray would find nothing.
   bool lights_are_met = true;
-  /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray
-  /// in 25 that meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as
-  /// much as it gains then.
+  /// Do camera paths fork at the first surface with a Lambert lobe and a glossy lobe, to follow both? The glossy lobe
+  /// usually reflects 4 %: without a fork one path in 25 follows it, and a bright hit of this path makes a dot. If no
+  /// light is known, both branches are whole paths, and a fork costs as much as it gains.
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 
-  /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen.
-  /// None where no record counts: a ray of the hemisphere is to find it.
+  /// Indirect irradiance at the first Lambert lobe of a camera path. Both normals are unit vectors on the side that is
+  /// seen. Empty where no record is valid: a gather ray must then estimate the light.
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const;
   bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
-  /// Irradiance of kind caustic; only if has_caustic(). 0 where indirect() has it.
+  /// Caustic irradiance; call only if has_caustic(). 0 if indirect() includes caustic light.
   Rgb caustic(Vec3 position, const LitSurface& surface) const {
     return photons ? photons->caustic(position, surface) : Rgb(0.0f);
   }
-  /// What a point tells of the light at a hit.
+  /// Irradiance that a point stores for a hit.
   struct Told {
     Rgb irradiance{0.0f};
     bool direct =
         true;  ///< of all kinds; else of all but direct: where the border of a shadow runs paths sample that themselves
   };
-  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for the hit, the
-  /// point's indirect light is not that of the hit, or the hit is near (PointLookup::is_near).
+  /// Irradiance at a hit `distance` m from the last Lambert lobe of the path. Empty if no point represents the hit, if
+  /// the point's indirect light is not that of the hit, or if the hit is close (PointLookup::is_near with `u` in [0,
+  /// 1)).
   std::optional<Told> told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
-  /// Share of the light scattered by the Lambert lobe at the hit that is not sampled explicitly where the path comes
-  /// from; 1 where it is so near that the path goes on for its light. The same u as told().
+  /// Share of the light from the hit's Lambert lobe that was not sampled explicitly at the place where the path comes
+  /// from. 1 if the hit is so close that the path continues for its light. `u` as for point_irradiance().
   float left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
 };
 
-/// What a raster position sees: the first surface with a Lambert lobe, through mirrors and glass by the
-/// likelier of reflection and transmission, or by one drawn from Look::random.
+/// The first surface with a Lambert lobe that a raster position sees. At mirrors and glass the ray follows the likelier
+/// of reflection and transmission, or draws one with Look::random.
 std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look);
 
 }  // namespace tempolux

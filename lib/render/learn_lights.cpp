@@ -11,44 +11,48 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kMostCells = 4096;  ///< 9 MB
-constexpr std::size_t kMostPlaces = 16;   ///< of a cell
-constexpr float kAcrossSeen = 20;         ///< cells along what is seen: 15 are as good, 60 too many to learn (S8)
-constexpr int kPixelsPerRay =
-    450;  ///< of the picture, for a ray of each cell: learning is to stay a small part of a small picture
-constexpr double kLearned = 0.8;    ///< of the samples; the rest as if nothing were known
-constexpr double kFromFirst = 0.6;  ///< of the second pass' rays: by what the first one learned
-constexpr int kBlur = 2;            ///< parts of the sky about one that have a say in it
-constexpr double kPrior = 0.5;      ///< rays' worth of what the whole sky sends there
-constexpr double kBeside = 0.5;     ///< weight of each of the six cells beside one, and of parts of the sky beside one
+constexpr std::size_t kMostCells = 4096;  ///< a grid of 9 MB
+constexpr std::size_t kMostPlaces = 16;   ///< per cell
+/// Cells along the longest extent of the visible places: 15 are as good, 60 are too many to learn (S8)
+constexpr float kAcrossSeen = 20;
+/// Pixels of the picture per ray of a cell: learning shall stay a small part of the cost of a small picture.
+constexpr int kPixelsPerRay = 450;
+constexpr double kLearned = 0.8;  ///< share of the samples that follow the learned shares; the rest ignore them
+/// Share of the second pass's rays that follow the shares learned by the first pass.
+constexpr double kFromFirst = 0.6;
+constexpr int kBlur = 2;        ///< distance in parts of the sky over which learned light is blurred
+constexpr double kPrior = 0.5;  ///< weight of the whole sky's mean, in rays
+/// Weight of each of the six neighbouring cells, and of neighbouring parts of the sky.
+constexpr double kBeside = 0.5;
 
-/// Light of one kind or from one part of the sky, sums over rays [W/m^2, mean channel].
+/// Light of one kind or from one part of the sky: sums over rays [W/m^2, mean channel].
 struct Light {
-  double arrived = 0;  ///< what reached the place, times the cosine
-  double sent = 0;     ///< what would, were nothing in the way and every place turned to it
+  double arrived = 0;  ///< light that reached the place, times the cosine
+  double sent = 0;     ///< light that would reach the place if nothing blocked it, at normal incidence
 
   void add(const Light& more, double times) {
     arrived += times * more.arrived;
     sent += times * more.sent;
   }
-  /// Of places in a cell some get the light and others do not. Samples err least over all of them if its share of the
-  /// samples is in proportion to the root of its mean square: sqrt(arrived / sent) of it, where it arrives or not. [1]
+  /// Root of the share of light that arrives, sqrt(arrived / sent). Some places of a cell get the light and others do
+  /// not. The error over all places is least if a light's share of the samples is proportional to the root of its mean
+  /// square, and that root is proportional to this value. [1]
   double reach() const { return sent > 0 ? std::sqrt(arrived / sent) : 0; }
 };
 
-/// What rays have found of a cell's light.
+/// Light that rays have found in a cell.
 struct Found {
   std::array<Light, LightGrid::kParts> sky{};
   Light suns, lamps;
   double rays = 0;
 };
 
-/// A place where light is to be sampled, and the cell it is in.
+/// A visible place at which light will be sampled, with the cell that holds it.
 struct Place : SeenPlace {
   std::uint64_t cell = 0;
 };
 
-/// Longest extent of what the places hold, but for 2 % at either end.
+/// The longest extent of the places, without 2 % of them at either end [m].
 float extent_of(const std::vector<SeenPlace>& places) {
   float extent = 0;
   for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -62,11 +66,11 @@ float extent_of(const std::vector<SeenPlace>& places) {
   return extent;
 }
 
-/// The places by cell, at most kMostPlaces each, of the cells most looked at; by key.
+/// The places by cell, at most kMostPlaces each, for the cells that hold most places; sorted by key.
 std::vector<std::vector<Place>> by_cell(std::vector<Place> places) {
   std::erase_if(places, [](const Place& place) { return place.cell == 0; });
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
-  std::vector<std::pair<std::size_t, std::size_t>> runs;  // first place, how many
+  std::vector<std::pair<std::size_t, std::size_t>> runs;  // first place and number of places of each cell
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (i == 0 || places[i].cell != places[i - 1].cell) runs.push_back({i, 0});
     ++runs.back().second;
@@ -86,7 +90,7 @@ class Learner {
   Learner(const RenderScene& scene, const LearnOptions& options, int rays, const LightGrid& grid)
       : scene_(scene), options_(options), rays_(rays), grid_(grid), suns_(scene.lights.suns()) {}
 
-  /// One pass over a cell; `before`: what is known already, or nullptr.
+  /// One pass over a cell. `before`: the shares learned so far, or nullptr.
   void look(const std::vector<Place>& places, const LightGrid::Cell* before, int pass, Found& found) const {
     const int rays = rays_;
     for (int i = 0; i < rays; ++i) {
@@ -100,8 +104,8 @@ class Learner {
   }
 
  private:
-  /// One ray to the sky: by what is known, by its light and area, or by the cosine; weighed by the density of all
-  /// three.
+  /// Sends one ray to the sky. The direction is drawn by learned shares, by the sky's light and area, or by the cosine,
+  /// and weighted by the sum of the three densities.
   void add_sky(const Place& place, const LightGrid::Cell* before, const PathRandom& random, Found& found) const {
     const double known = before ? kFromFirst : 0, even = 0.5 * (1 - known);
     const double choice = double(random.get1(0, Purpose::light_choice));
@@ -127,7 +131,8 @@ class Learner {
         [&] { return scene_.tracer.occluded(spawn_ray(place.surface, wi)); }, found.sky[grid_.part_of(wi)]);
   }
 
-  /// One of the other lights each way: a sample of those that are somewhere, and every sun.
+  /// Takes one sample of each other kind of light: one of the lights with a position, and one of every directional
+  /// light.
   void add_other(const Place& place, const PathRandom& random, Found& found) const {
     for (const Lights::Sun& sun : suns_)
       note(
@@ -157,8 +162,8 @@ class Learner {
   std::vector<Lights::Sun> suns_;
 };
 
-/// What a part and those at most kBlur away in the numbers of directions got: few rays must not decide on single parts.
-/// And a little of what all got, where no ray went.
+/// Light of a part of the sky, blurred over the parts at most kBlur away, because few rays must not decide on single
+/// parts. Adds a little of the whole sky's mean, for parts without a ray.
 Light blurred(const std::array<Light, LightGrid::kParts>& sky, const Light& all, std::uint32_t part) {
   constexpr int w = LightGrid::kAcross, h = LightGrid::kDown;
   Light sum;
@@ -173,7 +178,7 @@ Light blurred(const std::array<Light, LightGrid::kParts>& sky, const Light& all,
 
 /// Light that each part of the sky sends [W/m^2, mean channel].
 std::vector<double> light_of_parts(const LightGrid& grid) {
-  constexpr std::uint32_t kSide = 4;  // squared: directions of a part
+  constexpr std::uint32_t kSide = 4;  // squared: number of directions sampled in a part
   std::vector<double> light(LightGrid::kParts);
   if (grid.sky())
     for (std::uint32_t k = 0; k < LightGrid::kParts; ++k)
@@ -188,7 +193,8 @@ std::vector<double> light_of_parts(const LightGrid& grid) {
   return light;
 }
 
-/// Shares of samples: most by what reaches the cell, the rest even over the kinds of light there are and over the sky.
+/// Shares of samples for a cell: most follow the light that reaches the cell; the rest is uniform over the kinds of
+/// light and over the sky.
 LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, const Lights& lights, bool suns,
                         bool lamps) {
   const bool sky = lights.has_environment();
@@ -207,7 +213,7 @@ LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, co
   LightGrid::Cell cell;
   cell.sky = share(sky, skylight);
   cell.suns = share(suns, sunlight);
-  if (!lamps) cell.suns = suns ? 1 - cell.sky : 0;  // rounding leaves nothing over
+  if (!lamps) cell.suns = suns ? 1 - cell.sky : 0;  // the shares shall add up to 1 without a rounding error
   double sum = 0;
   for (std::uint32_t k = 0; k < LightGrid::kParts; ++k) {
     sum += (skylight > 0 ? kLearned * weights[k] / skylight : kLearned / LightGrid::kParts) +
@@ -218,7 +224,7 @@ LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, co
   return cell;
 }
 
-/// What was found in a cell and, by half, in those beside it that face alike.
+/// Adds to each cell's light half of the light of those neighbouring cells that face the same way.
 std::vector<Found> joined(const std::vector<std::uint64_t>& keys, const std::vector<Found>& found) {
   std::vector<Found> result(found.size());
   parallel_chunks(found.size(), 16, [&](std::size_t first, std::size_t last) {

@@ -1,4 +1,4 @@
-// lib/render/localised_light.h -- indirect light between records that stand and records gathered for the frame.
+// lib/render/localised_light.h -- indirect light blended between static records and records gathered for the frame.
 #pragma once
 
 #include <optional>
@@ -11,23 +11,24 @@
 
 namespace tempolux {
 
-/// Irradiance of kind indirect [W/m^2] of a frame by localised gathering:
+/// Indirect irradiance [W/m^2] of a frame by localised gathering:
 ///     E = f E_y + (1 - f) E_t
-/// E_y interpolated between records gathered for the frame; E_t between static records that carry what movers change,
-/// their gradients those of the static irradiance, cut at 0; f the gathered share of the influence there, 1 on what
-/// moves. Method: docs/methods/dynamic.md. Thread-safe.
+/// E_y is interpolated between records gathered for the frame. E_t is interpolated between static records, whose
+/// irradiance includes the changes by movers and whose gradients are those of the static irradiance; E_t is cut at 0. f
+/// is the gathered share for the influence at the place, and 1 on movers. Method: docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
-  /// changes[i] of standing[i]. least_cosine: in which records of both count.
+  /// changes[i] belongs to standing[i]. least_cosine: the smallest cosine between normals for which a record of either
+  /// set counts.
   LocalisedLight(std::span<const IrradianceRecord> standing, std::span<const RecordChange> changes,
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 
-  /// Returns nothing where a record is missing that the place needs.
+  /// Empty if a record that the place needs is missing.
   std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading) const;
-  /// f, in [0, 1].
+  /// f in [0, 1].
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;
-  /// Influence in the thresholds' terms (InfluenceField::at); infinity on what moves and where nothing is known.
+  /// Influence in the unit of the thresholds (InfluenceField::at). Infinite on movers and where no record is valid.
   float influence(const SurfacePoint& surface, Vec3 shading) const;
   const InfluenceThresholds& thresholds() const { return influence_.thresholds(); }
 

@@ -11,18 +11,19 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRouletteFrom = 3;  ///< bounces that always survive
-constexpr float kLargestSurvival = 0.998f;  ///< so that paths in a lossless box end, after 500 bounces in the mean
+constexpr std::uint32_t kRouletteFrom = 3;  ///< number of bounces that always survive
+/// Below 1, so that paths in a lossless box end, after 500 bounces in the mean.
+constexpr float kLargestSurvival = 0.998f;
 
-/// Which of a surface's lobes light is sampled for, and the factors by which their densities are higher than the Bsdf's
-/// where the path forks: both lobes are followed then.
+/// The lobes of a surface for which light is sampled. Where the path forks, both lobes are followed, so each lobe's pdf
+/// is the Bsdf's pdf times a factor.
 struct SampledLobes {
   bool diffuse, specular;
   float times_diffuse = 1, times_specular = 1;
-  float left = 1;  ///< share of what the Lambert lobe scatters that counts (KnownHere)
+  float left = 1;  ///< share of the Lambert lobe's light that is to be added (KnownHere)
   bool forks = false;
 
-  /// diffuse_probability: with which the Bsdf draws the Lambert lobe, in (0, 1).
+  /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
   void fork(float diffuse_probability) {
     forks = true;
     times_diffuse = 1 / diffuse_probability;
@@ -30,8 +31,7 @@ struct SampledLobes {
   }
 };
 
-/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the
-/// sample for the side that the normal is on; `share`: with which probability it was that side.
+/// Samples light at x and adds it to the layer of the lobe that scatters it, weighted by MIS. [Veach 1997 (9.14)]
 struct LightAdder {
   const RenderScene& scene;
   const ShadingPoint& x;
@@ -44,7 +44,8 @@ struct LightAdder {
 
   bool nothing() const { return !(lobes.diffuse && x.bsdf.has_diffuse()) && !specular(); }
   bool specular() const { return lobes.specular && x.bsdf.has_specular() && !x.bsdf.specular_is_delta(); }
-  /// Rough glass passes on light from behind: the side is drawn, the other's light is left to other samples.
+  /// Rough glass also transmits light from behind. Draws one side for this sample; `share` receives the probability of
+  /// that side. Returns true for the side behind.
   bool draw_side(float& share) const {
     const float share_beyond = x.bsdf.light_share_beyond();
     share = 1;
@@ -54,7 +55,7 @@ struct LightAdder {
     share = beyond ? share_beyond : 1 - share_beyond;
     return beyond;
   }
-  /// By one of the lights `from`.
+  /// Takes one sample of the lights `from`.
   void add_one(Lights::From from, Layers& result, std::uint64_t& shadow_rays) const {
     float share;
     const bool beyond = draw_side(share);
@@ -63,7 +64,7 @@ struct LightAdder {
                             random.get2(bounce, Purpose::light_point), light, from))
       add(light, beyond, share, result, shadow_rays);
   }
-  /// By a directional light.
+  /// Takes one sample of a directional light.
   void add_sun(Layers& result, std::uint64_t& shadow_rays) const {
     float share;
     const bool beyond = draw_side(share);
@@ -100,31 +101,34 @@ void LightAdder::add(const LightSample& light, bool beyond, float share, Layers&
   result[path.after(false).layer()] += arriving * glossy;
 }
 
-/// What a path knows of the light beyond its last event D, a Lambert lobe or a collision; and how wide it looks.
+/// What a path remembers of its last event D (a Lambert lobe or a collision in a medium): which light was added there
+/// already, and how far its rays have spread since.
 struct Beyond {
-  bool matte = false;           ///< there was such an event
-  bool caustic_known = false;   ///< what arrives there by events S
-  bool indirect_known = false;  ///< what arrives there by events D
-  bool specular = false;        ///< events S since then
-  bool low = false;             ///< bright points were sampled explicitly there: a matte hit brings the rest
-  /// m: how wide the rays of the scatterings so far have spread, measured as by the way from a Lambert lobe: that way
-  /// itself since the last event D, nothing as long as there was none but smooth mirrors and glass.
+  bool matte = false;           ///< there was an event D
+  bool caustic_known = false;   ///< light that arrives there by events S was added
+  bool indirect_known = false;  ///< light that arrives there by events D was added
+  bool specular = false;        ///< the path has had events S since
+  /// Bright points were sampled explicitly there: a Lambert lobe that the path meets contributes only the rest.
+  bool low = false;
+  /// m: the distance from a Lambert lobe at which rays would have spread as far. Equal to the path's length since the
+  /// last event D; 0 if the path has met only smooth mirrors and glass.
   float width = 0;
-  float spread = 0;  ///< growth of `width`, m/m
+  float spread = 0;  ///< growth of `distance` per metre of path
 
   void advance(float way) { width += spread * way; }
-  /// By gloss of this density [1/sr]. A Lambert lobe has 1/pi in its middle: its rays spread by a metre a metre.
+  /// Widens the spread by a glossy event of this pdf [1/sr]. A Lambert lobe has 1/pi in its middle, and its rays spread
+  /// by one metre per metre.
   void widen(float density) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * density))); }
 
-  /// Does the light count that the path meets now?
+  /// True if light that the path meets now was not added yet.
   bool light_counts() const { return !(matte && specular && caustic_known); }
 };
 
-/// Light at x that is known; its Lambert lobe then needs no more of it. Radiance to the eye goes to `result`.
+/// The light that was added at x from records, points and photons; the path must not add it again.
 struct KnownHere {
   bool indirect = false, direct = false, caustic = false;
   bool low = false;  ///< bright points were sampled explicitly
-  float left = 1;    ///< share of the light of its Lambert lobe that the place before has not sampled explicitly
+  float left = 1;    ///< share of the Lambert lobe's light that was not sampled explicitly at the path's previous place
 };
 
 KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 smooth, const Beyond& beyond,
@@ -132,10 +136,12 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 s
                           RayCounts& counts) {
   KnownHere here;
   if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.width, u);
-  // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
+  // The Lambert lobe's total for uniform light is rho (1 - A_S(wo)), see bsdf.h.
   const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.left);
-  const Layer layer = path.after(true).after(true).layer();  // indirect; or that of what the path saw before
-  // Beside bright points those of known.told() hold the rest alone: then gloss, which has not sampled them, goes on.
+  // The layer indirect, or the layer of the surface that the path has seen before.
+  const Layer layer = path.after(true).after(true).layer();
+  // With bright points, a point's irradiance stands for the remaining light only. A glossy ray has not sampled bright
+  // points, so the path continues.
   if (beyond.matte || (beyond.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::Told> told = known.told(x.surface, x.normal_geometric, beyond.width, u)) {
       ++counts.points_read;
@@ -172,10 +178,10 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 s
   return here;
 }
 
-/// A path on its way.
+/// The state of a path on its way.
 struct Walk {
   PixelRandom random;
-  Layers* result;  ///< the part of its light that it finds from here on
+  Layers* result;  ///< the part of the sample that receives the light found from here on
   Ray ray;
   Hit hit;
   RayCone cone;
@@ -213,8 +219,8 @@ class EyeTracer {
   void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
     as += rays;
     if (walk.result == &parts_.onward)
-      counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;  // nearest hit, surface, material:
-                                                                   // twice a shadow ray
+      // Nearest hit, surface and material cost twice as much as a shadow ray.
+      counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;
   }
 
   const RenderScene& scene_;
@@ -224,7 +230,7 @@ class EyeTracer {
   PathParts& parts_;
 };
 
-/// Roulette; `most`: the largest probability of going on.
+/// Russian roulette; `most`: the largest survival probability.
 bool EyeTracer::survives(Walk& walk, float most) const {
   if (walk.bounce + 1 < kRouletteFrom) return true;
   return tempolux::survives(walk.throughput, most, walk.random.get1(walk.bounce, Purpose::roulette));
@@ -238,8 +244,8 @@ void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
   ++walk.bounce;
 }
 
-/// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path
-/// ends.
+/// Draws the next ray: an event D or S by u_lobe. times: the lobe's probability over the Bsdf's. Returns false if the
+/// path ends.
 bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
                         float times, Walk& walk) const {
   const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
@@ -272,7 +278,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   return true;
 }
 
-/// Scattering in a medium: light of a lamp, roulette, a new ray. False if the path ends there.
+/// Scatters in a medium: samples a light, applies Russian roulette and draws a new ray. Returns false if the path ends.
 bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   walk.path.scatter_in_medium();
   walk.beyond = {true, false, false, false, false, 0, 1};
@@ -293,7 +299,7 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   return true;
 }
 
-/// On the way to walk.hit.
+/// Passes the media between the last vertex and walk.hit.
 EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   const float way = walk.hit.surface == kNone ? INFINITY : walk.hit.t;
   if (known_ && walk.bounce == 0) {
@@ -312,8 +318,8 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
 }
 
-/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its
-/// samples agree, so that they need no more than camera rays do, of whose part they are.
+/// Samples light at a surface. At the first matte surface effort_.lit samples are added to the part `lit`. Samples of
+/// the sun hardly differ from each other, so one per camera ray is enough; it belongs to the path's own part.
 void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const {
   const auto adder = [&](const PixelRandom& random) {
     return LightAdder{scene_, x, lobes, walk.throughput, walk.path, walk.inside, random, walk.bounce};
@@ -331,7 +337,7 @@ void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_
   count(rays, counts_.shadow, walk);
 }
 
-/// From a first matte surface by event D, as often as asked for: the part `onward`.
+/// Follows effort_.onward rays from the Lambert lobe of the first matte surface: the part `onward`.
 void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
                           float times, const Walk& walk) const {
   if (here.indirect && here.caustic && !known_->lights_are_met) return;
@@ -343,7 +349,7 @@ void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material
   }
 }
 
-/// What the path meets at a surface: glass on the way absorbs, the surface emits.
+/// Arrival at a surface: applies the absorption of glass on the way and adds the surface's emission.
 void EyeTracer::arrive(const SurfacePoint& point, Walk& walk) const {
   const SceneFrame& frame = scene_.frame();
   const Vec3 wo = -walk.ray.direction;
@@ -357,7 +363,7 @@ void EyeTracer::arrive(const SurfacePoint& point, Walk& walk) const {
         walk.throughput * weighed_emission(scene_.lights, point, wo, walk.last, walk.cone.width);
 }
 
-/// The rays that go on from a surface: one, or one of each lobe where the path forks. False if walk ends.
+/// Follows the rays that leave a surface: one, or one for each lobe where the path forks. Returns false if `walk` ends.
 bool EyeTracer::leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here,
                       const SampledLobes& lobes, Walk& walk) const {
   const bool first_matte = walk.path.sharp() && x.bsdf.has_diffuse();
@@ -379,7 +385,7 @@ bool EyeTracer::leave(const ShadingPoint& x, const SurfaceMaterial& material, co
   return scatter(x, material, here, u_lobe, times, walk);
 }
 
-/// From one vertex of the path to the next. False if the path ends.
+/// Moves the path from one vertex to the next. Returns false if the path ends.
 bool EyeTracer::step(Walk& walk) const {
   const SceneFrame& frame = scene_.frame();
   if (const Media* const media = frame.media.get()) [[unlikely]] {
@@ -395,7 +401,7 @@ bool EyeTracer::step(Walk& walk) const {
   parts_.own.coverage = 1;
   SurfacePoint point = scene_.tracer.surface_point(walk.hit);
   arrive(point, walk);
-  // Only light by events S is missing then, if any.
+  // True if only light by events S may still be added.
   const bool only_specular = walk.beyond.indirect_known;
   if (only_specular && walk.beyond.caustic_known) return false;
 

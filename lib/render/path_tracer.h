@@ -1,4 +1,4 @@
-// lib/render/path_tracer.h -- radiance along one camera ray, told apart by layer.
+// lib/render/path_tracer.h -- radiance along one camera ray, by layer.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct LayersT {
 };
 using Layers = LayersT<float>;
 
-/// Which layer light belongs to that is seen after the events of an eye path so far.
+/// Decides which layer light belongs to, from the events of a camera path so far.
 class EyePath {
  public:
   void scatter(bool diffuse) {
@@ -42,13 +42,13 @@ class EyePath {
       case Layer::volume: break;
     }
   }
-  /// In a medium. What an S sent there is part of what is seen by it.
+  /// Scatters in a medium. After an event S the light counts as part of what that event shows.
   void scatter_in_medium() {
     sharp_ = false;
     if (layer_ == Layer::emission) layer_ = Layer::volume;
     else if (layer_ != Layer::specular && layer_ != Layer::volume) layer_ = Layer::indirect;
   }
-  /// Has the path no event D yet? Only then is it the eye that looks at what it meets.
+  /// True if the path has had no event D yet, so that the camera sees directly or by events S.
   bool sharp() const { return sharp_; }
   EyePath after(bool diffuse) const {
     EyePath next = *this;
@@ -62,14 +62,14 @@ class EyePath {
   bool sharp_ = true;
 };
 
-/// Random numbers of one pixel sample: scrambled Sobol points for the first bounces, hashed ones beyond.
+/// Random numbers of one pixel sample: scrambled Sobol points for the first bounces, hashed numbers afterwards.
 class PixelRandom {
  public:
   PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
       : key_(mix64(mix64(seed ^ 0x8f14e45fceea167aull) + pixel * 0x9e3779b97f4a7c15ull)), sample_(sample) {}
 
   std::uint32_t sample() const { return sample_; }
-  /// Those of another sample of the pixel.
+  /// Random numbers of another sample of the pixel.
   PixelRandom of_sample(std::uint32_t sample) const { return {key_, sample}; }
   Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
     return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain().get2(bounce, purpose);
@@ -78,7 +78,7 @@ class PixelRandom {
     return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : plain().get1(bounce, purpose);
   }
 
-  /// Hashed numbers of this sample alone: for what takes as many as it comes to.
+  /// Hashed numbers of this sample alone, for consumers that need an unbounded amount.
   PathRandom hashed() const { return plain(); }
 
  private:
@@ -92,13 +92,13 @@ class PixelRandom {
   std::uint32_t sample_;
 };
 
-/// Counters of one thread's work, for stats.
+/// Counters of one thread's work, for statistics.
 struct RayCounts {
   std::uint64_t camera = 0, bounce = 0, shadow = 0;
-  std::uint64_t lookups = 0;      ///< of indirect light where the eye looks: answered by records or photons
-  std::uint64_t gathered = 0;     ///< and answered by none: a ray of the hemisphere was to find it
-  std::uint64_t points_read = 0;  ///< ends of such rays, and of those that went on, that a point stood for
-  std::uint64_t onward = 0;       ///< of bounce and shadow those of PathParts::onward
+  std::uint64_t lookups = 0;      ///< indirect light at the first Lambert lobe that records or photons answered
+  std::uint64_t gathered = 0;     ///< indirect light at the first Lambert lobe that a gather ray had to estimate
+  std::uint64_t points_read = 0;  ///< hits of such rays and of their continuations that a point represented
+  std::uint64_t onward = 0;       ///< bounce and shadow rays that belong to PathParts::onward
   RayCounts& operator+=(const RayCounts& o) {
     camera += o.camera;
     bounce += o.bounce;
@@ -111,12 +111,15 @@ struct RayCounts {
   }
 };
 
-/// Radiance along one camera ray in the parts that may have sample numbers of their own (docs/pixels.md). Their sum is
-/// the radiance. The first matte surfaces are those that the eye sees, also by way of events S.
+/// Radiance along one camera ray, in three parts that may have different numbers of samples (docs/pixels.md). The
+/// radiance is the sum of the parts. A first matte surface is the first Lambert lobe of a camera path, also after
+/// events S.
 struct PathParts {
-  Layers own;     ///< all that the other two do not have: what is seen, also by events S, and what is known there
-  Layers lit;     ///< by a place on a light, drawn at the first matte surfaces
-  Layers onward;  ///< by the ray that goes on from their Lambert lobe
+  /// Everything that is in neither of the other two: light seen directly or by events S, and known light at the first
+  /// matte surface.
+  Layers own;
+  Layers lit;     ///< light sampled at the first matte surface
+  Layers onward;  ///< light found by rays from the first matte surface's Lambert lobe
   Layers sum() const {
     Layers all = own;
     for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += lit.value[l] + onward.value[l];
@@ -124,51 +127,48 @@ struct PathParts {
   }
 };
 
-/// How many samples of each part a path takes at its first matte surfaces, and the numbers of the first of each: they
-/// are drawn from the pixel's sequences of these parts. The parts are the sums of so many samples.
+/// Numbers of samples of each part at a path's first matte surface, and the index of the first sample of each part in
+/// the pixel's sequences. A part is the sum over its samples.
 struct PathEffort {
   std::uint32_t lit = 1, onward = 1;
   std::uint32_t lit_first = 0, onward_first = 0;
 };
-/// One of each, of the numbers of the path itself.
+/// One sample of each part, with the random numbers of the path itself.
 inline PathEffort effort_of(std::uint32_t sample) { return {1, 1, sample, sample}; }
 
 class KnownLight;
 
-/// The scene as a renderer sees it; all must outlive it.
+/// The scene for a renderer. All members must outlive it.
 struct RenderScene {
   const Tracer& tracer;
   const Lights& lights;
-  /// At each surface one ray goes to a sun and another to one of the other lights: which it is to be is half of the
-  /// noise otherwise.
+  /// Send one ray to a directional light and another one to one of the other lights at each surface. With a single ray,
+  /// the choice between the two is half of the noise.
   bool suns_apart = false;
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 
 /// Radiance along a camera ray, by layer: path tracing with light sampling and scattering joined by the power heuristic
-/// [Veach 1997, 9.2], roulette after three bounces, nothing clamped, no depth limit. Unbiased without `known`.
+/// [Veach 1997, 9.2], Russian roulette after three bounces, no clamping and no depth limit. Unbiased without `known`.
 ///
-/// With `known` paths end where their light is known (biased as that is), and nothing is counted twice:
-/// - at the first Lambert lobe x caustic light is that of photons, if there are any; then no light counts that the path
-/// meets
-///   by way of events S beyond x;
-/// - indirect light at x is that of records. The path still goes on to what its next ray meets, for that ray joins
-/// light sampling,
-///   and by events S, if caustic light is not known;
-/// - where no record is near, that ray goes on: it ends where a point tells the light of all kinds, or goes on as a
-/// path.
+/// With `known`, a path ends where the light is known; the result has the bias of that light, and nothing is counted
+/// twice:
+/// - At the first Lambert lobe x, caustic light is that of photons, if there are any. Light that the path meets by
+///   events S after x is then not added.
+/// - Indirect light at x is that of records. The path still continues to its next hit, because that ray is joined with
+///   light sampling by MIS, and by events S if caustic light is not known.
+/// - Where no record is valid, the ray ends at a hit that a point represents, or continues as a path. An unlit material
+///   shows its base colour as radiance to the camera, directly and through events S (layers emission and specular). It
+///   lights nothing and scatters nothing, here and in photon-trace.
 ///
-/// An unlit material shows its base colour as radiance to the eye, directly and through events S alone (layers emission
-/// and specular); it lights nothing and scatters nothing, here and in photon-trace alike.
-/// Media (SceneFrame::media): free flight by null collisions, lamps sampled at each collision. With `known` the camera
-/// ray itself passes them attenuated, exactly, and what they scatter towards it is left to volume-compose; beyond an
-/// event S they scatter as without. What they scatter to a matte surface is part of its indirect light. `cone` is the
-/// pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
+/// Media (SceneFrame::media): free flight by null collisions, and one light sample at each collision. With `known`, the
+///   camera ray is attenuated exactly, and volume-compose adds the light that media scatter towards it; after an event
+///   S media scatter as without `known`. Light that media scatter to a matte surface is part of its indirect light.
+///   `cone` is the pixel's cone, for the level of textures (CameraView::cone); the default reads the finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const KnownLight* known, RayCounts& counts, RayCone cone = {});
-/// The same of a ray whose first hit is known (surface kNone: nothing), by parts. The weights that join light sampling
-/// and scattering are those of one sample of each part, whatever `effort` says: so each part divided by its number is
-/// right by itself.
+/// Radiance by parts along a ray whose first hit is known (surface kNone: it meets nothing). MIS weights are those of
+/// one sample of each part, whatever `effort` is: so each part divided by its number of samples is correct by itself.
 PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
                          const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort);
 

@@ -10,16 +10,16 @@ namespace tempolux {
 namespace {
 
 constexpr int kAsked = 8;               ///< FootprintOptions::asked
-constexpr std::size_t kRemembered = 4;  ///< places: a pixel may see several surfaces
-constexpr float kAlike = 0.999f;        ///< cosine between normals: of smooth surfaces within a pixel
-constexpr float kAlikeCoat = 0.01f;     ///< difference of what coats let in: that of two materials
+constexpr std::size_t kRemembered = 4;  ///< places per pixel: a pixel may see several surfaces
+constexpr float kAlike = 0.999f;        ///< cosine between normals of a smooth surface within a pixel
+constexpr float kAlikeCoat = 0.01f;     ///< difference in the transmittance of coats that separates two materials
 
-/// Caustic light that was looked up at a place.
+/// Caustic irradiance that was looked up at a place.
 struct Remembered {
   const PhotonLight* of = nullptr;
   Vec3 position, geometric, shading;
-  float let_in = 1;  ///< of light along the normal, by the coat
-  float within = 0;  ///< m
+  float let_in = 1;  ///< the coat's transmittance for light along the normal
+  float within = 0;  ///< m: the value is reused within this distance
   Rgb irradiance{0.0f};
 
   static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
@@ -29,7 +29,7 @@ struct Remembered {
   }
 };
 
-/// What a thread remembers, by half of a pixel's samples.
+/// What a thread remembers, for each half of a pixel's samples.
 struct Memory {
   bool used = false;
   std::size_t half = 0;

@@ -1,4 +1,4 @@
-// lib/render/photon_light.h -- the photon map seen directly: irradiance by density for the renderer.
+// lib/render/photon_light.h -- irradiance from the photon map by density estimation, for camera paths.
 #pragma once
 
 #include <memory>
@@ -12,40 +12,40 @@ namespace tempolux {
 struct PhotonLightOptions {
   int neighbours = 50;          ///< k of the density estimate of indirect light
   float max_radius = 0;         ///< m; 0: from the photons' spacing
-  int caustic_neighbours = 25;  ///< fewer: caustics have edges, and a pixel averages several estimates
-  float caustic_radius = 0;     ///< m; 0: likewise
-  bool caustic_only = false;    ///< indirect light comes from elsewhere: index the caustic photons alone
+  int caustic_neighbours = 25;  ///< fewer, because caustics have edges and a pixel averages several estimates
+  float caustic_radius = 0;     ///< m; 0: from the photons' spacing
+  bool caustic_only = false;    ///< indirect light is not needed: index the caustic photons alone
 };
 
-/// While one of these lives, its thread remembers the caustic light that it looks up: for the samples of one pixel,
-/// which see one place as a rule. A place near a remembered one of the same surface, nearer than light changes there
-/// (FootprintDensity::estimate_around), has its light. What a pixel shows is then the light of a few of its places in
-/// place of all: the same in the mean. One at a time in a thread; made anew for each pixel, so that results do not
-/// depend on which pixels a thread has seen before.
+/// While an object of this class lives, its thread remembers the caustic light that it looks up for the samples of one
+/// pixel, which usually see one place. A place on the same surface, closer than the distance over which light changes
+/// (FootprintDensity::estimate_around), gets the remembered light. A pixel then shows the light of a few of its places
+/// instead of all, which is the same in the mean. Only one object per thread; a new one for each pixel, so that results
+/// do not depend on which pixels a thread has rendered before.
 class CausticMemory {
  public:
   CausticMemory();
   ~CausticMemory();
   CausticMemory(const CausticMemory&) = delete;
-  /// From now on what was looked up for this half of the samples, 0 or 1, and nothing of the other: halves stay
+  /// From now on only light that was looked up for this half (0 or 1) of the samples is reused, so that halves stay
   /// independent.
   void use_half(int half);
 };
 
-/// Caustic and indirect irradiance from the photons of a map, by footprints and by the k nearest. Biased: light is
-/// blurred over the radius of the estimate, and indirect light is lost at edges and corners within it; the bias falls
-/// with the photons' number. Caustic light is divided by the area that can be reached (FootprintDensity):
-/// right on slender things too, where it is uniform over them. Without caustic photons nothing is built for them.
+/// Caustic and indirect irradiance from the photons of a map: caustic light by footprints, indirect light by the k
+/// nearest photons. Biased: light is blurred over the radius of the estimate, and indirect light is lost at edges and
+/// corners; the bias falls with the number of photons. Caustic light is divided by the reachable area
+/// (FootprintDensity), so it is also correct on slender objects if it is uniform over them. Without caustic photons, no
+/// index is built for them.
 class PhotonLight {
  public:
-  /// `photon_shift` is added to photon positions to bring them into scene space (the file's origin minus the
-  /// frame's).
+  /// photon_shift [m] is added to photon positions to bring them into scene space: the file's origin minus the frame's.
   PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift, const PhotonLightOptions& options);
 
-  /// Irradiance [W/m^2] by light of kind caustic, on the lit side of the surface.
+  /// Caustic irradiance [W/m^2] on the lit side of the surface.
   Rgb caustic(Vec3 position, const LitSurface& surface) const;
-  /// The same of kind indirect, on the side of the normal (unit, geometric); only if has_indirect(). Normal maps count
-  /// by their finest level.
+  /// Indirect irradiance [W/m^2] on the side of the normal (unit, geometric); call only if has_indirect(). Normal maps
+  /// are read at their finest level.
   Rgb indirect(Vec3 position, Vec3 normal) const;
   bool has_indirect() const { return has_indirect_; }
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }

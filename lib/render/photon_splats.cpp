@@ -10,9 +10,9 @@
 namespace tempolux {
 namespace {
 
-/// A ray to x meets x's own surface this near to x: in distances from the eye, measured off the surface and
-/// along it. Positions are exact to 1e-7 of the scene; the rest is for rays that
-/// graze. What lies on top of something else nearer than that is not told from it.
+/// Tolerances for the test whether a ray to x meets x's own surface, in units of the distance from the camera: along
+/// the normal and along the surface. Positions are exact to 1e-7 of the scene; the rest allows for grazing rays.
+/// Surfaces that lie closer together than this are not distinguished.
 constexpr float kOff = 1e-4f, kAlong = 1e-2f;
 
 std::optional<Layer> layer_of(formats::PathKind kind) {
@@ -26,7 +26,7 @@ std::optional<Layer> layer_of(formats::PathKind kind) {
 
 }  // namespace
 
-/// Does a ray from the camera meet the side of the surface that the photon arrived at?
+/// True if a ray from the camera meets the side of the surface at which the photon arrived.
 bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const {
   if (view_.orthographic()) {
     const std::optional<std::array<double, 2>> raster = view_.project(place);

@@ -5,14 +5,15 @@
 namespace tempolux {
 namespace {
 
-constexpr double kBetween = 0.1, kSharp = 0.125;  // of its variance: of two stratified numbers, so more samples take
-                                                  // off more than their share
+// Shares of the variance between pixels, and between pixels at edges: each sample takes two stratified random numbers,
+// so further samples reduce the variance by more than their number.
+constexpr double kBetween = 0.1, kSharp = 0.125;
 constexpr double kStratified = 0.875, kTypical = 12;
-/// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that
-/// is said of a ray onward.
+/// Costs in shadow rays: a typical whole sample; a camera ray with its surface; a light sample; the smallest cost
+/// assumed for a ray onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
 
-/// Each half of a pixel's samples needs one.
+/// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.
 int first_onward(const FrameOptions& options) {
   const int n = options.samples;
   return options.for_filter ? n : std::max((n + 1) / 2, options.sample_halves ? std::min(n, 2) : 1);
@@ -81,7 +82,7 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   state.onward_rays = float(double(onward_rays) / first_.onward);
 }
 
-/// body(pixel, its x, its y) for the neighbours of a pixel, at most `near` away.
+/// Calls body(pixel, x, y) for the neighbours of a pixel at most `near` pixels away.
 template <class Body>
 void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) const {
   for (int j = std::max(0, y - near); j <= std::min(view_.height() - 1, y + near); ++j)
@@ -91,9 +92,10 @@ void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) co
     }
 }
 
-/// Of what has edges: that of the neighbours' samples, and a share of the variance between neighbours beyond what their
-/// samples leave. Where these are all of one piece and differ, an edge may run through this pixel alone: the rim of a
-/// lamp that just reaches into a row of dark pixels, of which first samples meet nothing, or many times what there is.
+/// Variance of light that has edges: the variance of the neighbours' samples, and a share of the variance between
+/// neighbours above what their samples explain. If neighbours agree in themselves but differ from each other, an edge
+/// may run through this pixel alone, such as the rim of a lamp that just reaches into a row of dark pixels, and the
+/// pixel's first samples may miss the bright part or find too much of it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_neighbour(x, y, kNearSharp, [&](const Pixel& pixel, int, int) {
@@ -109,7 +111,7 @@ double PixelNoise::own_variance(int x, int y) const {
   return kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between)) + mirrored / n;
 }
 
-/// Sums over pixels around one.
+/// Sums over the pixels around a pixel.
 struct PixelNoise::Around {
   double n = 0, level = 0, lit = 0, lit_square = 0, onward = 0, onward_square = 0, within = 0, rays = 0;
   void add(const Pixel& pixel) {
@@ -124,10 +126,11 @@ struct PixelNoise::Around {
   }
 };
 
-/// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of
-/// single samples the variance between pixels. Rays onward by the variance of samples: few of them meet what is bright.
-/// Each variance is the mean of what near pixels and what pixels farther around have: where one sample in 12 finds a
-/// window, all of the 96 of the near ones miss it in one place of 4000, which would be left dark.
+/// Decides on each part separately. Light sampling: from the difference of pixels' halves, which includes the gain by
+/// stratification; with single samples from the variance between pixels. Rays onward: from the variance of samples,
+/// because few of them meet bright things. Each variance is the mean of the variance of close pixels and that of
+/// farther pixels: if one sample in 12 finds a window, all 96 samples of the close pixels miss the window in one place
+/// of 4000, and that place would stay dark.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   Around near, wide;

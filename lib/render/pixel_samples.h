@@ -1,4 +1,4 @@
-// lib/render/pixel_samples.h -- one pixel's samples and their sum; all pixels in parallel.
+// lib/render/pixel_samples.h -- the samples of one pixel and their sum; loops over all pixels in parallel.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// Numbers of samples by part (PathParts): own ones are the camera's rays.
+/// Numbers of samples by part (PathParts). `own` counts camera rays.
 struct PartCounts {
   int own = 0, lit = 0, onward = 0;
 };
@@ -19,9 +19,9 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
-  double seen_square = 0, mirrored_square = 0, onward_square = 0;  ///< of seen(), mirrored() of `own` and value() of
-                                                                   ///< `onward`, of single samples
-  bool for_filter = false;  ///< FrameOptions::for_filter: noise is of layer specular alone
+  /// Sums of squares of single samples: of seen(), mirrored() of `own` and value() of `onward`.
+  double seen_square = 0, mirrored_square = 0, onward_square = 0;
+  bool for_filter = false;  ///< FrameOptions::for_filter: only noise of layer specular counts
   void add(const PathParts& sample) {
     add(sample.own, own);
     add(sample.lit, lit);
@@ -44,7 +44,7 @@ struct PixelSum {
   static double mirrored(const LayersT<T>& layers) {
     return channel_mean(Rgbd(layers[Layer::specular]));
   }
-  /// Of all others whose noise counts.
+  /// Mean channel of the other layers whose noise counts.
   template <class T>
   double seen(const LayersT<T>& layers) const {
     return value(layers) - mirrored(layers);
@@ -72,7 +72,7 @@ inline double radiance_of(const LayersT<double>& layers) {
   return sum;
 }
 
-/// Joins `sum` over `count` samples to `mean`, that over the `first` before.
+/// Joins `sum` over `count` samples to `mean`, the mean over `first` samples before.
 inline void join(const LayersT<double>& sum, int first, int count, Layers& mean) {
   if (count == 0) return;
   const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);
@@ -81,15 +81,15 @@ inline void join(const LayersT<double>& sum, int first, int count, Layers& mean)
   mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
 }
 
-/// The same of samples that have one of each part.
+/// The same for samples that have one of each part.
 inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   LayersT<double> all = sum.own;
   for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += sum.lit.value[l] + sum.onward.value[l];
   join(all, first, count, mean);
 }
 
-/// Runs body(pixel, x, y) for every pixel, row by row of a tile, tiles in parallel; each has a body = make_body(counts)
-/// of its own.
+/// Calls body(pixel, x, y) for every pixel, row by row within a tile, with tiles in parallel. Each tile has its own
+/// body = make_body(counts).
 template <class MakeBody>
 void for_each_tile(const CameraView& view, const FrameOptions& options, RayCounts& rays,
                    const std::function<void(double)>& progress, const MakeBody& make_body) {
@@ -112,7 +112,7 @@ void for_each_tile(const CameraView& view, const FrameOptions& options, RayCount
   });
 }
 
-/// Runs body(pixel, x, y, counts) for every pixel, tile by tile in parallel.
+/// Calls body(pixel, x, y, counts) for every pixel, with tiles in parallel.
 template <class Body>
 void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
                     const std::function<void(double)>& progress, const Body& body) {
@@ -120,14 +120,14 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same
-/// probability, as all are moved by one random number. So a part's mean over its samples is right whatever their
-/// number.
+/// Distributes samples of the parts lit and onward over a pixel's camera rays, as uniformly as whole numbers allow. One
+/// random number shifts the whole distribution, so each camera ray gets a sample with the same probability, and the
+/// mean over a part's samples is correct for any number of them.
 class Dealt {
  public:
   Dealt(std::uint64_t seed, std::uint64_t pixel, const PartCounts& first, const PartCounts& counts)
       : first_(first), counts_(counts), offset_(PathRandom(seed ^ 0x6465616c74ull, pixel).get2(0, Purpose::pixel)) {}
-  /// Of camera ray i of counts.own. Numbers of samples go on from `first`.
+  /// Effort of camera ray i of counts.own. The indices of samples start at `first`.
   PathEffort operator()(int i) const {
     const std::uint32_t lit = before(i, counts_.lit, offset_.x), onward = before(i, counts_.onward, offset_.y);
     return {before(i + 1, counts_.lit, offset_.x) - lit, before(i + 1, counts_.onward, offset_.y) - onward,
@@ -142,9 +142,9 @@ class Dealt {
   Vec2 offset_;
 };
 
-/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0. The pass goes on in the pixel's
-/// sequence; its first half belongs to one half of the samples, its second half to the other: either is stratified
-/// nearly as well as a pass of its size can be.
+/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0. The pass continues the pixel's
+/// sequence. Its first half belongs to one half of the pixel's samples, its second half to the other; each is
+/// stratified nearly as well as a pass of its size can be.
 class SampleSequence {
  public:
   SampleSequence(const FrameOptions& options, std::size_t pixel, const PartCounts& first, const PartCounts& count)
@@ -154,9 +154,9 @@ class SampleSequence {
         dealt_(options.seed, pixel, first, count) {}
   PixelRandom random(int i) const { return random_.of_sample(std::uint32_t(first_ + i)); }
   PathEffort effort(int i) const { return dealt_(i); }
-  /// Which half of the pass sample i belongs to.
+  /// The half of the pass to which sample i belongs.
   int half(int i) const { return 2 * i >= count_; }
-  /// Which half of the pixel's samples it belongs to: a single sample goes to the half that has fewer.
+  /// The half of the pixel's samples to which sample i belongs: a single sample goes to the half that has fewer.
   int half(int i, const SampleHalves& halves) const {
     return count_ == 1 ? halves.half[1].own.count < halves.half[0].own.count : half(i);
   }
@@ -167,8 +167,8 @@ class SampleSequence {
   Dealt dealt_;
 };
 
-/// A pixel's samples, numbered on from `first`, one after the other: add(i, sample). halves: SampleHalves of the pixel,
-/// or nullptr.
+/// Takes the samples of a pixel one after the other, with indices from `first`, and calls add(i, sample). halves:
+/// SampleHalves of the pixel, or nullptr.
 template <class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, const FrameOptions& options, std::size_t pixel,
                      int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves,

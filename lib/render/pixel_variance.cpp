@@ -16,7 +16,7 @@ bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-/// Adds NAME.R .G .B, of each pixel colour(its index).
+/// Adds the channels NAME.R .G .B with colour(pixel index) of each pixel.
 template <class Colour>
 void add_colour(const std::string& name, Image& image, const Colour& colour) {
   const std::size_t first_channel = image.channels.size();
@@ -29,7 +29,7 @@ void add_colour(const std::string& name, Image& image, const Colour& colour) {
   });
 }
 
-/// Parts of one sample, joined: they have own numbers of samples.
+/// Half difference of one sample, summed over the parts, which have different numbers of samples.
 template <class Half>
 auto parts_of(Half& half) {
   return std::array{&half.own, &half.lit, &half.onward};
@@ -94,7 +94,7 @@ Rgb SampleHalves::mean(std::size_t l) const {
 Rgb SampleHalves::variance(std::span<const Layer> layers) const {
   Rgb sum(0.0f), result;
   for (const Layer layer : layers) sum += difference(std::size_t(layer));
-  // A square beyond float32 is cut to its largest: a file holds no infinity.
+  // Squares above float32's range are cut to its largest value: a file holds no infinity.
   for (int c = 0; c < 3; ++c) result[c] = float(std::min(double(sum[c]) * double(sum[c]), 3.4e38));
   return result;
 }
@@ -106,7 +106,7 @@ bool wants_sample_halves(const std::vector<std::string>& channels) {
 
 namespace {
 
-/// LAYER.noise of a pixel that shows `shown`.
+/// The channel LAYER.noise of a pixel whose value is `shown`.
 Rgb noise_of(const SampleHalves& halves, std::size_t l, float share, const Rgb& shown) {
   Rgb noise = halves.difference(l) * std::sqrt(share);
   const Rgb taken = halves.mean(l) - shown;

@@ -1,4 +1,4 @@
-// lib/render/pixel_variance.h -- how uncertain each pixel's mean is, told by two halves of its samples.
+// lib/render/pixel_variance.h -- the uncertainty of each pixel's mean, from two halves of its samples.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace tempolux {
 
-/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of
-/// one pixel are stratified together, so that their mean errs by less than that of independent ones. Each half of a
-/// pass, in their order, is nearly as well stratified: the difference of the two halves' means knows it, where the
-/// spread of single samples does not.
+/// Sums over the samples of one pixel by part (PathParts), for the first and the second half of the samples. Samples of
+/// one pixel are stratified together, so their mean errs by less than that of independent samples. Each half of a pass
+/// is nearly as well stratified: the difference of the halves' means includes this gain, but the spread of single
+/// samples does not.
 struct SampleHalves {
   struct Sum {
     Layers radiance;  ///< [W/m^2/sr]
@@ -25,41 +25,41 @@ struct SampleHalves {
   };
   Half half[2];
 
-  /// A sample of half h, 0 or 1.
+  /// Adds a sample of half h, 0 or 1.
   void add(int h, const PathParts& sample, const PathEffort& effort);
   SampleHalves& operator+=(const SampleHalves& more);
-  /// Gives both halves their common mean in a layer.
+  /// Sets both halves to their common mean in a layer.
   void join(Layer layer);
   float samples() const { return half[0].own.count + half[1].own.count; }
   /// Half the difference of the halves in layer l [W/m^2/sr]: the sum over the parts of (a - b) (n_a n_b)^(1/2) / (n_a
-  /// + n_b), with a, b the halves' means and n_a, n_b their counts. Of independent samples the mean of its square is
-  /// the variance of the mean over both halves. Of a part of which a half is empty nothing is known: 0.
+  /// + n_b), with a, b the halves' means and n_a, n_b their counts. For independent samples the mean of its square is
+  /// the variance of the mean over both halves. A part with an empty half contributes 0.
   Rgb difference(std::size_t l) const;
   /// Mean over both halves in layer l [W/m^2/sr].
   Rgb mean(std::size_t l) const;
-  /// Square of difference(), of the sum of `layers` [(W/m^2/sr)^2].
+  /// Square of the difference() of the sum of `layers` [(W/m^2/sr)^2].
   Rgb variance(std::span<const Layer> layers) const;
 };
 
 inline constexpr std::array<Layer, 6> kImageLayers{Layer::emission, Layer::specular, Layer::direct,
                                                    Layer::caustic,  Layer::indirect, Layer::volume};
-/// What the filter st-filter filters.
+/// The layers that st-filter filters.
 inline constexpr std::array<Layer, 3> kDiffuseLayers{Layer::direct, Layer::caustic, Layer::indirect};
 
-/// Is one of the channels asked for that halves are kept for?
+/// True if one of the requested channels needs the halves of samples.
 bool wants_sample_halves(const std::vector<std::string>& channels);
 
 struct LayerImage;
 
-/// Adds what is asked for of "variance" (variance.R .G .B: of R G B), "diffuse.variance" (diffuse.variance.R .G .B: of
-/// the sum of direct, caustic and indirect), "halves" (LAYER.noise.R .G .B of each layer, of volume only with media)
-/// and "samples".
+/// Adds the requested ones of "variance" (variance.R .G .B, the variance of R G B), "diffuse.variance"
+/// (diffuse.variance.R .G .B, the variance of the sum of direct, caustic and indirect), "halves" (LAYER.noise.R .G .B
+/// of each layer, of volume only with media) and "samples".
 ///
-/// LAYER.noise = n: LAYER + n and LAYER - n are uncorrelated halves, the mean of n^2 is the variance of LAYER. It is
-/// the half difference d of the samples' halves times the root of LayerImage::difference_share. Stratified together the
-/// halves a, b of the mean m err in opposite ways; as a and b may be exchanged, d is uncorrelated with m, so that m + s
-/// d and m - s d have the covariance Var(m) - s^2 Var(d): 0 for s^2 = Var(m) / Var(d). What spread_outliers took from a
-/// layer is taken from |n| as well.
+/// LAYER.noise = n: LAYER + n and LAYER - n are uncorrelated halves, and the mean of n^2 is the variance of LAYER. n is
+/// the half difference d of the samples' halves times the root of LayerImage::difference_share. Halves a and b that are
+/// stratified together err in opposite ways around their mean m. As a and b are exchangeable, d is uncorrelated with m,
+/// so m + s d and m - s d have the covariance Var(m) - s^2 Var(d), which is 0 for s^2 = Var(m) / Var(d). Light that
+/// spread_outliers took from a layer is also taken from |n|.
 void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 }  // namespace tempolux

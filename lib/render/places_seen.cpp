@@ -14,7 +14,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kLooks = 256;
-constexpr float kNearEnough = 1 - 1e-3f;  ///< of the way to a place: what is met nearer hides it
+constexpr float kNearEnough = 1 - 1e-3f;  ///< share of the distance to a place: a closer hit hides the place
 
 bool sees(const Tracer& tracer, const CameraView& view, Vec3 place) {
   const auto at = view.project(place);

@@ -1,4 +1,4 @@
-// lib/render/places_seen.h -- places that a camera sees, and places that these see: for pilots.
+// lib/render/places_seen.h -- places that a camera sees, and places that these places see, for pilots.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace tempolux {
 /// A place with a Lambert lobe, or none.
 struct SeenPlace {
   SurfacePoint surface;
-  Vec3 normal, geometric;  ///< on the side seen; zero vectors: nothing is there
-  bool open = false;       ///< the ray that went on from here left the scene
+  Vec3 normal, geometric;  ///< on the side that is seen; zero vectors: there is no place
+  bool open = false;       ///< the ray that continued from here left the scene
 
   bool exists() const { return normal != Vec3{}; }
   bool sees(Vec3 wi) const { return dot(wi, geometric) > 0 && dot(wi, normal) > 0; }
 };
 
 struct SeenPlaces {
-  std::vector<SeenPlace> places;  ///< by number of the eye ray: its first Lambert lobe, through mirrors and glass
-  std::vector<SeenPlace> beyond;  ///< what a ray by the cosine met from there
+  std::vector<SeenPlace> places;  ///< by index of the camera ray: its first Lambert lobe, through mirrors and glass
+  std::vector<SeenPlace> beyond;  ///< the place that a cosine-distributed ray from there met
 };
 
-/// Of what cameras see one after the other, scene space, the share that no camera before has seen: the mean over all
-/// but the first, 0 for less than two. What mirrors and glass show is left out. `width`, `height`: of the pictures,
-/// whose ratio counts.
+/// For cameras one after the other: the share of each camera's view that no camera before has seen, as the mean over
+/// all but the first. 0 for fewer than two cameras. Scene space. Mirrors and glass are not followed. Only the ratio of
+/// `width` and `height`, those of the pictures, counts.
 double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, int width, int height);
 
-/// `looks` eye rays, stratified over the picture. Same places for any number of threads.
+/// Follows `looks` camera rays, stratified over the picture. Same places for any number of threads.
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed);
 
 }  // namespace tempolux

@@ -15,10 +15,11 @@
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 32, kRows = 18;  ///< of the picture, by which the mean square is told
-constexpr float kSame = 1e-3f;            ///< of the distance: the camera sees the photon's place, not one before it
+constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture over which the mean square is taken
+/// Of the distance: a camera ray that ends closer to the camera than this does not see the photon's place.
+constexpr float kSame = 1e-3f;
 
-/// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) takes up; 0 where it cannot be told.
+/// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) covers; 0 if it cannot be computed.
 double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std::array<double, 2>& at) {
   const Frame frame(normal);
   const float step = view.pixel_size(float(view.depth(point)));
@@ -28,13 +29,13 @@ double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std:
   return std::abs(area) / (double(step) * double(step) * view.width() * view.height());
 }
 
-/// What a photon adds to the mean radiance of the picture, and where it lies in it.
+/// A photon's contribution to the mean radiance of the picture, and its position in the picture.
 struct SeenFlux {
   double radiance = 0;
   std::size_t cell = 0;
 };
-/// Of a photon at `point`: its flux x rho / pi x picture_share, if the camera sees it. Nothing is blurred, so the sum
-/// over photons is unbiased.
+/// Contribution of photon i: flux x rho / pi x picture_share if the camera sees it, else 0. Nothing is blurred, so the
+/// sum over photons is unbiased.
 SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const PhotonView& photons, std::size_t i) {
   const formats::Photon& photon = photons.photons[i];
   const Vec3 point{photon.position[0], photon.position[1], photon.position[2]};

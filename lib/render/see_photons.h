@@ -1,4 +1,4 @@
-// lib/render/see_photons.h -- light of a kind that a camera sees, by photons alone.
+// lib/render/see_photons.h -- light of one kind that a camera sees, estimated from photons alone.
 #pragma once
 
 #include "formats/photons/photons.h"
@@ -8,15 +8,14 @@
 
 namespace tempolux {
 
-/// What photons of a kind tell of the light that a camera sees directly: radiance, mean of the channels, over the
-/// picture.
+/// Radiance of one kind of light that a camera sees directly, as the mean over the channels and the picture.
 struct SeenPhotons {
-  double mean = 0, mean_error = 0;  ///< and its standard error
-  double square = 0;                ///< mean of the square, of 32 x 18 parts of the picture
+  double mean = 0, mean_error = 0;  ///< mean and its standard error
+  double square = 0;                ///< mean of the square, over 32 x 18 parts of the picture
 };
 
-/// Of the photons of this kind, by a camera ray to each. What mirrors show is not counted. Same result for any number
-/// of threads.
+/// Sums the photons of this kind that a camera ray reaches. Mirrors and glass are not followed. Same result for any
+/// number of threads.
 SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
                         formats::PathKind kind);
 

@@ -21,10 +21,10 @@ struct Shown {
   Rgb albedo{1.0f};
 };
 
-/// The way on by a delta lobe; none if there is no such lobe.
+/// The continuation by a delta lobe; empty if there is none.
 std::optional<Bsdf::Sample> sharp_way(const ShadingPoint& shading) {
   if (!shading.bsdf.has_specular() || !shading.bsdf.specular_is_delta()) return std::nullopt;
-  // 0.5 follows what is more than half of the light; where that is a Lambert lobe one end or the other of [0, 1) is the
+  // 0.5 chooses the lobe that has more than half of the light. If this is a Lambert lobe, one end of [0, 1) chooses the
   // mirror above it.
   for (const float lobe : {0.5f, 0.0001f, 0.9999f}) {
     const Bsdf::Sample next = shading.bsdf.sample(shading.eye, lobe, {0.5f, 0.5f});

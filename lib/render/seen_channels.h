@@ -1,4 +1,4 @@
-// lib/render/seen_channels.h -- what mirrors and glass show in each pixel: features by which light in them is filtered.
+// lib/render/seen_channels.h -- what mirrors and glass show in each pixel: features for filtering the layer specular.
 #pragma once
 
 #include <string>
@@ -11,12 +11,13 @@
 namespace tempolux {
 
 /// Adds "seen.Z", "seen.N.X .Y .Z", "seen.id" and "seen.albedo.R .G .B" if `channels` has "seen". The ray through the
-/// pixel's centre goes on at sharp mirrors and glass (delta lobes, also those above a matte ground), by the likelier of
-/// reflection and transmission, up to 16 times, to the first surface without one. Z: depth of the virtual image [m], at
-/// the length of the whole way along the pixel's ray. In a plane mirror 1/Z is linear over pixels as it is without. 0
-/// where the way ends in nothing. N: normal of the last surface on the side met. id: its object; after mirrors a hash
-/// of all objects on the way. albedo: what the last surface reflects of uniform light by all lobes; without a mirror on
-/// the way by its S lobes alone, as the layer specular holds no other light of it; 1 where the way ends in nothing.
+/// pixel's centre continues at sharp mirrors and glass (delta lobes, also those above a Lambert lobe), by the likelier
+/// of reflection and transmission, up to 16 times, to the first surface without a delta lobe. Z: depth of the virtual
+/// image [m], at the length of the whole path along the pixel's ray; in a plane mirror 1/Z is linear over pixels, as
+/// without a mirror. 0 where the path leaves the scene. N: normal of the last surface, on the side that the ray meets.
+/// id: its object; after mirrors a hash of all objects on the path. albedo: the share of uniform light that the last
+/// surface reflects by all lobes; without a mirror on the path by its S lobes alone, because the layer specular then
+/// holds no other light of this surface; 1 where the path leaves the scene.
 void add_seen_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                        Image& image);
 

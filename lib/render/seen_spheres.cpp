@@ -1,4 +1,4 @@
-// lib/render/seen_spheres.cpp -- eye rays, their places, and the octree cells that hold them.
+// lib/render/seen_spheres.cpp -- camera rays, the places that they see, and octree cells around these places.
 #include "lib/render/seen_spheres.h"
 
 #include <algorithm>
@@ -15,23 +15,25 @@ namespace tempolux {
 namespace {
 
 constexpr int kColumns = 24,
-              kRows = 14;  ///< positions of a picture, 2688 of eight eyes: a standard error of 1 % for a cell of half
+              /// Positions in a picture, 2688 with eight cameras: a cell with half of the weight has a standard error
+              /// of 1 %.
+    kRows = 14;
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;
 constexpr double kSplitShare = 1.0 / 32, kLeastShare = 1.0 / 512;
-constexpr double kRadiusOfCell = 0.875;  ///< of its size: half its diagonal is .866
-constexpr double kLeastGain = 1;         ///< log2: twice as dense
+constexpr double kRadiusOfCell = 0.875;  ///< radius over cell size: half a cell's diagonal is .866
+constexpr double kLeastGain = 1;         ///< log2 of the least gain in density: twice as dense
 
 struct Cell {
   int level = 0;                  // size 2^level m
-  std::array<double, 3> index{};  // whole numbers: corner = index 2^level
+  std::array<double, 3> index{};  // integers: corner = index 2^level
   std::vector<const WeighedPlace*> places;
   double weight = 0;
 
   double size() const { return std::ldexp(1.0, level); }
 };
 
-/// The cells of this level that hold the places, in the order of their indices.
+/// The cells of this level that hold the places, ordered by index.
 std::vector<Cell> cells_of(const std::vector<const WeighedPlace*>& places, int level) {
   std::map<std::array<double, 3>, Cell> cells;
   for (const WeighedPlace* place : places) {
@@ -49,13 +51,14 @@ std::vector<Cell> cells_of(const std::vector<const WeighedPlace*>& places, int l
   return list;
 }
 
-/// The first power of two that is not below x, as its exponent.
+/// Exponent of the smallest power of two that is not below x.
 int level_above(double x) {
   int exponent;
   return std::frexp(x, &exponent) == 0.5 ? exponent - 1 : exponent;
 }
 
-/// A quarter of the median distance seen, rounded down to a power of two; the lowest there is if nothing was.
+/// Exponent of a quarter of the median visible distance, rounded down to a power of two; the lowest possible one if
+/// nothing was seen.
 int lowest_level(const std::vector<WeighedPlace>& places) {
   std::vector<double> distances;
   for (const WeighedPlace& place : places)
@@ -68,7 +71,7 @@ int lowest_level(const std::vector<WeighedPlace>& places) {
   return exponent - 1;
 }
 
-/// Halves heavy cells while there may be more of them.
+/// Halves heavy cells while the limit on their number allows.
 std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
   const auto drop_light = [&](std::vector<Cell>& some) {
     std::erase_if(some, [&](const Cell& cell) { return cell.weight < kLeastShare * whole; });
@@ -91,7 +94,7 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
   return done;
 }
 
-/// Adds the places that a camera sees, and the places that are seen from these. `number` keys the random numbers.
+/// Adds the places that a camera sees and the places that these see. `number` is the key of the random numbers.
 void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number,
                      std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
@@ -122,12 +125,14 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
 
 // ---- a lattice of cameras -----------------------------------------------------------------------------------
 
-constexpr double kWider =
-    1.5;  ///< a quarter of the picture on each side: more than a step of directions, half of which a camera is off
-/// Planes of the lattice lie at thirds of its steps: coordinates that people type (0, 0.5, 1.6) are not near them.
+/// Widening of the picture: a quarter of it on each side, which is more than half a step of directions, the largest
+/// distance between a camera and its lattice direction.
+constexpr double kWider = 1.5;
+/// The lattice's planes lie at thirds of its steps, so that coordinates which people type (0, 0.5, 1.6) are not close
+/// to a plane.
 constexpr double kShift = 1.0 / 3;
 
-/// yaw about +y, pitch, roll, radians, of a camera that looks along -z where all are 0.
+/// yaw about +y, pitch and roll [radians]; a camera with all angles 0 looks along -z.
 std::array<double, 3> angles_of(const Affine& a) {
   const Vec3d right = a.direction({1, 0, 0}), forward = a.direction({0, 0, -1});
   const double yaw = std::atan2(-forward.x, -forward.z), pitch = std::asin(std::clamp(forward.y, -1.0, 1.0));
@@ -145,7 +150,7 @@ Affine turned(const std::array<double, 3>& angles) {
   return a;
 }
 
-/// Median distance from which the camera sees surfaces; 0: it sees none.
+/// Median distance of the surfaces that the camera sees [m]; 0 if it sees none.
 double median_distance(const Tracer& tracer, const CameraView& view) {
   std::vector<WeighedPlace> places;
   add_seen_places(tracer, view, 0, places);
@@ -162,9 +167,9 @@ bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
   return distance == 0 || !tracer.occluded({Vec3(from), Vec3(way / distance), 0, float(distance)});
 }
 
-/// A camera's cell, and the cameras that stand for it.
+/// A cell of the lattice of cameras, and the cameras that represent it.
 struct CameraCell {
-  std::array<double, 9> key{};  ///< level, indices of place and of direction, width of the picture, eyes
+  std::array<double, 9> key{};  ///< level, indices of position and of direction, width of the picture, cameras
   std::vector<PlacedCamera> cameras;
 };
 
@@ -172,7 +177,7 @@ CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double dist
   const bool perspective = camera.camera.kind == Camera::Kind::perspective;
   const double half_height = perspective ? distance * std::tan(camera.camera.yfov_rad / 2) : camera.camera.ymag_m;
   CameraCell cell;
-  // Of the picture's half height the quarter powers of two.
+  // The picture's half height, rounded to a quarter power of two.
   const int narrow = int(std::round(4 * std::log2(perspective ? half_height / distance : half_height)));
   const int level = int(std::floor(std::log2(std::min(distance, half_height))));
   const double size = std::ldexp(1.0, level), height = kWider * std::exp2(narrow / 4.0),

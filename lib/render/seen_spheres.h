@@ -1,4 +1,4 @@
-// lib/render/seen_spheres.h -- where cameras look, as a few spheres on a lattice.
+// lib/render/seen_spheres.h -- a few spheres on a lattice that hold the places at which cameras look.
 #pragma once
 
 #include <array>
@@ -13,46 +13,48 @@ namespace tempolux {
 
 /// A place that a camera sees, or that such a place sees.
 struct WeighedPlace {
-  Vec3d position{};     ///< world space, m
-  double weight = 0;    ///< 1 for what the eye sees, half as much at each bounce: surfaces reflect about half
-  double distance = 0;  ///< m, from the eye; 0 of what was not seen directly
+  Vec3d position{};  ///< world space, m
+  /// 1 for a place that the camera sees, halved at each bounce because surfaces reflect about half
+  double weight = 0;
+  double distance = 0;  ///< m, from the camera; 0 for a place that was not seen directly
 };
 
-/// What cameras and those around them see.
+/// The places that cameras and their neighbours in the lattice see.
 struct SeenAround {
   std::vector<WeighedPlace> places;
-  std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras that were looked from
+  std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras that have been used
 };
 
-/// Adds what a camera and those around it see of the scene that `tracer` holds: the same places for all cameras of a
-/// cell of a lattice, so that a camera that moves or turns a little asks for no other photons. Of two cameras in one
-/// cell the second adds nothing.
+/// Adds the places that a camera and those around it see in the scene of `tracer`. All cameras in one cell of a lattice
+/// get the same places, so that a camera which moves or turns a little needs the same photons. A second camera in one
+/// cell adds nothing.
 ///
-/// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d from which surfaces
-/// are seen nor than half the height h of the picture at that distance; directions lie in steps of a third of the angle
-/// of view. Eyes are the middles of the cube's eight parts that the camera's own eye sees; their pictures are half as
-/// wide again. Each looks at 24 x 14 stratified positions, through mirrors and glass (seen_through), and after one and
-/// two cosine bounces. `width`, `height`: of the picture, whose ratio counts.
+/// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d of visible surfaces
+/// nor than half the height h of the picture at that distance; directions have steps of a third of the angle of view.
+/// The cell's cameras stand in the middles of those of the cube's eight parts that the camera itself sees; their
+/// pictures are half as wide again. Each follows 24 x 14 stratified positions, through mirrors and glass
+/// (seen_through), and then one and two cosine-distributed bounces. Only the ratio of `width` and `height`, those of
+/// the picture, counts.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
-/// Spheres around cells of an octree whose cells have sizes and corners that are powers of two and their multiples: a
-/// place that moves a little leaves them as they are. Cells that hold more than 1/32 of the weight are halved, the
-/// heaviest first, while there are at most formats::kMaxViewSpheres, down to a quarter of the median distance from
-/// which places are seen. Cells of less than 1/512 are left to the uniform photons. Weight: the cell's share, rounded
-/// to a power of two.
+/// Spheres around cells of an octree. Cell sizes are powers of two and corners their multiples, so that a place which
+/// moves a little leaves the cells as they are. Cells with more than 1/32 of the weight are halved, the heaviest first,
+/// while there are at most formats::kMaxViewSpheres cells, down to a quarter of the median distance of visible places.
+/// Cells with less than 1/512 are left to the uniform photons. The weight of a sphere is the cell's share, rounded to a
+/// power of two.
 ///
-/// None if they are not much smaller than the scene: if photons that are aimed at them (Aim) would not lie at least
-/// twice as densely, in the geometric mean over places, as uniform ones on the disc of radius `scene_radius` [m].
-/// Reasons: docs/methods/aim.md.
+/// Returns none if the spheres are not much smaller than the scene: if photons aimed at them (Aim) would not be at
+/// least twice as dense, in the geometric mean over places, as uniform photons on the disc of radius `scene_radius`
+/// [m]. Reasons: docs/methods/aim.md.
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius);
 
-/// The same in scene space; `origin`: that of the frame.
+/// The spheres in scene space; `origin`: the frame's.
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin);
 
-/// The spheres, in scene space, of what this camera and those around it see; `scene_radius`: m.
+/// The spheres, in scene space, around the places that this camera and those around it see. scene_radius [m].
 std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view);
 
-/// Lights that send photons of sun and sky where the camera looks (docs/methods/aim.md).
+/// Lights that aim photons of sun and sky at the places that the camera sees (docs/methods/aim.md).
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view);
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/render/shading.h -- what the camera sees at a hit: the point turned to the viewer, its scattering.
+// lib/render/shading.h -- a hit as the camera sees it: its side towards the viewer and its Bsdf.
 #pragma once
 
 #include "lib/material/bsdf.h"

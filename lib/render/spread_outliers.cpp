@@ -9,16 +9,16 @@
 namespace tempolux {
 namespace {
 
-constexpr int kNear = 2;            ///< pixels: light around is that of 24
-constexpr double kConfirmed = 0.5;  ///< of the sample that claims
+constexpr int kNear = 2;            ///< pixels: the 24 pixels within this distance give the local light
+constexpr double kConfirmed = 0.5;  ///< share of the outlier that other samples must find to confirm it
 
-/// What is taken from a pixel and how far it goes.
+/// The light taken from a pixel, and how far it is spread.
 struct Excess {
   std::size_t pixel;
   Layer layer;
-  int level;  ///< boxes reach 2^level pixels
+  int level;  ///< box filters reach 2^level pixels
   Rgbd radiance;
-  int samples;  ///< of the part that it is of
+  int samples;  ///< samples of the outlier's part
 };
 
 double radiance_of(const Layers& pixel) {
@@ -27,7 +27,7 @@ double radiance_of(const Layers& pixel) {
   return sum;
 }
 
-/// Mean of value(pixel) over the pixels around (x, y), itself left out.
+/// Mean of value(pixel) over the pixels around (x, y), without (x, y) itself.
 template <class Value>
 double around(int width, int height, int x, int y, const Value& value) {
   double sum = 0;
@@ -49,7 +49,7 @@ std::vector<double> radiances_of(const std::vector<Layers>& pixels) {
   return radiances;
 }
 
-/// By which each pixel may err.
+/// The error that each pixel may have.
 std::vector<double> errors_of(const SampledPixels& samples, const std::vector<double>& radiances) {
   std::vector<double> errors(radiances.size());
   parallel_chunks(radiances.size() / std::size_t(samples.width), 1, [&](std::size_t y, std::size_t) {
@@ -60,15 +60,15 @@ std::vector<double> errors_of(const SampledPixels& samples, const std::vector<do
   return errors;
 }
 
-/// The widest box, no wider than the picture: three of them leave what is nearly even.
+/// Level of the widest box that is no wider than the picture: three passes of it leave a nearly uniform result.
 int last_level(int width, int height) {
   int level = 0;
   while ((2 << (level + 1)) + 1 <= std::max(width, height)) ++level;
   return level;
 }
 
-/// The narrowest at which a pixel keeps at most `error` of its excess. Of a box of b values thrice the middle has (3
-/// b^2 + 1) / (4 b^3).
+/// The lowest level at which a pixel keeps at most `error` of its excess. After three passes of a box of b values, the
+/// middle holds (3 b^2 + 1) / (4 b^3).
 int level_of(double excess, double error, int last) {
   int level = 0;
   for (; level < last; ++level) {
@@ -78,8 +78,8 @@ int level_of(double excess, double error, int last) {
   return level;
 }
 
-/// Mean over 2 r + 1 values on either side, thrice, mirrored at the ends: what it takes from one place it gives to
-/// others. Values are `step` apart.
+/// Three passes of a box filter of 2 r + 1 values, mirrored at the ends, so that the sum stays the same. Values are
+/// `step` apart.
 void blur_line(double* values, int count, std::size_t step, int r, std::vector<double>& sums,
                std::vector<double>& line) {
   const auto mirrored = [count](int i) {
@@ -88,7 +88,7 @@ void blur_line(double* values, int count, std::size_t step, int r, std::vector<d
   };
   sums.resize(std::size_t(count + 2 * r + 1));
   line.resize(std::size_t(count));
-  bool empty = true;  // most are, of few outliers
+  bool empty = true;  // with few outliers most lines are empty
   for (int i = 0; i < count; ++i) {
     line[std::size_t(i)] = values[std::size_t(i) * step];
     empty = empty && line[std::size_t(i)] == 0;
@@ -117,8 +117,8 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for
-/// any weights w, here 0 and 1.
+/// Spreads `excess` (one level of one layer) as w blur(excess / blur(w)). Its sum is that of `excess` for any weights
+/// w, here 0 and 1.
 void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight,
             const std::vector<double>& blurred, std::vector<Layers>& pixels) {
   const int r = 1 << excess.front().level;
@@ -162,7 +162,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
                                  [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); });
     const double allowed = error + std::max(others, beside);
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
-    // Did further samples find as much again, about one such sample? Then it was not alone.
+    // If further samples found about one such sample's light again, the light is confirmed.
     if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
     found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last),
                      Rgbd(sample.radiance) * ((1 - allowed / claimed) / count), count});
