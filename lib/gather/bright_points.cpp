@@ -16,13 +16,15 @@
 namespace tempolux {
 namespace {
 
-/// Sites of a point. Those of a spot are drawn from at random: with 16 of them a cell of points is known to some per
-/// cent.
+/// Sites per point. Sites of a spot are drawn at random; with 16 of them the light of a point's area is known to a few
+/// per cent.
 constexpr double kSitesPerPoint = 16;
-constexpr float kFadeFrom = 4, kFadeTo = 6;  ///< radii R
-constexpr float kCellsPerReach = 8;          ///< of photons that no point stands for, in kBesideLamp spacings
+/// In units of R: where the explicit share of light begins and where it reaches 1.
+constexpr float kFadeFrom = 4, kFadeTo = 6;
+/// Size of cells for photons that no point represents: so many cells per kBesideLamp spacings.
+constexpr float kCellsPerReach = 8;
 
-/// Cubes in which a point that is asked for may be.
+/// Cubes of space in which a requested point may lie.
 class NearPoints {
  public:
   explicit NearPoints(float edge) : inverse_(1 / double(edge)) {}
@@ -47,10 +49,10 @@ class NearPoints {
     return k;
   }
   double inverse_;
-  std::unordered_set<std::uint64_t> cubes_;  ///< by hash: one too many costs a look-up
+  std::unordered_set<std::uint64_t> cubes_;  ///< hashes of cubes; a collision costs only a needless look-up
 };
 
-/// A cube, and the axis that the normal is nearest to.
+/// Hash of a cube and of the axis to which the normal is closest.
 std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
   std::uint64_t key = 0;
   int axis = 0;
@@ -72,8 +74,9 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
       radius_(points.spacing() * std::sqrt(kInvPi)),
       lamp_reach_(kBesideLamp * points.spacing()) {
   high_.resize(points.size(), 0.0f);
-  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's
-  // light, so that no share of it may be sampled explicitly. Beside a lamp direct light has a division of its own.
+  // If a point's indirect light is not that of the hit, the gather ray continues and finds light that the point does
+  // not hold. So no share of it may be sampled explicitly. Direct light of lamps close to a surface has its own
+  // division.
   for (std::uint32_t i = 0; i < high_.size(); ++i)
     if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_uniform_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
@@ -81,10 +84,10 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
   gather_spots();
 }
 
-/// Sites of the points that have a high part.
+/// Places sites of the points that have a high part.
 void BrightPoints::place_high(const Lights& lights, const BrightOptions& options) {
   const PointLookup& points = points_;
-  // A point stands for places up to PointLookup::kReach spacings away.
+  // A point represents places up to PointLookup::kReach spacings away.
   NearPoints near(PointLookup::kReach * points.spacing());
   std::vector<std::uint32_t> objects;
   Box3 box;
@@ -97,7 +100,8 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   const double spacing = double(points.spacing());
-  // May be asked for: up to a cube of `near` beyond them. The pieces of a sphere cover all within 3/4 of its radius.
+  // Points may be requested up to one cube outside of `near`. Pieces of a sphere that hold all surface within 3/4 of
+  // its radius.
   const AimSphere around{
       Vec3d(box.lower + box.upper) * 0.5,
       (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
@@ -117,9 +121,9 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   sample_uneven(lights, uneven, options);
 }
 
-/// Sites of lamps' photons.
+/// Places sites at photons of lamps.
 void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
-  std::unordered_map<std::uint64_t, std::uint32_t> cells;  // of places for which no point stands
+  std::unordered_map<std::uint64_t, std::uint32_t> cells;  // cells for places that no point represents
   for (const LampPhoton& photon : photons) {
     std::uint32_t spot = photon.point;
     if (spot == kNone)
@@ -129,7 +133,7 @@ void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
   }
 }
 
-/// Sites of one point become a spot.
+/// Joins the sites of each point into a spot.
 void BrightPoints::gather_spots() {
   std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<LightBounds> spots;
@@ -149,8 +153,8 @@ void BrightPoints::gather_spots() {
   tree_.emplace(spots);
 }
 
-/// A site at a place, if the point that stands for it has a high part, and it is not the place's own surface's twin
-/// that is met there.
+/// The site at a place: none if the point that represents the place has no high part, or if a ray to the place meets
+/// another surface that coincides with it.
 std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& place, float area) const {
   const float offset = Reach(tracer_).offset();
   Hit hit;
@@ -168,8 +172,8 @@ std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& p
   return Site{there, normal, light->all * high_[light->point], bsdf, light->radius, area, light->point};
 }
 
-/// Where the direct light of a point is not that of the places near it, rays that meet such a place sample it: so do
-/// sites.
+/// At points whose direct light varies around them, gather rays sample direct light at their hits. Sites there do the
+/// same.
 void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven,
                                  const BrightOptions& options) {
   std::vector<IrradiancePoint> sampled;
@@ -196,13 +200,13 @@ float BrightPoints::explicit_share(float distance) const {
   return t * t * (3 - 2 * t);
 }
 
-/// The same of a lamp's light: w of a spot whose radius is the lamp's distance.
+/// w for a lamp's light: the radius R is replaced by the lamp's distance.
 float BrightPoints::lamp_share(float distance, float lamp_distance) {
   const float t = std::clamp((distance / lamp_distance - kFadeFrom) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
   return t * t * (3 - 2 * t);
 }
 
-/// Of a site's light at `distance` m.
+/// Explicit share of a site's light at a receiver `distance` m away.
 float BrightPoints::share(const Site& site, float distance, bool reads_near) const {
   if (site.lamp_distance > 0) return lamp_share(distance, site.lamp_distance);
   return explicit_share(distance) * (reads_near ? 1 : PointLookup::share_of_far(site.radius, distance));
@@ -230,7 +234,7 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const Site& site =
         sites_[sites.first + std::min(sites.count - 1, std::uint32_t(chosen.left * double(sites.count)))];
     const Vec3d d(site.place.position - place.position), n(normal), m(site.normal);
-    const double distance = length(d), here = dot(n, d), there = -dot(m, d);  // cosines x distance
+    const double distance = length(d), here = dot(n, d), there = -dot(m, d);  // cosines times the distance
     const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
     if (!(here > 0 && there > 0 && dot(wi, geometric) > 0)) continue;
     const float part = share(site, float(distance), at.reads_near);
@@ -247,8 +251,8 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
         seen * (double(site.area) * double(sites.count) * arrival / (chosen.probability * double(samples)));
     const Rgbd e = power * (here * there / (d2 * d2));
     light.irradiance += e;
-    // E = P (n d) (-m d) / d^4, d = y - x: dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4, of which
-    // what lies in the plane.
+    // E = P (n d) (-m d) / d^4 with d = y - x, so dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4,
+    // projected onto the plane.
     const Vec3d along = (m - n * dot(m, n)) * here + (d - n * here) * (4 * here * there / d2);
     const Vec3d turn = cross(n, d) * there;  // (n_i x n) . g is the change of n . d
     for (int c = 0; c < 3; ++c) {

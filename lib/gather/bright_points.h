@@ -1,4 +1,4 @@
-// lib/gather/bright_points.h -- bright irradiance points, looked at on purpose as lamps are (docs/methods/split.md).
+// lib/gather/bright_points.h -- bright irradiance points, sampled explicitly as lights are (docs/methods/split.md).
 #pragma once
 
 #include <array>
@@ -21,70 +21,71 @@ namespace tempolux {
 
 struct BrightOptions {
   std::uint64_t seed = 0;
-  int light_samples = 16;  ///< shadow rays of a site where a point's direct light is not that of the places near it
-  std::span<const LampPhoton> beside_lamps =
-      {};  ///< of lamps beside surfaces; their points are noted (PointLookup::note_lamp)
+  int light_samples = 16;  ///< shadow rays of a site at a point whose direct light varies around it
+  /// Photons of lamps close to surfaces; their points are marked (PointLookup::note_lamp)
+  std::span<const LampPhoton> beside_lamps = {};
 };
 
 /// Light from bright points that arrives at a place.
 struct BrightLight {
   Rgbd irradiance{0.0};                                ///< W/m^2
-  std::array<Vec3d, 3> rotational{}, translational{};  ///< as IrradianceRecord's
+  std::array<Vec3d, 3> rotational{}, translational{};  ///< as in IrradianceRecord
 };
 
-/// Light L(y) that surfaces send out is divided in two: of the light of irradiance point p a share h_p is the high part
-/// (photonmap-split), and of that the share
+/// Divides the light L(y) that a surface reflects into an explicit part and the rest. Of the light of irradiance point
+/// p, the share h_p is the high part (photonmap-split). Of the high part, the share
 ///
-///     w(l) = t^2 (3 - 2 t),  t = (l - 4 R) / (2 R) cut to [0, 1],  R = spacing / sqrt(pi)
+///     w(l) = t^2 (3 - 2 t),  t = (l - 4 R) / (2 R) clamped to [0, 1],  R = spacing / sqrt(pi)
 ///
-/// is sampled explicitly at a place x at the distance l = |x - y|; R is the radius of the disc that a point stands for.
-/// Rays that meet y bring the rest, left() x L(y). Both use the point that stands for y and the distance to y: it is a
-/// partition at each y, whatever h and w are, and the sum is what rays bring without it. From 4 R on 1/l^2 is bounded.
-/// Rays that meet y so near that they go on (IncomingRadiance) bring all of it: the explicit part counts with the
-/// probability that they do not.
+/// is sampled explicitly at a place x at distance l = |x - y|. R is the radius of a disc with the area of one point.
+/// Rays that meet y contribute the rest, remaining_share() x L(y). Both parts use the point that represents y and the
+/// distance to y, so they add up to L(y) at each y, for any h and w. From l = 4 R on, 1/l^2 is bounded. Rays that meet
+/// y so close that they continue (IncomingRadiance) contribute all of L(y); the explicit part then counts with the
+/// probability that they do not continue.
 ///
-/// The explicit part is an integral over surfaces, of h w L cos cos / l^2. It is sampled at sites: places uniform by
-/// area, 16 for each point, each with the light of the point that stands for it. The sites of a point are a spot; spots
-/// are drawn as lamps are (LightTree).
+/// The explicit part is an integral over surfaces of h w L cos cos / l^2. It is sampled at sites: places that are
+/// uniform by area, 16 for each point, each with the light of the point that represents it. The sites of a point form a
+/// spot. Spots are drawn as lights are (LightTree).
 ///
-/// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the
-/// light of a place z on a lamp that reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d
-/// for R: from 4 d on. Where a point beside a lamp stands for y rays sample direct light, as they do where none stands
-/// for it, and bring 1 - w of such samples. Sites are photons from the lamps: as dense as the light, however small its
-/// spot. Thread-safe.
+/// Direct light of lamps close to surfaces is treated likewise, because it makes spots smaller than points resolve
+/// (lamp_light.h). Let d = |z - y| be the distance from a place z on a lamp to y. If d is below kBesideLamp spacings,
+/// the share w with R = d is explicit, which is above 0 from l = 4 d on. If the point that represents y is marked, or
+/// no point represents y, gather rays sample direct light at y and contribute 1 - w of it. Sites are photons from the
+/// lamps, so they are as dense as the light, however small its spot. Thread-safe.
 class BrightPoints {
  public:
-  /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours
-  /// (PointLookup::is_uniform_indirect) get none. All must outlive it.
+  /// high_shares: h_p in [0, 1] by point of `points`. Points whose indirect light is not that of their surroundings
+  /// (PointLookup::is_uniform_indirect) get the share 0. All arguments must outlive this object.
   BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares,
                const BrightOptions& options);
 
   std::size_t spot_count() const { return sites_of_.size(); }
   std::size_t site_count() const { return sites_.size(); }
 
-  /// Share of the light of what stands at `distance` m, for which the point stands, that rays bring.
+  /// The share that gather rays contribute of the light at a hit `distance` m away, which `point` represents.
   float left(const PointLookup::Light& point, float distance) const {
     const float high = high_[point.point];
     return high > 0 ? 1 - high * explicit_share(distance) : 1.0f;
   }
-  /// w.
+  /// w at this distance [m].
   float explicit_share(float distance) const;
-  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m.
-  /// 1 where the point that stands for y is not beside a lamp; nullptr: none stands for y.
+  /// The share that gather rays contribute of the direct light of a lamp: the rays meet a place y after `distance` m,
+  /// and the lamp is `lamp_distance` m from y. `point` represents y, or is nullptr if no point does. 1 if the point is
+  /// not marked as close to a lamp.
   float left_of_lamp(const PointLookup::Light* point, float distance, float lamp_distance) const {
     return (!point || point->beside_lamp) && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance)
                                                                          : 1.0f;
   }
 
-  /// A place that looks at bright points.
+  /// A place that receives light of bright points.
   struct Receiver {
     const SurfacePoint& place;
     Vec3 normal;  ///< unit, on the lit side
-    const Bsdf* coat =
-        nullptr;  ///< the lobes there, if they weigh light by the angle it arrives at (Bsdf::arrival_weight)
-    bool reads_near = false;  ///< rays from here read the points of near hits, too, and do not go on
+    /// The Bsdf of the place, if its lobes weight light by direction (Bsdf::arrival_weight); else null.
+    const Bsdf* coat = nullptr;
+    bool reads_near = false;  ///< rays from here read the points of close hits, too, and do not continue
   };
-  /// What `samples` explicit samples bring there. Counts shadow rays.
+  /// The mean over `samples` explicit samples of the light that arrives at the place. Adds the shadow rays to `counts`.
   BrightLight arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const;
 
  private:
@@ -93,10 +94,10 @@ class BrightPoints {
     Vec3 normal;           ///< geometric, on the lit side
     Rgb irradiance{0.0f};  ///< W/m^2: the high part
     Bsdf bsdf;
-    float radius;             ///< m: of the estimate behind its point
-    float area;               ///< m^2; of a photon 1, as its flux stands for irradiance x area
-    std::uint32_t spot;       ///< its point, or beyond all points that of a cell of photons
-    float lamp_distance = 0;  ///< m: of a lamp's photon; 0: light of the point
+    float radius;             ///< m: radius of the density estimate of its point
+    float area;               ///< m^2; 1 for a photon, whose flux stands for irradiance x area
+    std::uint32_t spot;       ///< index of its point, or above all points that of a cell of photons
+    float lamp_distance = 0;  ///< m: distance of the photon's lamp; 0: the light is a point's
   };
   struct Sites {
     std::uint32_t first, count;
@@ -114,12 +115,12 @@ class BrightPoints {
   const PointLookup& points_;
   std::vector<float> high_;
   float radius_, lamp_reach_;
-  std::vector<Site> sites_;        ///< those of one spot side by side
+  std::vector<Site> sites_;        ///< sites of one spot lie side by side
   std::vector<Sites> sites_of_;    ///< by spot
-  std::optional<LightTree> tree_;  ///< spots
+  std::optional<LightTree> tree_;  ///< over spots
 };
 
-/// Adds it and its gradients to a record of rays alone.
+/// Adds the light and its gradients to a record that holds the light of gather rays.
 void add_bright_light(const BrightLight& light, IrradianceRecord& record);
 
 }  // namespace tempolux

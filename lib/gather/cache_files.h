@@ -1,4 +1,4 @@
-// lib/gather/cache_files.h -- points and records in memory and in their files.
+// lib/gather/cache_files.h -- converts points and records between memory and their files.
 #pragma once
 
 #include <span>
@@ -12,12 +12,13 @@
 
 namespace tempolux {
 
-/// Points as file records, static or dynamic by the surface they lie on (an object's surfaces move together).
+/// Points as file records: static or dynamic by the surface on which they lie (all surfaces of an object move
+/// together).
 std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePoint> points, const SceneFrame& frame);
 /// Points of a file; `shift` (the file's origin minus the frame's) brings them into scene space.
 std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointRecord> records, Vec3d shift);
 
-/// For a file with column_clearance, and no other.
+/// Records for a file with column_clearance.
 std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame);
 std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCacheRecord> records, Vec3d shift);
 

@@ -10,12 +10,12 @@
 namespace tempolux {
 namespace {
 
-/// Rays from one place, and what comes back along them.
+/// Rays from one place, and the radiance that arrives along them.
 struct Shots {
   const GatherDirections directions;
   std::vector<Ray> rays;
   std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> cells;  ///< of the rays
+  std::vector<std::uint32_t> cells;  ///< cell of each ray
   std::vector<Rgb> radiance;
   std::vector<float> distance;
 
@@ -27,7 +27,7 @@ struct Shots {
     keys.clear();
     cells.clear();
   }
-  /// The sample-th ray of a cell, if there is one.
+  /// Adds the sample-th ray of a cell, if that ray starts above the surface.
   void aim(std::uint32_t cell, std::uint32_t sample) {
     Ray ray;
     std::uint64_t key = 0;
@@ -108,12 +108,12 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   shoot();
   for (std::size_t i = 0; i < shots.rays.size(); ++i) {
     sky.radiance[shots.cells[i]] = shots.radiance[i];
-    sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);  // 0 for a miss
+    sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);  // 0 if the ray meets nothing
   }
   IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal);
   record.radius_unclamped = distance(from, normal, counts);
 
-  // More rays where light is uneven: a cell's value becomes the mean of all of its own.
+  // Sends further rays where light varies. The value of a cell becomes the mean over all of its rays.
   sky.further_rays(further);
   shots.clear();
   for (const std::uint32_t c : order)

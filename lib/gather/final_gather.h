@@ -1,4 +1,4 @@
-// lib/gather/final_gather.h -- one point's indirect irradiance by rays over the hemisphere, with gradients.
+// lib/gather/final_gather.h -- indirect irradiance at a place from gather rays over the hemisphere, with gradients.
 #pragma once
 
 #include <array>
@@ -15,38 +15,41 @@ namespace tempolux {
 
 struct GatherOptions {
   std::uint64_t seed = 0;
-  int rays = 500;  ///< wanted where light is even; rounded to M rings x N_phi sectors, N_phi about pi M
-  float near_factor = PointLookup::kNear;  ///< radii below which a hit is near
-  const BrightPoints* bright = nullptr;    ///< points that are sampled explicitly, if any (bright_points.h)
-  int bright_samples = 100;                ///< explicit samples of a record
+  /// Number of rays where light is uniform; rounded to M rings x N_phi sectors with N_phi about pi M.
+  int rays = 500;
+  /// Hits closer than this many radii of their point's density estimate are close.
+  float near_factor = PointLookup::kNear;
+  const BrightPoints* bright = nullptr;  ///< points that are sampled explicitly, if any (bright_points.h)
+  int bright_samples = 100;              ///< explicit samples per record
 };
 
-/// Gathers the light of kind indirect that arrives at surface points. Thread-safe.
+/// Gathers the indirect light that arrives at surface points. Thread-safe.
 class FinalGather {
  public:
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
-  /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
-  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Under a coat light
-  /// counts by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the
-  /// Lambert lobe. radius_unclamped receives distance(); limit_radius makes the radius of it. Random numbers come
-  /// from the position: the record of a place does not depend on which records were made before.
-  /// ray_share: of `rays` that the place needs, 1/8 to 1; the next power of two that is not less.
+  /// Irradiance at `from` over the hemisphere around `normal` (unit, on the lit side), with its gradients. Sends about
+  /// `rays` rays, one through each cell of equal weight, and more where light varies (hemisphere.h). Below a coat,
+  /// light is weighted by Bsdf::arrival_weight, as photons are: the coat reflects more of it at grazing angles.
+  /// radius_unclamped receives distance(); limit_radius computes the radius from it. Random numbers are keyed by the
+  /// position, so a record does not depend on other records. ray_share in [1/8, 1]: the share of `rays` that the place
+  /// needs, rounded up to a power of two.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
-  /// R [m], the harmonic mean distance to what rays over the hemisphere meet, drawn by the cosine; infinite where they
-  /// meet nothing. 64 rays are sent, and 64 more up to 512 until 8 have met something, which leaves R an error of 1/3.
-  /// They are others than those that bring light: were they the same, records that happen to meet a small bright thing
-  /// would reach less far than records that miss it, so weigh less, and their mean would be dark.
+  /// R [m], the harmonic mean distance of hits of cosine-distributed rays; infinite if all rays miss. Sends 64 rays,
+  /// and 64 more at a time up to 512 until 8 have hit something; R then has a relative error of 1/3. These rays are
+  /// independent of those that estimate light. If both were the same rays, a record whose rays happen to meet a small
+  /// bright object would get a smaller radius and so less weight than a record that misses it, and the interpolated
+  /// light would be too dark.
   float distance(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
-  /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
+  /// Sets the clearance of a gathered record up to its radius; call after limit_radius.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
-  /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright
-  /// points. Random numbers are those of `key`, which gather_key() of the record's place and normal is.
+  /// Adds GatherOptions::bright_samples explicit samples to a record of gather rays, if there are bright points. Random
+  /// numbers are keyed by `key` = gather_key() of the record's place and normal.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
 
-  /// What rays bring.
+  /// Estimates the radiance along gather rays.
   const IncomingRadiance& incoming() const { return incoming_; }
-  /// The order in which gather() follows the cells (numbers j N_phi + k).
+  /// The order in which gather() follows the cells (indices j N_phi + k).
   std::span<const std::uint32_t> cell_order() const { return strata_[kFewer].order; }
 
  private:
@@ -58,7 +61,7 @@ class FinalGather {
   IncomingRadiance incoming_;
   GatherOptions options_;
   static constexpr std::size_t kFewer = 3;
-  std::array<GatherStrata, kFewer + 1> strata_;  ///< of 1/8, 1/4, 1/2 and 1 times `rays`
+  std::array<GatherStrata, kFewer + 1> strata_;  ///< for 1/8, 1/4, 1/2 and 1 times `rays`
   const GatherStrata distance_strata_{kDistanceRays};
 };
 

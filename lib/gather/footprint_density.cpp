@@ -16,14 +16,15 @@ namespace tempolux {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kThin = 64;     ///< times Reach::offset(): radius of an ellipsoid whose height positions can just tell
-constexpr float kLift = 1e-4f;  ///< of a radius: what decoded normals may be off by at its end
+/// Times Reach::offset(): smallest radius of an ellipsoid whose height float positions resolve.
+constexpr float kThin = 64;
+constexpr float kLift = 1e-4f;  ///< share of a radius: largest error at the rim from the rounding of stored normals
 constexpr float kAlmost = 0.999999f;
-constexpr int kMostHalvings = 6;  ///< of a footprint's radius, where hardly any of it is surface
+constexpr int kMostHalvings = 6;  ///< of a footprint's radius, if hardly any of the footprint is surface
 constexpr std::size_t kLeavesAtOnce = 16;
 constexpr float kSamePlane = 0.999999f, kGolden = 0.6180340f;
-constexpr int kAreaProbes =
-    16;  ///< that must arrive where a footprint is not whole; their noise is that of one photon among k
+/// Probes that must arrive if a footprint is not a whole disc. Their noise equals that of one photon among k.
+constexpr int kAreaProbes = 16;
 enum : std::uint8_t { kUnknown, kWhole, kNotWhole };
 
 }  // namespace
@@ -76,9 +77,9 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
   build_tree();
 }
 
-/// To the k-th of its neighbours.
+/// Distance to the k-th neighbour.
 float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const {
-  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);  // it finds itself
+  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);  // the photon finds itself, too
   index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening, kAllKinds}, wanted,
                       found);
   const float radius =
@@ -86,7 +87,7 @@ float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList
   return std::max(std::min(radius, options_.max_radius), area_.offset());
 }
 
-/// Boxes of all footprints in a subtree, with their margins.
+/// Builds the tree over the boxes of all footprints, with their margins.
 void FootprintDensity::build_tree() {
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   std::vector<Box3> boxes(leaves);
@@ -95,7 +96,7 @@ void FootprintDensity::build_tree() {
       const Leaf& leaf = leaves_[i / kLeaf];
       const std::size_t lane = i % kLeaf;
       const float radius = std::sqrt(std::max(leaf.narrow2[lane], 1 / leaf.inverse_r2[lane]));
-      const auto half = [&](float n) {  // of the ellipsoid's box
+      const auto half = [&](float n) {  // half extent of the ellipsoid's box
         return radius * std::sqrt(std::max(0.0f, 1 - n * n + n * n / (leaf.flat[lane] + 1))) * 1.0001f + area_.offset();
       };
       const Vec3 middle = index_.position(i), halves{half(leaf.nx[lane]), half(leaf.ny[lane]), half(leaf.nz[lane])};
@@ -106,13 +107,14 @@ void FootprintDensity::build_tree() {
   tree_ = BoxTree(std::move(boxes));
 }
 
-/// Do all footprints that come near have the largest radius?
+/// Finds the footprints that cover a position. Returns true if all footprints within the margin have the largest
+/// radius.
 bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
   struct Entry {
     std::size_t level, node;
   };
   constexpr std::size_t kChildren = BoxTree::kChildren;
-  std::array<Entry, (kChildren - 1) * 12 + 1> stack;  // 2^31 photons have 9 levels
+  std::array<Entry, (kChildren - 1) * 12 + 1> stack;  // 2^31 photons need 9 levels
   std::size_t depth = 0;
   bool wide = true;
   stack[depth++] = {tree_.level_count() - 1, 0};
@@ -120,7 +122,7 @@ bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Cov
     const auto [level, number] = stack[--depth];
     const BoxTree::Node& node = tree_.node(level, number);
     std::array<int, kChildren> inside;
-    for (std::size_t c = 0; c < kChildren; ++c)  // NaN of a missing child is never inside
+    for (std::size_t c = 0; c < kChildren; ++c)  // a missing child holds NaN and is never inside
       inside[c] = (position.x >= node.lower[0][c]) & (position.x <= node.upper[0][c]) &
                   (position.y >= node.lower[1][c]) & (position.y <= node.upper[1][c]) &
                   (position.z >= node.lower[2][c]) & (position.z <= node.upper[2][c]);
@@ -163,7 +165,7 @@ Vec3 FootprintDensity::normal_of(std::uint32_t photon) const {
   return {leaf.nx[lane], leaf.ny[lane], leaf.nz[lane]};
 }
 
-/// The first to ask works it out; others that ask meanwhile come to the same.
+/// Measured by the first thread that asks. Other threads that ask meanwhile compute the same value.
 FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const {
   std::atomic<Extent>& known = extents_[photon];
   Extent extent = known.load(std::memory_order_relaxed);
@@ -174,8 +176,8 @@ FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const
   return extent;
 }
 
-/// Do all footprints of a leaf lie in one whole disc? Spokes of that disc and one of each footprint are looked along:
-/// photons are many where they are dense, and so it costs three rays for each of them.
+/// True if all footprints of a leaf lie in one whole disc. Tests spokes of that disc and one spoke of each footprint,
+/// because where photons are dense three rays per photon are cheaper than a test of each footprint.
 bool FootprintDensity::leaf_whole(std::size_t number) const {
   std::atomic<std::uint8_t>& known = leaf_whole_[number];
   const std::uint8_t before = known.load(std::memory_order_relaxed);
@@ -208,7 +210,7 @@ bool FootprintDensity::measure_leaf(std::size_t number) const {
   return true;
 }
 
-/// A footprint that is mostly air (of a photon on a wire) becomes smaller.
+/// Measures the area of a footprint. A footprint that is mostly empty (of a photon on a wire) is made smaller.
 FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   const Vec3 position = index_.position(photon), normal = normal_of(photon);
   const PathRandom random(0x666f6f74ull, index_.source(photon));
@@ -224,15 +226,15 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   return Extent::of_area(2 * radius, 1 / (kPi * 4 * radius * radius));
 }
 
-/// A photon whose light falls on the place if it reaches it.
+/// A photon that lights the place if the place can be reached from it.
 struct FootprintDensity::Candidate {
   std::uint32_t photon;
   Rgbd irradiance;    ///< W/m^2
-  double importance;  ///< >= 0: its channels' sum
+  double importance;  ///< >= 0: sum of its channels
 };
 
-/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced
-/// along their sum `whole`.
+/// Light of the candidates that reach a place, estimated from options_.asked of them. They are drawn in proportion to
+/// their importance, equally spaced along its running sum, whose total is `whole`.
 Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
   const auto reaches = [&](std::uint32_t photon) {
     return area_.reach()(index_.position(photon), normal_of(photon), position, normal);
@@ -254,10 +256,10 @@ Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Cand
   return sum;
 }
 
-/// Of the footprints that cover a place.
+/// Properties of the footprints around a place.
 struct FootprintDensity::Extents {
-  bool widest = false;  ///< all that come within the margin have the largest radius
-  float inside = 0;     ///< m: so far from the border of one of them, at most
+  bool widest = false;  ///< all footprints within the margin have the largest radius
+  float inside = 0;     ///< m: largest distance between the place and the border of a footprint that covers it
 };
 
 Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
@@ -290,7 +292,7 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
     extents.widest = extents.widest && radius > kAlmost * options_.max_radius;
     extents.inside = std::max(extents.inside, radius - std::sqrt(distance2));
     double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
-    if (!(weight > 0)) continue;  // it has become smaller
+    if (!(weight > 0)) continue;  // the footprint was made smaller
     if (directed_) weight *= double(received_share(arriving_from_[photon], normal_of(photon), surface));
     if (!(weight > 0)) continue;
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);

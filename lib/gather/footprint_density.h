@@ -1,5 +1,4 @@
-// lib/gather/footprint_density.h -- irradiance from photons each of which lights its own surroundings: nothing is
-// gained or lost.
+// lib/gather/footprint_density.h -- irradiance from photons that each light their own surroundings: total flux is kept.
 #pragma once
 
 #include <atomic>
@@ -20,77 +19,79 @@
 namespace tempolux {
 
 struct FootprintOptions {
-  int neighbours = 25;   ///< k, below kMaxNeighbours
-  float max_radius = 0;  ///< m; 0: the photons' own (photon_reach): one in twenty is so far from others
-  /// Of the photons whose footprints cover a place so many are asked whether they reach it, drawn by what they would
-  /// give; 0: all. No bias, and no noise where all reach it or none: for estimates of which a pixel averages several.
+  int neighbours = 25;  ///< k, below kMaxNeighbours
+  /// m; 0: from the photons (photon_reach), such that one photon in twenty is farther from its neighbours
+  float max_radius = 0;
+  /// Number of photons, among those whose footprints cover a place, that are tested for reachability. They are drawn by
+  /// their contribution; 0: all. Unbiased, and without noise where all reach the place or none does. For estimates of
+  /// which a pixel averages several.
   int asked = 0;
-  float margin =
-      0;  ///< of max_radius: light counts as smooth only if no footprint narrower than that is as near as this
+  /// Share of max_radius: light counts as smooth only if no narrower footprint lies within this distance.
+  float margin = 0;
 };
 
-/// What light falls on. Normals are unit, on the lit side.
+/// A surface that receives light. Normals are unit vectors on the lit side.
 struct LitSurface {
-  Vec3 geometric, smooth, shading;  ///< of the triangle; of its vertices; of a normal map
-  const Bsdf* bsdf;                 ///< how it scatters, as the Lambert lobe may lie under a coat; null: it does not
+  Vec3 geometric, smooth, shading;  ///< normal of the triangle; of its vertices; of a normal map
+  const Bsdf* bsdf;                 ///< scattering, because the Lambert lobe may lie under a coat; null: no coat
 
   LitSurface(Vec3 geometric_normal, Vec3 smooth_normal, Vec3 shading_normal, const Bsdf* scattering = nullptr)
       : geometric(geometric_normal), smooth(smooth_normal), shading(shading_normal), bsdf(scattering) {}
-  /// A surface that is what its triangles are.
+  /// A surface without smooth normals and normal map.
   explicit LitSurface(Vec3 normal) : LitSurface(normal, normal, normal) {}
 };
 
-/// What a normal map and a coat make of a photon's flux, as a share of it: light came from wi (unit) to a triangle of
-/// this normal.
+/// The share of a photon's flux that remains after a normal map and a coat, for light from direction wi (unit) at a
+/// triangle with this normal:
 ///     R wi.n_shading / wi.normal x Bsdf::arrival_weight(R wi.n_shading)
-/// R: the turn from the photon's normal to n_smooth, so that light meets the surface that it is counted for as it met
-/// its own, however that bends on the way: without a map and a coat the share is 1, and nothing is gained or lost. On a
-/// plane it is what path tracing has. 0 from behind the shading normal.
+/// R is the rotation from the photon's normal to n_smooth. So light has the same angle to the surface at the estimate
+/// as at the photon, however the surface bends in between: without a map and a coat the share is 1, and no flux is
+/// gained or lost. On a plane it equals the factor in path tracing. 0 for light from behind the shading normal.
 float received_share(Vec3 wi, Vec3 normal, const LitSurface& at);
 
-/// Density of light that has edges and spots: caustics.
+/// Density estimate for light with edges and spots: caustics.
 ///
 ///     E(x) = sum over photons i that reach x of flux_i s_i K(d_i / r_i) / A_i,   K(t) = 2 (1 - t^2)  [Epanechnikov
 ///     1969]
 ///
-/// s_i: received_share of x if the photons have directions, by the normal map and the coat of x; 1 if not.
-/// d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening about it. r_i [m]: to its
-/// k-th neighbour, at most max_radius; at least Reach::offset(), and halved while hardly any of the ellipsoid is
-/// surface (on wires). A_i [m^2]: the area that can be reached from it (Reach, which also decides on x), weighted by K.
-/// So each photon's light is spread over surface, all of it and no more: the integral of E is the flux, at walls, edges
-/// and steps too. Only of footprints so small that positions cannot tell heights in them (64 Reach::offset()) nothing
-/// is asked, they count as discs.
+/// s_i: received_share at x (normal map and coat) if photons store directions, else 1. d_i: distance from the photon in
+/// the metric of the ellipsoid r_i : r_i : r_i / kFlattening around the photon. r_i [m]: distance to the photon's k-th
+/// neighbour, at most max_radius, at least Reach::offset(), and halved while hardly any of the ellipsoid is surface (on
+/// wires). A_i [m^2]: area reachable from the photon, weighted by K (Reach, which also decides whether x is reachable).
+/// So the light of a photon is spread over exactly the reachable surface, and the integral of E equals the flux, also
+/// at walls, edges and steps. Footprints smaller than 64 Reach::offset(), in which float positions do not resolve
+/// heights, count as whole discs.
 ///
-/// Why the radius is the photon's and not x's [Breiman, Meisel & Purcell 1977]: the k nearest of x give more light than
-/// there is. Their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 goes as 1 / E: around a spot
-/// each x reaches as far as the spot is, and the integral of what they find there, k / (pi d^2), has no bound but
-/// max_radius. Of a disc of 1000 photons 25 nearest make 8 to 12 % more, of 5000 4 %. With r_i as 1 / sqrt(E) at the
-/// photon the error is of the fourth order in r [Abramson 1982].
+/// The radius belongs to the photon and not to x [Breiman, Meisel & Purcell 1977], because the k nearest photons of x
+/// give too much light. Their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 is proportional to 1
+/// / E. Around a spot each x reaches as far as the spot, and the integral of the estimates, k / (pi d^2), is bounded by
+/// max_radius only. For a disc of 1000 photons, 25 nearest photons give 8 to 12 % too much, for 5000 photons 4 %. With
+/// r_i in proportion to 1 / sqrt(E) at the photon, the error is of fourth order in r [Abramson 1982].
 ///
-/// Evenly spread photons (a mirror keeps the even spread of Halton's sequence) and independent ones have the same mean:
-/// no k - 1 or k - 1/2 is in it. Thread-safe; the same values for any number of threads.
+/// Stratified photons (a mirror keeps the stratification of Halton's sequence) and independent photons have the same
+/// mean, so the formula has no k - 1 or k - 1/2. Thread-safe; same values for any number of threads.
 class FootprintDensity {
  public:
-  /// Of the photons of these kinds (kind_bit), moved by `shift` [m] into the scene's space.
+  /// Uses the photons of these kinds (kind_bit), moved by `shift` [m] into scene space.
   FootprintDensity(const Tracer& tracer, const PhotonView& photons, const FootprintOptions& options,
                    std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
-  /// No photon is of these kinds.
+  /// True if no photon has one of these kinds.
   bool empty() const { return index_.size() == 0; }
   std::size_t photon_count() const { return index_.size(); }
 
-  /// Do photons have directions: does it matter how the surface bends its normals?
+  /// True if photons store directions, so that the shading normal of the surface matters.
   bool directed() const { return directed_; }
-  /// Irradiance [W/m^2] of a place above a surface's lit side. Below 0 only by photons of negative flux.
-  /// `smooth_over`: max_radius where footprints cover the place and all that come within `margin` are as wide as that;
-  /// else 0.
+  /// Irradiance [W/m^2] at a place on the lit side of a surface. Negative only if photons have negative flux.
+  /// `smooth_over` receives max_radius if footprints cover the place and all footprints within `margin` have this
+  /// radius, else 0.
   Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const;
-  /// The same. `alike_within`: so far from here [m] no footprint lies that is narrower than four times that, so that
-  /// light changes by a few per cent; 0 where none covers the place. A photon's radius differs from a near one's by
-  /// their distance at most (both reach to a k-th neighbour): with m = max over covering photons (r_i - d_i) what
-  /// reaches to m / 9 from here is wider than m 4 / 9.
+  /// The same estimate. `alike_within` [m] receives a distance within which no footprint is narrower than four times
+  /// that distance, so that light changes by a few per cent within it; 0 if no footprint covers the place. The radii of
+  /// two photons differ by at most their distance, because both reach to a k-th neighbour. So with m = max over
+  /// covering photons of (r_i - d_i), every footprint that reaches within m / 9 of the place is wider than 4 m / 9.
   Rgb estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const;
-  /// Of a surface without bent normals or a coat.
+  /// For a surface without a normal map or a coat.
   Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const {
     return estimate(position, LitSurface(normal), smooth_over);
   }
@@ -101,28 +102,29 @@ class FootprintDensity {
     float x[kLeaf], y[kLeaf], z[kLeaf], nx[kLeaf], ny[kLeaf], nz[kLeaf];
     float inverse_r2[kLeaf];  ///< 1/m^2
     float flat[kLeaf];        ///< (radius / height)^2 - 1 of the ellipsoid
-    float narrow2[kLeaf];     ///< m^2: (radius + margin)^2 of those narrower than max_radius, else -1
+    float narrow2[kLeaf];     ///< m^2: (radius + margin)^2 of footprints narrower than max_radius, else -1
   };
-  /// Found when a footprint is first asked for: most of a map's are never seen.
+  /// Computed when a footprint is first needed, because most of a map's footprints are never seen.
   class Extent {
    public:
     Extent() = default;
     static Extent of_area(float radius, float inverse_area) { return {radius, inverse_area}; }
-    /// All of the plane within the radius can be reached.
+    /// The whole plane within the radius is reachable.
     static Extent of_whole_disc(float radius) { return {radius, -1 / (kPi * radius * radius)}; }
     bool known() const { return radius_ > 0; }
     float radius() const { return radius_; }                          ///< m
-    float inverse_area() const { return std::abs(signed_inverse_); }  ///< 1/m^2, of what can be reached
+    float inverse_area() const { return std::abs(signed_inverse_); }  ///< 1/m^2, of the reachable area
     bool whole_disc() const { return signed_inverse_ < 0; }
 
    private:
     Extent(float radius, float signed_inverse) : radius_(radius), signed_inverse_(signed_inverse) {}
     float radius_ = 0,
-          signed_inverse_ = 0;  ///< eight bytes, so that an atomic one needs no lock; the sign says whole_disc()
+          /// Eight bytes, so that an atomic Extent needs no lock; a negative sign means whole_disc().
+        signed_inverse_ = 0;
   };
   struct Covering {
     std::uint32_t photon;
-    float distance2;  ///< m^2, in the ellipsoid's metric
+    float distance2;  ///< m^2, in the metric of the ellipsoid
   };
   float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
   void build_tree();
@@ -143,9 +145,9 @@ class FootprintDensity {
   ReachableArea area_;
   PhotonIndex index_;
   bool directed_ = false;
-  std::vector<Vec3> arriving_from_;  ///< wi in the index's order, if directed
-  std::unique_ptr<Leaf[]> leaves_;   ///< in the index's order; unused places hold NaN, which covers nothing
-  BoxTree tree_;                     ///< of footprints' boxes with their margins
+  std::vector<Vec3> arriving_from_;  ///< wi in the order of the index, if directed
+  std::unique_ptr<Leaf[]> leaves_;   ///< in the order of the index; unused places hold NaN, which covers nothing
+  BoxTree tree_;                     ///< over the boxes of footprints with their margins
   std::unique_ptr<std::atomic<Extent>[]> extents_;
   std::unique_ptr<std::atomic<std::uint8_t>[]> leaf_whole_;
 };

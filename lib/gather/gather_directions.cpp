@@ -11,9 +11,10 @@
 namespace tempolux {
 namespace {
 
-constexpr int kTile = 4;  ///< sectors followed side by side: two rings of them are a packet of rays
+constexpr int kTile = 4;  ///< sectors followed side by side: two rings of them form a packet of rays
 
-/// From one ray of a cell to its next, modulo 1: any number is spread over the cell [R2 of Roberts 2018, shifted].
+/// Step between successive rays of a cell, modulo 1: any number of rays is spread uniformly over the cell [R2 of
+/// Roberts 2018, shifted].
 constexpr Vec2 kStep{0.7548777f, 0.5698403f};
 float frac(float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); }
 

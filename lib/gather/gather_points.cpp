@@ -48,7 +48,7 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
                      std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
                      "); give the options they were made with, --importance included");
-  // As placed: a file rounds normals, and light sampled by a rounded one is another.
+  // Positions and normals as placed: a file rounds normals, which would change the light samples.
   for (std::size_t i = 0; i < standing_count; ++i) {
     points.points[i].position = placed.points[i].position;
     points.points[i].normal = placed.points[i].normal;
@@ -57,7 +57,7 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
               dynamic_shift = shift_of(light.moved.header.origin, frame);
   const PointUpdateCounts counts = update_points(
       {whole, standing, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
-  // What moves has its photons in the dynamic map alone.
+  // Photons on movers are in the dynamic map only.
   formats::PhotonBlock on_movers;
   for (std::size_t i = 0; i < light.moved.photons.size(); ++i)
     if (moving.contains(light.moved.photons[i].object)) append(light.moved, i, light.moved.photons[i], on_movers);

@@ -1,5 +1,5 @@
-// lib/gather/gather_points.h -- the irradiance points of a scene, made from whole photon maps, divided ones, or those
-// of what stands.
+// lib/gather/gather_points.h -- the irradiance points of a scene, from whole photon maps, divided ones, or static
+// points.
 #pragma once
 
 #include <cstdint>
@@ -12,44 +12,44 @@
 
 namespace tempolux {
 
-/// Points and what they came from.
+/// Points, with the data that identifies them.
 struct GatherPoints {
   std::vector<IrradiancePoint> points;
   float spacing = 0;    ///< m
-  std::string kinds;    ///< that were estimated, or that the scene cannot have: they are 0 then
-  std::string history;  ///< of the file they came from, or of the photons
+  std::string kinds;    ///< kinds that were estimated, and kinds that the scene does not have, whose light is 0
+  std::string history;  ///< of the points' file, or of the photons
   std::uint64_t emitted_count = 0;
 };
 
-/// Two parts of light (photonmap-split): the whole, and of each point the share that the high part has.
+/// Points of divided light (photonmap-split): the whole light, and for each point the share of its high part.
 struct DividedGatherPoints {
   GatherPoints whole;
   std::vector<float> high_shares;
 };
 
-/// The whole map, bit by bit, and its high part.
+/// The whole photon map, equal to the undivided map bit by bit, and its high part.
 struct DividedPhotonMap {
   formats::PhotonMap whole, high;
 };
 
-/// m: what is added to positions in a file with this origin to bring them into the frame's space.
+/// m: added to positions of a file with this origin to bring them into the frame's space.
 Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame);
-/// Is `kind` among "caustic,indirect"?
+/// True if `kind` is among `kinds`, such as "caustic,indirect".
 bool holds_kind(const std::string& kinds, const std::string& kind);
 
-/// Points from the photons of a whole map with all kinds of light.
+/// Points estimated from a whole photon map with all kinds of light.
 GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options);
 DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights,
                                 const PointOptions& options);
 
-/// The light of a frame where something moves: photons of what stands, and what movers change of them.
+/// The light of a frame with movers: photons of the static scene, and the changes by movers.
 struct MovedPhotons {
   const formats::PhotonMap& fixed;
   const formats::PhotonMap& moved;
 };
-/// Of a frame: from `points` of the standing scene, to which the points on what moves are added (update_points).
-/// InputError if they were not made with these options.
+/// Updates `points` of the static scene to a frame and adds points on movers (update_points). Throws InputError if the
+/// points were not made with these options.
 PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing,
                                 const Lights& lights, const PointOptions& options, GatherPoints& points);
 

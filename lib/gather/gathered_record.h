@@ -1,4 +1,4 @@
-// lib/gather/gathered_record.h -- a record from a list of samples: irradiance, gradients, radii.
+// lib/gather/gathered_record.h -- computes a record from its gather rays: irradiance, gradients, radii.
 #pragma once
 
 #include "lib/core/frame.h"
@@ -7,11 +7,10 @@
 
 namespace tempolux {
 
-/// m: nothing counts as nearer than this to a place; 1 / distance stays finite.
+/// m: smallest distance from a place that is used, so that 1 / distance stays finite.
 float closest_distance(const SurfacePoint& place);
 
-/// Sets of a record what follows from one ray a cell: translational gradient. Position, normal and object are the
-/// place's.
+/// A record with the translational gradient, which needs one ray per cell. Position, normal and object are the place's.
 IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame, const SurfacePoint& place,
                                       Vec3 normal);
 

@@ -8,15 +8,15 @@
 namespace tempolux {
 namespace {
 
-/// Integral of tan over a ring's share of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
+/// Integral of tan over a ring's part of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
 double ring_integral(double s) { return std::asin(std::sqrt(s)) - std::sqrt(s * (1 - s)); }
 
-/// Unit vectors in the tangent plane, in the middle of each sector and at its lower edge.
+/// Unit vectors in the tangent plane: in the middle of each sector and at its lower edge.
 struct Azimuths {
   std::vector<Vec3d> middle, lower;
 };
 
-/// Made once for each number of sectors and thread: records take turns with a few of them.
+/// Computed once per number of sectors and thread.
 const Azimuths& azimuths(int sectors) {
   constexpr std::size_t kMost = 64;
   thread_local std::unordered_map<int, Azimuths> known;
@@ -72,7 +72,7 @@ void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, Irradian
 
 void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& record) const {
   const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
-  // Ring by ring, by sector: what the sectors of a ring bring stands side by side.
+  // Sums by ring and sector; the sectors of a ring lie side by side.
   thread_local std::vector<double> sums;
   sums.assign(6 * N, 0.0);
   double* const along[3] = {&sums[0], &sums[N], &sums[2 * N]};
@@ -106,7 +106,8 @@ void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& re
 void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
   const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
   counts.assign(M * N, 0);
-  std::vector<double> light(M * N), three(M * N), three2(M * N);  // by cell: its own, it and the sectors beside it
+  // By cell: its own light, the sum of its own and the two neighbouring sectors', and the same for squares.
+  std::vector<double> light(M * N), three(M * N), three2(M * N);
   double total = 0;
   for (std::size_t c = 0; c < light.size(); ++c) {
     light[c] = channel_sum(Rgbd(radiance[c]));

@@ -1,4 +1,4 @@
-// lib/gather/hemisphere.h -- radiance and distances over a hemisphere: irradiance, how it changes, how far it holds.
+// lib/gather/hemisphere.h -- radiance and distances over a hemisphere: irradiance and its gradients.
 #pragma once
 
 #include <cstdint>
@@ -9,39 +9,42 @@
 
 namespace tempolux {
 
-/// Rings M and sectors N for about `rays` cells of equal weight, N about pi M.
+/// Computes M rings and N sectors for about `rays` cells of equal weight, N about pi M.
 void gather_strata(int rays, int& rings, int& sectors);
 
-/// Incoming radiance in cells (j, k), number j N + k: ring j holds sin^2 of the angle from the normal in [j, j+1) / M,
-/// sector k azimuths in [k, k+1) 2 pi / N. All cells contribute alike to the irradiance.
+/// Incoming radiance in cells (j, k) with index j N + k. Ring j holds sin^2 of the angle to the normal in [j, j+1) / M;
+/// sector k holds azimuths in [k, k+1) 2 pi / N. All cells contribute equally to the irradiance.
 class Hemisphere {
  public:
   std::vector<Rgb> radiance;            ///< W/m^2/sr
-  std::vector<float> inverse_distance;  ///< 1/m; 0: nothing there
+  std::vector<float> inverse_distance;  ///< 1/m; 0: no surface in this direction
 
-  /// All cells dark and empty.
+  /// Makes all cells dark and empty.
   void reset(int rings, int sectors);
 
-  /// In the frame's space (z = normal):
+  /// Sets irradiance and rotational gradient of the record. In the frame's space (z = normal):
   ///
   ///     E     = pi/(M N) sum L_jk
   ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
   ///
-  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (docs/methods/formulas.md: the sign is
-  /// that of E(n) = E + (n_i x n) . dE/dn).
+  /// v_k: tangent at the middle of sector k + 90 degrees. T_j: mean of tan t over ring j (docs/methods/formulas.md; the
+  /// sign is such that E(n) = E + (n_i x n) . dE/dn).
   void irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
+  /// Sets the translational gradient of the record:
+  ///
   ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
   ///                   + v_k- sum_j (sin t_j+ - sin t_j-) / min(r_jk, r_j,k-1) (L_jk - L_j,k-1) }
   ///
-  /// u_k at the middle of sector k, v_k- at its lower edge + 90 degrees. To be asked for while each cell's radiance and
-  /// distance are those of one ray: of a cell that an edge cuts a mean would have no distance.
+  /// u_k: tangent at the middle of sector k. v_k-: tangent at its lower edge + 90 degrees. Call it while each cell
+  /// holds the radiance and distance of one ray: the mean of several rays in a cell that an edge cuts has no distance.
   void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
-  /// How many more rays each cell deserves beside the one it has had: the standard deviation of the cells around it
-  /// (eight, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall where light
-  /// is uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones has no
-  /// bias: were bright rays themselves to call for more, dark ones would stay as they are and light would be lost.
+  /// Number of further rays for each cell: the standard deviation of the cells around it (eight, five at the rims) over
+  /// the mean of all others, rounded, at most kMostFurther. More rays are sent where light varies [Neyman 1934]. A
+  /// cell's own ray has no influence on the number, so the mean over its rays is unbiased. If a bright ray caused
+  /// further rays in its own cell, bright cells would be corrected downwards and dark ones would stay, and light would
+  /// be lost.
   void further_rays(std::vector<std::uint8_t>& counts) const;
   static constexpr int kMostFurther = 8;
 

@@ -10,7 +10,7 @@ std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights,
   std::vector<float> shares(whole.size(), 0.0f);
   if (high.photons.empty()) return shares;
   std::vector<IrradiancePoint> part(whole.begin(), whole.end());
-  options.light_samples = 1;  // direct light is in neither part; its estimate here is not read
+  options.light_samples = 1;  // neither part holds direct light, and this estimate of it is not read
   const std::array<double, 3>& origin = high.header.origin;
   estimate_points(tracer, lights, high, Vec3d{origin[0], origin[1], origin[2]} - tracer.frame().origin, options, part);
   const auto sum = [](const Rgb& value) { return value[0] + value[1] + value[2]; };

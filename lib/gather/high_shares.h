@@ -1,4 +1,4 @@
-// lib/gather/high_shares.h -- of the light at irradiance points, the share that a part of the photons has.
+// lib/gather/high_shares.h -- the share of the light at irradiance points that comes from a part of the photons.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace tempolux {
 
-/// For each point the share, from 0 to 1, of its irradiance (direct, caustic, indirect; all channels added) that the
-/// photons `high` bring there, by the density of photons as estimate_points has it. `whole`: points estimated from all
-/// photons. Two densities with different photons have different discs, so the share is an estimate. What is sampled by
-/// it stays unbiased: BrightPoints divides light exactly, whatever the shares are. A point without light has share 0.
+/// For each point, the share in [0, 1] of its irradiance (direct, caustic, indirect; sum of the channels) that comes
+/// from the photons `high`, by the same density estimate as estimate_points. `whole`: points estimated from all
+/// photons. The two densities use different discs, so the share is only an estimate. Light sampled with it stays
+/// unbiased, because BrightPoints divides light exactly for any shares. 0 at a point without light.
 std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights, const formats::PhotonMap& high,
                                      PointOptions options, std::span<const IrradiancePoint> whole);
 

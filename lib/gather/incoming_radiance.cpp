@@ -17,38 +17,42 @@
 namespace tempolux {
 namespace {
 
-/// Events followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
+/// Largest number of events of one ray. Russian roulette ends all but 4e-12 of the rays before.
 constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
 constexpr std::uint64_t kMediaNumbers = std::uint64_t(1)
-                                        << 32;  ///< the random numbers of media, apart from those of any depth
-constexpr std::size_t kAtOnce = 32;             ///< rays whose answers are fetched together
+                                        /// Offset that separates the random numbers of media from those of any depth.
+                                        << 32;
+constexpr std::size_t kAtOnce = 32;  ///< rays that are processed together
 
 }  // namespace
 
-/// A surface at a ray's end.
+/// The surface at the end of a ray.
 struct IncomingRadiance::Met {
   SurfacePoint hit;
-  Vec3 wo, geometric;            ///< geometric: the normal on the side of wo
-  float distance = INFINITY;     ///< m, along the path since the gather ray's start
-  const Bsdf* bsdf = nullptr;    ///< null: nothing was met
-  std::optional<Bsdf> textured;  ///< what bsdf points to where the material has textures
+  Vec3 wo, geometric;            ///< normal on the side of wo
+  float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
+  const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
+  std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures
 };
 
-/// A ray that goes on from a hit, and what is to become of the radiance along it. All of one depth follow together.
+/// A ray that continues from a hit, and the use of the radiance along it. All rays of one depth are followed together.
 struct IncomingRadiance::Further {
   Ray ray;
   std::uint64_t key = 0;
   Rgb weight{0.0f};
-  std::size_t of = 0;       ///< the gather ray
-  bool sees_lamps = false;  ///< beyond events S: light of kind caustic where it started, which no point has told
-  float phase = 0;          ///< a medium sent the ray on with this density [1/sr]; 0: a surface did
-  bool low = false;         ///< what it meets at its end brings the low part: the high one is sampled where it started
+  std::size_t of = 0;  ///< index of the gather ray
+  /// The ray follows events S, so lights that it meets are caustic light of its starting point, which no point has
+  /// stored.
+  bool sees_lamps = false;
+  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered it
+  /// The high part was sampled explicitly at the ray's start, so its end contributes the rest only.
+  bool low = false;
 
   LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
 
-/// Where what is found along the way goes.
+/// Where the results are stored.
 struct IncomingRadiance::Gathered {
   GatherCounts& counts;
   std::vector<Further>& further;
@@ -71,8 +75,8 @@ Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
   return *met.bsdf;
 }
 
-/// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its
-/// normal.
+/// Fills in the rest of `met` if met.hit is known. Evaluates the textures of the material at this hit; a normal map
+/// bends the normal.
 inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
@@ -85,9 +89,9 @@ inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
   met.distance = distance;
 }
 
-/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. Of those
-/// that a medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). Of those that leave
-/// the scene: miss(i). alike: as Tracer::intersect.
+/// Calls take(i, met, point) for each ray that meets a surface, in order; point: the point that represents the hit, or
+/// nullptr. Calls take_medium(i, collision, distance) for rays that a medium scatters before, with random numbers of
+/// key(i), and miss(i) for rays that leave the scene. alike: as for Tracer::intersect.
 template <class Take, class Key, class TakeMedium, class Miss>
 void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take,
                               const Key& key, const TakeMedium& take_medium, const Miss& miss) const {
@@ -168,7 +172,7 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
           const Further from = now[i];
           radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
         },
-        [&](std::size_t i) {  // a surface has sampled the environment where it sent the ray
+        [&](std::size_t i) {  // a surface samples the environment itself where it sends the ray
           const Further& from = now[i];
           if (from.phase > 0 && lights_.has_environment())
             radiance[from.of] += from.weight * weighed_environment(lights_, from.ray.direction, from.scattering());
@@ -176,12 +180,12 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   }
 }
 
-/// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
+/// Threshold in [1/2, 3/2] for all decisions on close hits; its randomness avoids a visible border.
 inline float IncomingRadiance::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
 
-/// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there,
-/// or by going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its
-/// other lobes by following one of them. to.further receives the ray that goes on from a Lambert lobe, if any.
+/// Radiance that the surface at a ray's end reflects, without emission. The Lambert lobe uses the point that represents
+/// the hit. If no point does, if the point's indirect light is not that of the hit, or if a first hit is close, the ray
+/// continues and `to.further` receives it. The other lobes are followed along one sampled direction.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
   const Bsdf& bsdf = *met.bsdf;
@@ -198,7 +202,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
     const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
-    // Most hits are far from the seam: they need no random number.
+    // Most hits are clearly not close: they need no random number.
     const bool near = point && depth == 0 && met.distance < 1.5f * near_factor_ * point->radius &&
                       PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather), near_factor_);
     if (point && !near && points_.is_uniform_indirect(*point)) {
@@ -214,7 +218,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
     }
   }
   if (!specular || depth >= kDeepest) return result;
-  // Other lobes: one sampled direction, by roulette on its weight; the Lambert lobe was read above.
+  // The other lobes: one sampled direction, with Russian roulette on its weight. The Lambert lobe was handled above.
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
   const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
   const auto next = bsdf.sample(side->wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
@@ -233,8 +237,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
                                             solid && front == next.transmitted ? &material : nullptr);
 }
 
-/// Radiance along a ray that goes on after an event S at `start`, `distance` on the way already, inside a solid of
-/// glass or not.
+/// Radiance along a ray that continues after an event S at `start`. `distance`: length of the path so far [m]. The ray
+/// may be inside solid glass.
 Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
                                        const Gathered& to, const MaterialValues* inside) const {
   Hit hit;
@@ -261,9 +265,9 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
   return left * (emitted + reflected(met, point, from, depth, to));
 }
 
-/// Light of a lamp that a medium sends back along a ray from its collision; to.further receives the ray that goes on,
-/// which counts lamps too: those it meets, weighed, and those it sees by way of events S, as no point tells of them
-/// here.
+/// Radiance that a medium scatters back along a ray from its collision, for light of one light sample. `to.further`
+/// receives the ray that continues, which also counts lights that it meets, weighted by MIS, and lights that it sees by
+/// events S, because no point holds their light here.
 Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const {
   if (RadianceSource* const source = to.source_of(from)) source->partial = source->mover = true;
   const PathRandom random(from.key, kMediaNumbers + 1);
@@ -284,10 +288,10 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   return light;
 }
 
-/// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Hits take caustic
-/// light from the point that stands for them, if one does; direct light too, which is known to the spacing of the
-/// points instead of an estimate's radius, if they are farther than about that; else by light sampling. Without a point
-/// all but direct light is the ray's.
+/// Irradiance at a hit, without the light along the ray that continues, which `to.further` receives. Caustic light is
+/// that of the point that represents the hit, if there is one. Direct light is also the point's if the hit is farther
+/// away than about the spacing of the points, to which their direct light is accurate; otherwise it is a light sample.
+/// Without a point, the ray that continues finds all but direct light.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                                 const PathRandom& random, int depth, const Gathered& to) const {
   ++(point ? to.counts.near_hits : to.counts.unanswered);
@@ -301,8 +305,9 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
   }
-  // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came
-  // out 5 % bright: cells get further rays by what neighbours saw, on which their own value must not depend.
+  // Each hit has its own random numbers. If one sequence were spread over neighbouring close hits, records in corners
+  // would have half the noise but be 5 % too bright: further rays of a cell depend on its neighbours' light, which must
+  // then be independent of the cell's own.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
@@ -312,8 +317,8 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   return irradiance;
 }
 
-/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is
-/// sampled explicitly where the ray comes from (BrightPoints::left_of_lamp).
+/// Direct irradiance at a hit from one light sample. point: represents the hit, or nullptr. low: light of close lamps
+/// was sampled explicitly at the ray's start (BrightPoints::remaining_lamp_share).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point, bool low,
                                     const PathRandom& random, GatherCounts& counts) const {
   DirectSample direct;
@@ -329,7 +334,7 @@ Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const 
   return direct.irradiance * (left * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));
 }
 
-/// Irradiance at a hit where the point's direct light is not its own.
+/// Irradiance at a hit where direct light is not that of the point.
 Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random,
                                   GatherCounts& counts) const {
   const IrradiancePoint& point = points_.point(light);

@@ -1,4 +1,4 @@
-// lib/gather/incoming_radiance.h -- what gather rays bring: the light of kind indirect that arrives along them.
+// lib/gather/incoming_radiance.h -- estimates the indirect light that arrives along gather rays.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@
 
 namespace tempolux {
 
-/// near_hits: went on though a point stood for them, as it was near or its indirect light not that of the hit;
-/// unanswered: went on as none did.
+/// near_hits: rays that continued although a point represents the hit, because the hit is close or the point's indirect
+/// light is not that of the hit. unanswered: rays that continued because no point represents the hit.
 struct GatherCounts {
   std::uint64_t rays = 0, distance_rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
@@ -30,37 +30,37 @@ struct GatherCounts {
   }
 };
 
-/// What the radiance along a ray follows from, for whoever keeps it.
+/// What the radiance along a ray was computed from, for callers that store it.
 struct RadianceSource {
-  /// The irradiance point that stands for the first hit, if it has a Lambert lobe and one does; of a hit near by, from
-  /// which a ray goes on, too: the choice must not depend on the light (docs/methods/temporal.md).
+  /// The irradiance point that represents the first hit if this has a Lambert lobe, or kNone. Set for close hits, too,
+  /// from which a ray continues: the choice must not depend on the light (docs/methods/temporal.md).
   std::uint32_t point = kNone;
-  bool partial = false;  ///< there is more to the radiance than that point's light times a constant
-  bool mover = false;    ///< a surface on the way moves in the segment
+  bool partial = false;  ///< the radiance is more than this point's light times a constant
+  bool mover = false;    ///< the path meets a surface that moves in the segment
 };
 
 struct MediumPoint;  // lib/transport/media.h
 class BrightPoints;  // lib/gather/bright_points.h
 
-/// Follows rays from places to what they meet. Emission counts nowhere on the way; events S are passed; at the first
-/// Lambert lobe the point that stands for the hit is read, or the path goes on where none does or the first hit is
-/// near. Media on the way take out and scatter. Thread-safe.
+/// Follows gather rays to their hits. Emission on the way does not count. Events S are followed. At the first Lambert
+/// lobe the point that represents the hit is read; if no point does or the first hit is close, the path continues.
+/// Media on the way attenuate and scatter. Thread-safe.
 class IncomingRadiance {
  public:
-  /// bright: points of which rays bring the low part alone, where they are read first (BrightPoints::left); may be
-  /// null.
+  /// bright: points whose high part is sampled explicitly, so that rays contribute the rest
+  /// (BrightPoints::remaining_share); may be null.
   IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                    float near_factor = PointLookup::kNear, const BrightPoints* bright = nullptr);
 
-  /// Radiance [W/m^2/sr] arriving along rays that counts as indirect at their starts, and the distance to what each
-  /// meets first, m (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one
-  /// another leave one place into like directions. All spans are of one length, but for `sources`, which may be empty.
-  /// Of rays that start in a medium lamps seen by way of events S count too: no point tells of them there.
+  /// Computes the radiance [W/m^2/sr] that arrives along rays and counts as indirect light at their starts, and the
+  /// distance to each ray's first hit in m (infinity: none). keys: one random key per ray. Fastest if successive rays
+  /// leave one place in similar directions. All spans have the same length, except that `sources` may be empty. For
+  /// rays that start in a medium, lights seen by events S count, too, because no point holds their light.
   enum class Start : std::uint8_t { surface, medium };
   void operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
                   std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources = {},
                   Start start = Start::surface) const;
-  /// The lobes of the surface at a place, seen along its normal.
+  /// The Bsdf at a place, seen along its normal.
   Bsdf bsdf_at(const SurfacePoint& place, Vec3 normal) const;
 
  private:
@@ -89,7 +89,7 @@ class IncomingRadiance {
   const PointLookup& points_;
   float near_factor_;
   const BrightPoints* bright_;
-  std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
+  std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from the back, from the front
 };
 
 }  // namespace tempolux

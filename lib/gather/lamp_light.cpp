@@ -11,11 +11,11 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;  ///< photons emitted
-constexpr std::size_t kEnough = 1 << 10;                   ///< landed: their flux is known to 3 % then
+constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;  ///< limits of the number of emitted photons
+constexpr std::size_t kEnough = 1 << 10;                   ///< photons that must land: their flux is then known to 3 %
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
-/// Where a photon lands, if that is on a Lambert lobe within `reach` m. Its flux is that of one photon of one.
+/// Where a photon lands, if it meets a Lambert lobe within `reach` m. Its flux is that of a map with a single photon.
 std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission,
                                  float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;

@@ -1,5 +1,5 @@
-// lib/gather/localised_file.h -- .irradcache files of localised gathering: records that stand, updated for a frame, and
-// those gathered for it.
+// lib/gather/localised_file.h -- .irradcache files of localised gathering: static records, updated for a frame, and
+// records gathered for it.
 #pragma once
 
 #include <string>
@@ -12,19 +12,19 @@
 
 namespace tempolux {
 
-/// Set static: records of the standing scene, changes[i] of standing[i]. Set dynamic: records of the frame.
+/// Set static: records of the static scene, changes[i] belongs to standing[i]. Set dynamic: records of the frame.
 struct LocalisedRecords {
   std::vector<IrradianceRecord> standing, gathered;
   std::vector<RecordChange> changes;
-  float least_cosine = 0;  ///< in which both count
+  float least_cosine = 0;  ///< smallest cosine between normals for which a record of either set counts
   std::string history;
 };
 
-/// Does the file hold columns influence and update?
+/// True if the file has the columns influence and update.
 bool is_localised(const formats::IrradcacheFile& file);
-/// Its records, in the frame's space.
+/// The records of a file, in the frame's space.
 LocalisedRecords localised_records(const formats::IrradcacheFile& file, const SceneFrame& frame);
-/// Records as a file holds them, columns and sets filled in.
+/// Records for a file, with columns and sets filled in.
 std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cache, const SceneFrame& frame);
 
 }  // namespace tempolux

@@ -13,9 +13,10 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kAtOnce = 1024;  ///< photons, or elements, in a piece of work
-constexpr int kNormalBits = 13;        ///< of 16 that a joined normal leaves out: it keeps 64 directions
-constexpr float kReach = 3;            ///< of a Gaussian, standard deviations
+constexpr std::size_t kAtOnce = 1024;  ///< photons, or elements, per piece of parallel work
+/// Low bits, of 16, that are dropped from the normal of a joined element: 64 directions remain.
+constexpr int kNormalBits = 13;
+constexpr float kReach = 3;  ///< of a Gaussian, in standard deviations
 
 struct Corners {
   Vec3 a, b, c;
@@ -29,16 +30,16 @@ Corners corners_of(const SceneFrame& frame, std::uint32_t surface, std::uint32_t
   return {s.position(index[0]), s.position(index[1]), s.position(index[2])};
 }
 
-/// An element with what is filtered.
+/// An element with its flux to be filtered.
 struct Sample {
   Vec3 position, normal;
   Rgbd flux{0.0};  ///< W
   float area = 0;
-  float width = 0;  ///< m, of the filter around it
+  float width = 0;  ///< m: width of the filter around it
   std::uint32_t material = 0;
 };
 
-/// Samples by cubes of space as wide as the filter reaches.
+/// Samples by cubes of space that are as wide as the filter.
 class Neighbours {
  public:
   Neighbours(const std::vector<Sample>& samples, float reach) : samples_(samples), per_m_(1 / reach) {
@@ -54,7 +55,7 @@ class Neighbours {
           const auto found = cubes_.find(key(there));
           if (found == cubes_.end()) continue;
           for (const std::uint32_t i : found->second)
-            if (cube(samples_[i].position) == there) visit(i);  // cubes may share a key
+            if (cube(samples_[i].position) == there) visit(i);  // different cubes may share a key
         }
   }
 
@@ -71,7 +72,7 @@ class Neighbours {
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;
 };
 
-/// Weight of a neighbour by place alone; 0: it does not count.
+/// Weight of a neighbour from its position alone; 0: it does not count.
 float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   const float width = a.width;
   const Vec3 d = b.position - a.position;
@@ -82,8 +83,8 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of the samples that have a width: flux over area under the kernel; `alike` (may be empty): ln of
-/// irradiance by which neighbours are weighed.
+/// Irradiance of all samples with a width: flux over area under the kernel. `alike`: ln of irradiance for the bilateral
+/// filter's weights; may be empty.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
             const std::vector<float>& alike, std::vector<Rgbd>& result) {
   parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
@@ -106,11 +107,11 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
   });
 }
 
-/// Elements joined to what a filter cannot tell apart: those in a cube of this edge [m] that face alike and have one
+/// Elements joined within what the filter resolves: those in one cube of this edge [m] with the same orientation and
 /// material.
 struct Joined {
   std::vector<Sample> cubes;
-  std::vector<std::uint32_t> of;  ///< of each element its cube
+  std::vector<std::uint32_t> of;  ///< by element: the index of its cube
 };
 Joined join(const std::vector<Sample>& samples, float edge) {
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
@@ -138,8 +139,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
   return joined;
 }
 
-/// Smooths each sample by its own width, those within a factor of two together. Small ones are joined first: the cost
-/// follows from the widths and not from the number of triangles.
+/// Smooths each sample with its own width; samples whose widths are within a factor of two are processed together.
+/// Small elements are joined first, so that the cost depends on the widths and not on the number of triangles.
 void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, std::vector<Rgbd>& result) {
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -160,7 +161,7 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, st
   }
 }
 
-/// After smoothing each object shall have the flux that it had, by channel.
+/// Scales the result so that each object keeps its flux from before smoothing, by channel.
 void put_right(const std::vector<Sample>& samples, const std::vector<formats::MeshElement>& elements,
                std::vector<Rgbd>& irradiance) {
   std::map<std::uint16_t, std::pair<Rgbd, Rgbd>> flux;  // before, after
@@ -182,7 +183,7 @@ std::uint32_t MeshCuts::operator()(std::uint32_t surface, std::uint32_t triangle
   for (const SceneFrame* frame : measured_) {
     const Corners t = corners_of(*frame, surface, triangle);
     longest = std::max(longest, double(std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)})));
-    if (surface < frame->static_count) break;  // the same in all frames
+    if (surface < frame->static_count) break;  // static surfaces are the same in all frames
   }
   return std::uint32_t(std::clamp(std::ceil(longest / cell_), 1.0, double(formats::kMostCuts)));
 }
@@ -194,7 +195,7 @@ double kernel_width(double area, double photons, double in_kernel) {
 MeshOptions window_widths(double area, double photons) {
   const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
   MeshOptions result;
-  result.filter.width = width > 0 ? width : 1;  // of a scene without surfaces
+  result.filter.width = width > 0 ? width : 1;  // for a scene without surfaces
   result.cell = kCellOfWindows * result.filter.width;
   return result;
 }
@@ -211,7 +212,7 @@ MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std
   MeshOptions result = options;
   double& width = result.filter.width;
   if (!(width > 0)) width = kernel_width(surface_area(frame), double(std::max<std::uint64_t>(1, photons)));
-  if (!(width > 0)) width = 1;  // of a scene without surfaces
+  if (!(width > 0)) width = 1;  // for a scene without surfaces
   if (!(result.cell > 0)) result.cell = width;
   return result;
 }
@@ -219,7 +220,7 @@ MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std
 void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
   struct Place {
     Side side{};
-    std::uint32_t cuts = 0, cell = 0;  ///< cuts 0: not found
+    std::uint32_t cuts = 0, cell = 0;  ///< cuts 0: no element was found
   };
   std::vector<Place> places(photons.size());
   parallel_chunks(photons.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
@@ -228,7 +229,7 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
       const auto decoded = formats::decode_normal(photon.normal);
       const Vec3 normal{float(decoded[0]), float(decoded[1]), float(decoded[2])};
       const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
-      // Above the surface by what rounding may be, or a thousandth of a cell.
+      // start of the ray above the surface: the largest rounding error, or a thousandth of a cell
       const float above = std::max(float(cuts_.cell()) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
       Hit hit;
       if (!tracer_.intersect({position + normal * above, -normal, 0, 2 * above}, hit)) continue;
@@ -248,7 +249,7 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
     Cell& cell = cells[place.cell];
     ++cell.photons;
     std::array<double, 3> flux{};
-    for (std::size_t c = 0; c < 3; ++c) {  // unsigned: what overflows in a damaged file wraps
+    for (std::size_t c = 0; c < 3; ++c) {  // unsigned: an overflow in a damaged file wraps around
       flux[c] = std::clamp(double(photons[i].flux[c]) / unit_, 0.0, 9e18);
       cell.sums[c] = std::int64_t(std::uint64_t(cell.sums[c]) + std::uint64_t(std::llrint(flux[c])));
     }
@@ -264,7 +265,7 @@ std::vector<formats::MeshElement> all_elements(const SceneFrame& frame, const Me
       const Corners corners = corners_of(frame, s, t);
       const Vec3 across = corners.cross_product();
       const float doubled = length(across);
-      if (!(doubled > 0)) continue;  // nothing arrives there
+      if (!(doubled > 0)) continue;  // no light arrives there
       const std::uint32_t n = cuts(s, t);
       if (elements.size() + 2 * std::uint64_t(n) * n > kMostElements)
         throw InputError("--cell: more than " + std::to_string(kMostElements) + " elements of " +

@@ -22,22 +22,22 @@ inline constexpr float kSameWay = 0.866f;
 struct MeshFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;
-  double width =
-      0;  ///< m: half the box's edge, or the Gaussian's standard deviation; 0: so wide that about 256 photons count
-  float range = 0.5f;  ///< bilateral: standard deviation of ln irradiance over which elements count as alike
+  /// m: half the box's edge, or the Gaussian's standard deviation; 0: such that about 256 photons count.
+  double width = 0;
+  float range = 0.5f;  ///< bilateral filter: standard deviation of ln irradiance
 };
 
 struct MeshOptions {
-  double cell = 0;  ///< m, longest edge of an element; 0: the filter's width
+  double cell = 0;  ///< m, longest edge of an element; 0: the width of the filter
   MeshFilter filter;
 };
 
-/// How the triangles of a frame are cut into elements: each edge into so many pieces that none is longer than `cell`
-/// [m], at most formats::kMostCuts. What moves is measured in several frames, so that it has the same elements in all
+/// Divides the triangles of a frame into elements: each edge is cut so often that no piece is longer than `cell` [m],
+/// at most formats::kMostCuts times. Movers are measured in several frames, so that they have the same elements in all
 /// frames of a segment.
 class MeshCuts {
  public:
-  /// `measured`: frames of one segment, which must outlive this; at least one.
+  /// `measured`: at least one frame, all of one segment; they must outlive this object.
   MeshCuts(double cell, std::vector<const SceneFrame*> measured) : cell_(cell), measured_(std::move(measured)) {}
   std::uint32_t operator()(std::uint32_t surface, std::uint32_t triangle) const;
   double cell() const { return cell_; }
@@ -47,25 +47,26 @@ class MeshCuts {
   std::vector<const SceneFrame*> measured_;
 };
 
-/// What photons bring to the elements that they arrive at, as whole multiples of a unit: the sums have no order. An
-/// element is found by a short ray onto the surface from the side at which the photon arrived.
+/// Sums the flux of photons over the elements at which they arrive, as integer multiples of a unit, so that the order
+/// of the sums does not matter. The element of a photon is found with a short ray to the surface from the side at which
+/// the photon arrived.
 class MeshSums {
  public:
   struct Cell {
     std::uint32_t photons = 0;
     std::array<std::int64_t, 3> sums{};
-    double squares = 0;  ///< of the photons' luminance, unit^2
+    double squares = 0;  ///< sum of squares of the photons' luminance, unit^2
     bool operator==(const Cell&) const = default;
   };
   using Side = std::tuple<std::uint32_t, std::uint32_t, std::uint16_t>;  ///< surface, triangle, side
 
-  /// `unit` [W] > 0.
+  /// `unit` [W]: > 0.
   MeshSums(const Tracer& tracer, const MeshCuts& cuts, double unit) : tracer_(tracer), cuts_(cuts), unit_(unit) {}
-  /// Adds photons at surfaces; positions plus `offset` are scene space. The same for any number of threads.
+  /// Adds photons at surfaces. Positions plus `offset` are in scene space. Same result for any number of threads.
   void add(std::span<const formats::Photon> photons, Vec3 offset);
-  /// Of the sides that photons arrived at: their cells.
+  /// The cells of all sides at which photons arrived.
   const std::map<Side, std::vector<Cell>>& cells() const { return cells_; }
-  /// Photons that no surface was found for: it has moved, or is thinner than a thousandth of a cell.
+  /// Number of photons without an element: their surface has moved, or it is thinner than a thousandth of a cell.
   std::uint64_t lost() const { return lost_; }
   const MeshCuts& cuts() const { return cuts_; }
   double unit() const { return unit_; }
@@ -78,48 +79,49 @@ class MeshSums {
   std::uint64_t lost_ = 0;
 };
 
-/// Photons that the spatial filter counts in the mean of an element: noise of 1/16.
+/// Mean number of photons under the spatial filter: a noise of 1/16.
 inline constexpr double kPhotonsInKernel = 256;
-/// Deviation [m] of the Gaussian that counts `in_kernel` of the photons that are spread over an area [m^2]: it counts
-/// as much area as 4 pi deviations squared.
+/// Standard deviation [m] of the Gaussian that averages `in_kernel` photons, if `photons` are spread over `area` [m^2].
+/// The Gaussian averages over an area of 4 pi deviations squared.
 double kernel_width(double area, double photons, double in_kernel = kPhotonsInKernel);
 
-/// Light textures of windows, the photons of many frames. Photons that the filter counts in the mean of a full one:
-/// noise of 1/50.
+/// Mean number of photons under the filter for light textures of a full window, which hold the photons of many frames:
+/// a noise of 1/50.
 inline constexpr double kPhotonsInWindow = 2500;
-/// Edge of their elements, in deviations of the filter: light is read linearly between elements, so that smaller ones
-/// would show no more.
+/// Edge length of elements in standard deviations of the filter. Light is interpolated linearly between elements, so
+/// smaller ones would not show more.
 inline constexpr double kCellOfWindows = 2;
-/// Their widths where so many photons arrive in all frames of a full window at surfaces of this area.
+/// Widths for surfaces of this area [m^2] at which `photons` photons arrive in all frames of a full window.
 MeshOptions window_widths(double area, double photons);
 
 /// Area of all surfaces of the frame, one side [m^2].
 double surface_area(const SceneFrame& frame);
 
-/// Widths that are 0 filled in, for so many photons: a Gaussian of deviation s counts as much area as 4 pi s^2.
+/// Replaces widths of 0 by the default for this number of photons: a Gaussian with standard deviation s averages over 4
+/// pi s^2.
 MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std::uint64_t photons);
 
-/// Most elements of a frame, lit or not: 2^25, 2 GB.
+/// Largest number of elements of a frame, lit or not: 2^25, which take 2 GB.
 inline constexpr std::uint64_t kMostElements = std::uint64_t(1) << 25;
 
-/// All elements of a frame in the order of the file, both sides of each triangle that has an area, with no light in
-/// them. InputError beyond kMostElements.
+/// All elements of a frame in the order of the file, for both sides of each triangle with an area, without light.
+/// Throws InputError above kMostElements.
 std::vector<formats::MeshElement> all_elements(const SceneFrame& frame, const MeshCuts& cuts);
-/// Puts the photons in.
+/// Stores the photons' sums in the elements.
 void put_sums(const MeshSums& sums, std::vector<formats::MeshElement>& elements);
-/// Leaves out the sides of triangles that neither light nor photons reach.
+/// Removes the sides of triangles that receive neither light nor photons.
 void leave_out_dark(std::vector<formats::MeshElement>& elements);
 
-/// Sets the irradiance [W/m^2] of all_elements() from their `flux` [W]: flux over area, both weighted by the
-/// same kernel around the element, over elements that face the same way (normals within 30 degrees), lie in its plane
-/// within a width, and have its material: nothing is lost at edges, and light does not go around corners. The bilateral
-/// filter then weighs by how alike irradiance is, as the Gaussian of the same width has it. The whole flux of each
-/// object is kept. `widths` [m]: each element's own, in place of the filter's; 0: nothing arrives there. Empty: the
-/// filter's.
+/// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area, both
+/// weighted by the same kernel around the element. Only elements count that face the same way (normals within 30
+/// degrees), lie within a width of its plane and have its material. So no light is lost at edges, and none spreads
+/// around corners. The bilateral filter also weights by the difference of irradiance after a Gaussian of the same
+/// width. Each object keeps its total flux. `widths` [m]: the width of each element, 0 where no light arrives; empty:
+/// the filter's width everywhere.
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 
-/// The elements that light reaches through the filter, in the order of the file.
+/// The elements that receive light through the filter, in the order of the file.
 std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
                                                 const MeshFilter& filter);
 

@@ -11,19 +11,19 @@
 namespace tempolux {
 namespace {
 
-constexpr float kSamePlace = 1e-3f;  ///< of a cell: corners closer than this are one
+constexpr float kSamePlace = 1e-3f;  ///< share of a cell: corners closer than this coincide
 
-/// One number for each side: 32 bits of surface, 31 of triangle, one of side.
+/// A key for each side: 32 bits of surface, 31 of triangle, one of side.
 std::uint64_t key(std::uint32_t surface, std::uint32_t triangle, std::uint32_t side) {
   return std::uint64_t(surface) << 32 | std::uint64_t(triangle & 0x7fffffffu) << 1 | side;
 }
 
-/// Number of a corner among those of its side.
+/// Index of a corner among those of its side.
 std::uint32_t corner(std::uint32_t n, std::uint32_t column, std::uint32_t row) {
   return row * (n + 1) - row * (row - 1) / 2 + column;
 }
 
-/// Corners of a cell: column and row of each.
+/// Column and row of the corners of a cell.
 std::array<std::array<std::uint32_t, 2>, 3> corners_of(const formats::MeshPlace& p) {
   if (p.tip) return {{{p.column + 1, p.row}, {p.column, p.row + 1}, {p.column + 1, p.row + 1}}};
   return {{{p.column, p.row}, {p.column + 1, p.row}, {p.column, p.row + 1}}};

@@ -1,4 +1,4 @@
-// lib/gather/mesh_light.h -- a light texture, read at hits.
+// lib/gather/mesh_light.h -- reads a light texture at hits.
 #pragma once
 
 #include <tuple>
@@ -14,35 +14,35 @@ namespace tempolux {
 
 /// Irradiance [W/m^2] of a .meshirrad file where a ray meets a surface. Thread-safe.
 ///
-/// At a corner of elements it is the mean of those that meet there, weighed by area, that face the same way (normals
-/// within 30 degrees) and have the same material; within an element it is linear between its corners. So no edge
-/// between elements is seen, and even light stays even.
+/// The value at a corner is the mean, weighted by area, over the elements that meet there, face the same way (normals
+/// within 30 degrees) and have the same material. Within an element the value is linear between its corners. So edges
+/// between elements are invisible, and uniform light stays uniform.
 class MeshLight {
  public:
-  /// `frame`: that of the file.
+  /// `frame`: the frame of the file.
   MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame);
-  /// At the hit, on the side of `geometric` (unit): that towards which this normal points. 0 where the file has none.
+  /// Irradiance at the hit, on the side to which `geometric` (unit) points. 0 where the file has no element.
   Rgb irradiance(const SurfacePoint& hit, Vec3 geometric) const;
   std::size_t size() const { return size_; }
 
  private:
   struct Side {
-    std::uint32_t first = 0;  ///< of its corners
+    std::uint32_t first = 0;  ///< index of its first corner
     std::uint32_t cuts = 0;
   };
   /// An element at one of its corners.
   struct Meeting {
-    std::uint64_t place = 0;                ///< hash of where
-    std::uint32_t element = 0, corner = 0;  ///< corner: in corners_
+    std::uint64_t place = 0;                ///< hash of the position
+    std::uint32_t element = 0, corner = 0;  ///< corner: index into corners_
     bool operator<(const Meeting& o) const {
       return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner);
     }
   };
   void join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements, const SceneFrame& frame);
 
-  std::unordered_map<std::uint64_t, Side> sides_;  ///< by surface, triangle, side
-  std::vector<Rgb> corners_;                       ///< of each side (n + 1) (n + 2) / 2, in rows of equal v
-  std::size_t size_ = 0;                           ///< elements
+  std::unordered_map<std::uint64_t, Side> sides_;  ///< keyed by surface, triangle, side
+  std::vector<Rgb> corners_;                       ///< for each side (n + 1) (n + 2) / 2 corners, in rows of equal v
+  std::size_t size_ = 0;                           ///< number of elements
 };
 
 }  // namespace tempolux

@@ -16,7 +16,7 @@ PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon
     options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening, options_.where);
 }
 
-/// The k nearest, or all within max_radius.
+/// The k nearest photons, or all within max_radius.
 PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList& found) const {
   const PhotonQuery query{position, normal, options_.max_radius, kMinCos, kFlattening, kAllKinds};
   index_.find_nearest(query, options_.neighbours, found);
@@ -26,7 +26,7 @@ PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList&
   return {std::sqrt(found.distance2()[farthest]), farthest};
 }
 
-/// For radii closer than coordinates can tell.
+/// The estimate for radii that float coordinates do not resolve.
 Rgb PointDensity::plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const {
   const IrradianceOptions options{.neighbours = options_.neighbours,
                                   .max_radius = options_.max_radius,
@@ -44,8 +44,8 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
   if (radius == 0) return Rgb(0.0f);
   if (!(radius > 4 * area_.offset())) return plain(point.position, point.normal, radius, found);
   const bool whole = area_.whole(point.position, point.normal, radius, random.get1(2, Purpose::points));
-  // In a whole disc what lies in its plane can be reached; a sheet close above it may still be another
-  // side's.
+  // In a whole disc everything in its plane is reachable. A sheet close above the plane may still belong to another
+  // side.
   const auto counts = [&](std::uint32_t photon) {
     const Vec3 place = index_.position(photon);
     return (whole && std::abs(dot(place - point.position, point.normal)) < 4 * area_.offset()) ||

@@ -1,4 +1,4 @@
-// lib/gather/point_density.h -- irradiance from photons where walls, edges and steps cut the disc.
+// lib/gather/point_density.h -- irradiance from photons where walls, edges and steps cut the disc of the estimate.
 #pragma once
 
 #include <cstdint>
@@ -15,38 +15,37 @@ namespace tempolux {
 
 struct DensityOptions {
   int neighbours = 50;                   ///< k
-  float max_radius = 0;                  ///< m; 0: kSparser times the photons' own (photon_reach)
-  int area_probes = 32;                  ///< that must arrive where the disc is not whole
-  std::function<bool(Vec3)> where = {};  ///< places whose photons say what their own radius is; none: all
+  float max_radius = 0;                  ///< m; 0: kSparser times the photons' own radius (photon_reach)
+  int area_probes = 32;                  ///< probes that must arrive if the disc is not whole
+  std::function<bool(Vec3)> where = {};  ///< places whose photons determine the photons' own radius; empty: all
 };
 
 /// Density estimates over one set of photons. Thread-safe.
 ///
-///     E = sum of flux over those of the k-1 nearest that can be reached / area that can be reached
+///     E = sum of flux over those of the k-1 nearest that are reachable / reachable area
 ///
-/// nearest and area: in the ellipsoid 1 : 1/10 about the point that touches the k-th photon (or of
-/// max_radius, with all its photons, if it holds fewer), on surfaces within 84 degrees of the point's plane.
-/// Where light is uniform on what can be reached, whatever it is beyond, E has no bias: given the ellipsoid,
-/// each of the k-1 photons is one with probability (light that can be reached / all light in it), and (k-1) /
-/// (all light in it) has the mean 1 (irradiance_estimate.h). For that the same test (Reach) must decide on
-/// photons and on area: clipping the area alone gains light at thin walls, dropping photons alone loses it in
-/// corners.
+/// "Nearest" and the area refer to the ellipsoid 1 : 1/10 around the point that touches the k-th photon (or to that of
+/// max_radius with all of its photons, if it holds fewer), on surfaces within 84 degrees of the point's plane. If light
+/// is uniform on the reachable surface, E is unbiased, whatever the light elsewhere is: given the ellipsoid, each of
+/// the k-1 photons is reachable with the probability (reachable light / all light in the ellipsoid), and (k-1) / (all
+/// light in it) has the mean 1 (irradiance_estimate.h). This requires the same test (Reach) for photons and for area:
+/// clipping the area alone gains light at thin walls, and dropping photons alone loses it in corners.
 class PointDensity {
  public:
-  /// Where light is up to 16 times as sparse as where photons lie, k of them are still found.
+  /// Where light is up to 16 times as sparse as the mean over the places with photons, k photons are still found.
   static constexpr float kSparser = 4;
 
-  /// Of the photons of these kinds (kind_bit), moved by `shift` [m] into the scene's space.
+  /// Uses the photons of these kinds (kind_bit), moved by `shift` [m] into scene space.
   PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
-  /// Irradiance [W/m^2], >= 0; `radius` receives the half-axis of the ellipsoid, m, 0 if no photon is near.
+  /// Irradiance [W/m^2], >= 0. `radius` receives the half-axis of the ellipsoid [m], 0 if no photon was found.
   Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const;
 
  private:
   struct Disc {
-    double radius = 0;         ///< m; 0: no photon is near
-    std::size_t farthest = 0;  ///< of the photons found: not summed
+    double radius = 0;         ///< m; 0: no photon was found
+    std::size_t farthest = 0;  ///< index of the farthest photon found, which is not summed
   };
   Disc find(Vec3 position, Vec3 normal, NeighbourList& found) const;
   Rgb plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const;

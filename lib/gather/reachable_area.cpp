@@ -12,15 +12,15 @@
 namespace tempolux {
 namespace {
 
-constexpr int kRim = 16;         ///< places on the rim that are looked at first
-constexpr int kMostProbes = 32;  ///< times the probes that must arrive
+constexpr int kRim = 16;         ///< places on the rim that are tested first
+constexpr int kMostProbes = 32;  ///< largest number of probes, in multiples of the probes that must arrive
 constexpr int kMostBends = 4;
-constexpr int kMostInColumn = 8;  ///< surfaces on top of each other
+constexpr int kMostInColumn = 8;  ///< largest number of surfaces on top of each other
 
 }  // namespace
 
-// All rays here meet surfaces of alpha mode BLEND wherever they are at all: what such a surface lets pass is in the
-// photons' flux already (photon_trace.h), its area is there.
+// All rays here meet surfaces of alpha mode BLEND as if they were opaque. The photons' flux already accounts for the
+// light that such a surface lets pass (photon_trace.h), and its whole area counts.
 
 Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
   const Box3& bounds = tracer.frame().bounds;
@@ -31,8 +31,7 @@ bool Reach::free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to 
 
 bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   const Vec3 start = from + normal * (2 * offset_), end = to + to_normal * (2 * offset_);
-  // Both ends stand on the lit sides: a ray from behind `to` meets the surface that `to` is on just before
-  // its end.
+  // Both ends lie on the lit sides: a ray from behind `to` meets the surface of `to` just before its end.
   if (free(start, end)) return true;
   const float below = dot(from - to, normal);
   if (!(below > 0)) return false;
@@ -45,7 +44,7 @@ Ray Reach::across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const {
           true};
 }
 
-/// m: how far one comes along a ray that has met something.
+/// m: how far the path along the surface gets after a ray has met something.
 float Reach::over_bends(Ray ray, Hit hit, Vec3 normal, Vec3 outwards, float reach) const {
   float gone = hit.t;
   for (int bends = 0; bends < kMostBends && gone < reach; ++bends) {
@@ -81,8 +80,7 @@ ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tra
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
-/// whole_towards() from `start` (start_of), looking `down` metres from the rim (depth_of): worked out once for all
-/// spokes.
+/// whole_towards() with `start` (start_of) and `down` (depth_of, m), which are the same for all spokes.
 inline bool ReachableArea::whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift,
                                       float down) const {
   const Vec3 rim = start + normal * lift + outwards * radius;
@@ -107,11 +105,11 @@ bool ReachableArea::whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, flo
   return whole_from(start_of(position, normal), normal, outwards, radius, lift, depth_of(radius, lift));
 }
 
-/// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
-/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with
-/// the probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1):
-/// weights themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel:
-/// u = 0.
+/// Reachable surface in a column at offset `across` from the point, from `height` above the plane to as much below it,
+/// per cross section of the column: the sum of 1 / cos of the surfaces' tilts. For the round kernel, a surface at
+/// height h counts with probability 1 - (h / height)^2, the kernel's weight there over its weight in the plane, decided
+/// by `u` in [0, 1). Weights in place of probabilities would differ between columns and bias the inverse of the sum
+/// upwards. Flat kernel: u = 0.
 inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
   const float half = std::max(4 * reach_.offset(), height);
   Vec3 top = position + across + normal * half;
@@ -133,20 +131,19 @@ inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, floa
   return sum;
 }
 
-/// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc
-/// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives) if they
-/// are independent [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in
-/// the mean. Spread evenly they are less noisy, but the mean is low by up to 1 / (2 m): m arrive as soon as m - 1/2 are
-/// to be expected. So for the flat kernel they are spread, for footprints, many of which light a place, they are
-/// independent. With the round kernel the area counts by its weight, which is what the columns are drawn by: density 2
-/// (1 - d^2) / pi.
+/// 1 / reachable area [1/m^2]; 0 if there is none. Columns along the normal are drawn over the disc until a fixed
+/// number m of them arrives. For independent columns the mean of (number drawn) / m is exactly 1 / (share that arrives)
+/// [inverse binomial sampling, Haldane 1945]; m arrivals of a fixed number of columns would be biased downwards.
+/// Stratified columns have less noise, but their mean is low by up to 1 / (2 m), because m columns arrive as soon as m
+/// - 1/2 are expected. So columns are stratified for the flat kernel and independent for footprints, many of which
+/// light a place. With the round kernel the area is weighted by drawing columns with the density 2 (1 - d^2) / pi.
 double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel,
                               const PathRandom& random) const {
   const Frame frame(normal);
   const std::uint64_t key = random.bits(1, Purpose::points);
   const bool round = kernel == Kernel::round;
   int arrived = 0, drawn = 0;
-  double surface = 0;  // m^2 per m^2 of the disc, summed
+  double surface = 0;  // m^2 of surface per m^2 of the disc, summed
   while (arrived < probes && drawn < kMostProbes * probes) {
     const auto i = std::uint32_t(drawn++);
     Vec2 d = sample_disc_concentric(round ? random.get2(i, Purpose::place) : sobol_owen_2d(i, key));

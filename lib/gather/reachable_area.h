@@ -1,4 +1,5 @@
-// lib/gather/reachable_area.h -- what of the surface around a place its light can be spread over: walls, edges, steps.
+// lib/gather/reachable_area.h -- the surface around a place over which the place's light can be spread, cut by walls,
+// edges and steps.
 #pragma once
 
 #include <vector>
@@ -9,32 +10,31 @@
 
 namespace tempolux {
 
-inline constexpr float kFlattening = 10;  ///< of the ellipsoid about a place, along its normal
-inline constexpr float kFlat = 0.005f;    ///< of the radius: how far off the plane the rim of a flat disc may lie
-inline constexpr float kMinCos = 0.1f;    ///< of its normal and those of surfaces that count
+inline constexpr float kFlattening = 10;  ///< of the ellipsoid around a place, along its normal
+inline constexpr float kFlat = 0.005f;    ///< share of the radius: largest distance of a flat disc's rim from the plane
+inline constexpr float kMinCos = 0.1f;    ///< smallest cosine between its normal and those of surfaces that count
 
-/// Can light that falls on one place of a surface be taken for light at another near it?
+/// Decides whether light that falls on one place of a surface may count as light at another place.
 class Reach {
  public:
   explicit Reach(const Tracer& tracer);
 
-  /// Either nothing is between the two, or nothing is on the way across the tangent plane of `from` and down
-  /// from there: the straight line cuts through a surface that bends away, the other way through one that
-  /// bends up. Both ways run a little (2 offset()) above the surfaces, whose normals are
-  /// unit and on the lit sides; that of `to` may be off by 1e-2.
+  /// True if nothing lies between the two places, or if nothing lies on the path across the tangent plane of `from` and
+  /// from there down to `to`. The straight line fails where a surface bends away, the other path where it bends up.
+  /// Both paths run 2 offset() above the surfaces. Normals are unit vectors on the lit sides; `to_normal` may be off by
+  /// 1e-2.
   bool operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const;
-  /// Is nothing between the two, which lie above surfaces?
+  /// True if nothing lies between the two places, which are above surfaces.
   bool free(Vec3 from, Vec3 to) const;
-  /// What is seen across the surface from a place (normal: unit, geometric, on the lit side), along spokes of the
-  /// tangent plane of `axis` (unit; the normal that Clearance::contains() will be given). A surface that faces the
-  /// place at less than 45 degrees (Clearance::kBend) does not end a spoke: it goes on along that, over four bends at
-  /// most.
+  /// Unobstructed distances across the surface from a place (normal: unit, geometric, on the lit side), along spokes in
+  /// the tangent plane of `axis` (unit; the normal that Clearance::contains() will get). A surface that rises by less
+  /// than 45 degrees (Clearance::kBend) does not end a spoke: the spoke follows it, over at most four bends.
   Clearance clearance(Vec3 position, Vec3 normal, Vec3 axis, float reach) const;
   /// m: 2^-20 of the largest coordinate of the scene.
   float offset() const { return offset_; }
 
  private:
-  /// A ray over the surface whose lit side `up` points away from, rising by Clearance::kRise.
+  /// A ray along the surface whose lit side `up` points away from, rising by Clearance::kRise.
   Ray across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const;
   float over_bends(Ray ray, Hit hit, Vec3 normal, Vec3 outwards, float reach) const;
 
@@ -42,30 +42,30 @@ class Reach {
   float offset_;
 };
 
-/// Surface in the ellipsoid r : r : r / kFlattening about a place that can be reached from it (Reach), within 84
-/// degrees of its plane. Thread-safe.
+/// Reachable surface (Reach) in the ellipsoid r : r : r / kFlattening around a place, within 84 degrees of its plane.
+/// Thread-safe.
 class ReachableArea {
  public:
-  enum class Kernel { flat, round };  ///< how it is weighted: 1, or 2 (1 - d^2) at the share d of the radius
+  enum class Kernel { flat, round };  ///< weight of the surface at the share d of the radius: 1, or 2 (1 - d^2)
 
   explicit ReachableArea(const Tracer& tracer);
 
   const Reach& reach() const { return reach_; }
   float offset() const { return reach_.offset(); }
 
-  /// Is the disc whole: can every place on its rim be reached across the plane, and is surface there? Sixteen places,
-  /// turned by `turn` of [0, 1), miss walls that cut off less than 0.4 % of the disc. `lift`: m above the plane that
-  /// spokes end, for normals that are known to lift / radius only.
+  /// True if the disc is whole: every place on its rim is reachable across the plane and has surface. Sixteen places,
+  /// turned by `turn` in [0, 1), miss walls that cut off less than 0.4 % of the disc. `lift`: m above the plane at
+  /// which spokes end, for normals with an error of lift / radius.
   bool whole(Vec3 position, Vec3 normal, float radius, float turn, float lift = 0) const;
-  /// One of those places.
+  /// Tests one of these places.
   bool whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, float radius, float lift) const;
 
-  /// 1 / area that can be reached, 1/m^2, exact in the mean; 0 if of kMostProbes * probes drawn columns none
-  /// arrives, with the round kernel if fewer than `probes` do, or none of the first quarter.
+  /// 1 / reachable area [1/m^2], exact in the mean. 0 if none of kMostProbes * probes columns arrives; with the round
+  /// kernel also if fewer than `probes` arrive, or none of the first quarter.
   double inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel, const PathRandom& random) const;
 
  private:
-  /// Where rays along a disc begin, and how far they look down from its rim.
+  /// The start of rays along a disc, and the distance that they look down from its rim.
   Vec3 start_of(Vec3 position, Vec3 normal) const { return position + normal * (2 * offset()); }
   float depth_of(float radius, float lift) const {
     return 2 * offset() + lift + std::max(4 * offset(), kFlat * radius);
@@ -75,7 +75,7 @@ class ReachableArea {
 
   const Tracer& tracer_;
   Reach reach_;
-  std::vector<char> stores_;  ///< by material: has a Lambert lobe
+  std::vector<char> stores_;  ///< by material: true if it has a Lambert lobe
 };
 
 }  // namespace tempolux

@@ -51,7 +51,8 @@ std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 norma
   if (found.count() == 0) return std::nullopt;
   Change change;
   for (std::size_t i = 0; i < found.count(); ++i) {
-    if (!(found.distance2()[i] < radius * radius)) continue;  // the static estimate leaves out the one that it touches
+    // The static estimate leaves out the photon that its disc touches.
+    if (!(found.distance2()[i] < radius * radius)) continue;
     const std::uint32_t photon = found.photons()[i];
     const Vec3 place = index_.position(photon);
     const bool flat = area.whole && std::abs(dot(place - position, normal)) < 4 * area_.offset();

@@ -1,4 +1,4 @@
-// lib/gather/signed_density.h -- what dynamic photons change at a place: irradiance with sign, and influence.
+// lib/gather/signed_density.h -- the change by dynamic photons at a place: signed irradiance, and influence.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@
 
 namespace tempolux {
 
-/// Density estimates over the indirect photons of a dynamic map, in discs that are given: their radii come from the
-/// static photons, as those from few dynamic ones are noise. Occlusion and area are those of the standing scene, as
-/// PointDensity has them. Thread-safe.
+/// Density estimates over the indirect photons of a dynamic map in given discs. The radii come from the static photons,
+/// because radii from a few dynamic photons would be noisy. Occlusion and area are those of the static scene, as in
+/// PointDensity. Thread-safe.
 class SignedDensity {
  public:
   /// shift: m, added to the photons' positions.
@@ -24,30 +24,31 @@ class SignedDensity {
 
   struct Change {
     Rgbd irradiance{0.0};  ///< W/m^2: sum of flux with its sign / area
-    double influence =
-        0;  ///< W/m^2: sum of the largest channel of |flux| / area; what comes and what goes do not cancel
+    /// W/m^2: sum of the largest channel of |flux| / area, so that gains and losses do not cancel.
+    double influence = 0;
   };
-  /// m: largest radius of a disc; if the options have none, PointDensity::kSparser times the photons' own reach.
+  /// m: largest radius of a disc; by default PointDensity::kSparser times the photons' own radius.
   float max_radius() const { return options_.max_radius; }
-  /// Of the photons nearer than `radius` (m; 0: the largest) in the ellipsoid 1 : 1 / kFlattening. Nothing if there
-  /// are none. `random`: as for PointDensity::estimate of the same place.
+  /// The change by the photons closer than `radius` (m; 0: the largest radius) in the ellipsoid 1 : 1 / kFlattening.
+  /// Empty if there are none. `random`: as for PointDensity::estimate at the same place.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random) const {
     Area area;
     return at(position, normal, radius, random, area);
   }
 
-  /// What can be reached of a disc of the standing scene: the same for all maps of a segment.
+  /// The reachable area of a disc in the static scene: the same for all maps of a segment.
   struct Area {
     bool known = false, whole = false;
     double inverse = 0;  ///< 1/m^2
   };
-  /// The same; `area` is found if it is not known yet and needed.
+  /// The same change. `area` is computed if it is needed and not known yet.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
-  /// What Change::influence is at most, reached or not: no ray is traced for the photons. 0 if there are none.
+  /// Upper bound of Change::influence, which counts unreachable photons, too, so that no ray is traced. 0 if there are
+  /// no photons.
   double most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
 
  private:
-  /// Photons within `radius`, with the area in which they lie; none: area stays as it is.
+  /// Finds the photons within `radius` and the area in which they lie. If there are none, `area` does not change.
   void find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area, NeighbourList& found) const;
 
   DensityOptions options_;
