@@ -1,5 +1,4 @@
-// modules/decode.h -- the three libraries behind tempolux-decode, one file each. What the settings mean:
-// lib/core/unpack.h.
+// modules/decode.h -- the three decoders of tempolux-decode, one file each. lib/core/unpack.h explains their settings.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,7 @@
 
 namespace tempolux {
 
-/// Fills `unpacked`, which has the size that was asked for. Returns what is wrong with the data, "" if nothing.
+/// Fills `unpacked`, which has the requested size. Returns an error message, or "" on success.
 using Decode = std::string(std::span<const std::uint32_t> settings, std::span<const unsigned char> packed,
                            std::span<unsigned char> unpacked);
 

@@ -1,4 +1,4 @@
-// KHR_draco_mesh_compression through libdraco.
+// modules/decode_draco.cpp -- decodes KHR_draco_mesh_compression with libdraco.
 #include <draco/compression/decode.h>
 
 #include <cstring>
@@ -9,10 +9,10 @@
 namespace tempolux {
 namespace {
 
-/// What of the unpacked bytes is not written yet.
+/// The part of the output that is not written yet.
 struct Rest {
   std::span<unsigned char> bytes;
-  /// Room for `count` numbers of `size` bytes; null if there is not so much.
+  /// Reserves room for `count` numbers of `size` bytes; nullptr if too little room remains.
   unsigned char* take(std::uint64_t count, std::uint64_t size) {
     if (size == 0 || count > bytes.size() / size) return nullptr;
     unsigned char* room = bytes.data();
@@ -34,7 +34,7 @@ std::string put_indices(const draco::Mesh& mesh, std::uint32_t index_bytes, std:
   if (3 * std::uint64_t(mesh.num_faces()) != count)
     return "finds " + std::to_string(mesh.num_faces()) + " triangles where the accessor of the indices has " +
            std::to_string(count) + " indices";
-  // Indices must fit their type: the largest is the number of points less one.
+  // Indices must fit their type: the largest index is the number of points minus one.
   if (index_bytes < 4 && std::uint64_t(mesh.num_points()) > 1ull << (8 * index_bytes))
     return "finds more vertices than indices of " + std::to_string(index_bytes) + " bytes can name";
   unsigned char* to = rest.take(count, index_bytes);
@@ -61,7 +61,7 @@ bool put_values(const draco::PointAttribute& attribute, std::uint32_t points, st
   return true;
 }
 
-/// One attribute: its id in the Draco data, glTF's component type, numbers per vertex.
+/// Writes one attribute. `wanted`: its id in the Draco data, glTF's component type, numbers per vertex.
 std::string put_attribute(const draco::Mesh& mesh, std::span<const std::uint32_t> wanted, Rest& rest) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(wanted[0]);
   const std::string name = "attribute " + std::to_string(wanted[0]);

@@ -1,5 +1,5 @@
-// EXT_meshopt_compression through meshoptimizer. Its decoders trust counts and sizes, so these are checked as the
-// extension demands them.
+// modules/decode_meshopt.cpp -- decodes EXT_meshopt_compression with meshoptimizer. The decoders do not check counts
+// and sizes, so this file checks them as the extension demands.
 #include <meshoptimizer.h>
 
 #include "lib/core/unpack.h"
@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-/// Index data: two or four bytes each, whole triangles.
+/// Decodes indices of two or four bytes; triangle indices must form whole triangles.
 std::string decode_indices(bool triangles, std::size_t count, std::size_t size, std::span<const unsigned char> packed,
                            std::span<unsigned char> unpacked) {
   if ((size != 2 && size != 4) || (triangles && count % 3 != 0)) return "got sizes that no index data has";

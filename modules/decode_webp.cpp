@@ -1,4 +1,4 @@
-// WebP through libwebp.
+// modules/decode_webp.cpp -- decodes WebP images with libwebp.
 #include <webp/decode.h>
 
 #include "modules/decode.h"
@@ -9,7 +9,7 @@ std::string decode_webp(std::span<const std::uint32_t> settings, std::span<const
                         std::span<unsigned char> unpacked) {
   if (settings.size() != 3) return "got a request that is no request for WebP";
   const std::uint64_t width = settings[0], height = settings[1], channels = settings[2];
-  constexpr std::uint64_t most = 16384;  // 14 bits for each side
+  constexpr std::uint64_t most = 16384;  // largest width and height of a WebP image: 14 bits
   if ((channels != 3 && channels != 4) || width > most || height > most || unpacked.size() != width * height * channels)
     return "got a size that no WebP image has";
   WebPBitstreamFeatures features;

@@ -1,21 +1,22 @@
-// modules/guard.h -- a helper program gives up what its work does not need, before it reads data of strangers.
+// modules/guard.h -- restricts a child program to the system calls it needs, before it reads untrusted files.
 #pragma once
 
 #include <string>
 
 namespace tempolux {
 
-/// From here on this process may read, write and seek in what is open, take and return memory, and end. Any other
-/// system call ends the process by SIGSYS at once: opening a file, a socket, starting a thread or a program, mapping
-/// memory that can be run. So data that takes over the library that reads them can do no more than print a wrong
-/// picture.
+/// From this call on, the process may only read, write and seek in open files, allocate and free memory, and exit. Any
+/// other system call ends the process at once with SIGSYS: opening a file or a socket, starting a thread or a program,
+/// mapping executable memory. So a file that exploits an error in the library that reads it can do no more than produce
+/// a wrong picture.
 ///
-/// To be called after what libraries do at first use (numbers of processors, locales, plugins) and after opening the
-/// files to read, before their first byte is looked at. Holds for all threads that this one starts, and for ever.
+/// Call this after everything that libraries do at first use (number of processors, locales, plugins) and after the
+/// input files were opened, but before their first byte is read. The restriction holds for all threads and cannot be
+/// removed.
 ///
-/// Returns "" or why the guard cannot be set up, as the end of a sentence that begins with the helper's name. In builds
-/// with sanitizers there is no guard: their reports read /proc and start threads. With TEMPOLUX_GUARD=OFF there is none
-/// either.
+/// Returns "", or the reason why the guard cannot be set up, as the end of a sentence that begins with the program's
+/// name. Builds with sanitizers and builds with TEMPOLUX_GUARD=OFF have no guard, because sanitizers' reports read
+/// /proc and start threads.
 std::string guard_process();
 
 }  // namespace tempolux

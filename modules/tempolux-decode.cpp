@@ -1,5 +1,5 @@
-// tempolux-decode -- a helper program that lib/core/unpack.cpp starts under limits of memory and time: unpacks what
-// Draco, meshoptimizer or WebP packed. Its input and output are described in lib/core/unpack.h; people do not call it.
+// modules/tempolux-decode.cpp -- a child program that decodes Draco, meshoptimizer or WebP data. lib/core/unpack.cpp
+// starts it under limits of memory and time; lib/core/unpack.h describes its input and output. Users do not call it.
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace tempolux;
 
-/// Exactly so many bytes from standard input; false if it ends before.
+/// Reads exactly `count` bytes from standard input; false if it ends before.
 bool read_all(void* to, std::size_t count) {
   auto* at = static_cast<unsigned char*>(to);
   while (count > 0) {
@@ -48,7 +48,7 @@ struct Piece {
   std::vector<unsigned char> packed, unpacked;
 };
 
-/// False at the end of the input. A piece that is cut off in the middle cannot be told from it: whoever asked has died.
+/// Reads a piece; false at the end of the input. A piece that is cut off counts as the end: the caller has died.
 bool read_piece(Piece& piece) {
   std::uint32_t head[2];
   std::uint64_t sizes[2];

@@ -1,8 +1,8 @@
-// tempolux-fourier -- Fourier transforms by FFTW; opened by lib/aqm/fourier.cpp when differences are judged
-// as an eye sees them.
+// modules/tempolux-fourier.cpp -- Fourier transforms with FFTW. lib/aqm/fourier.cpp opens this module when it judges
+// differences as an eye sees them.
 //
-// A shared object of its own, so that comparisons by error figures alone load nothing of FFTW. Plans are
-// FFTW's estimates, never measured: the same operations, so the same bytes, in every run.
+// A separate shared object, so that comparisons by error figures alone do not load FFTW. Plans are FFTW's estimates and
+// not measured: every run executes the same operations and so gives the same bytes.
 #include <fftw3.h>
 
 #include <map>
@@ -15,8 +15,7 @@ namespace {
 
 using tempolux::FourierRequest;
 
-/// The plan for a kind and size, made with the first call. FFTW's planner is not safe from several threads,
-/// what executes plans is.
+/// The plan for a kind and size, made by the first call. FFTW's planner is not thread-safe, but executing a plan is.
 fftwf_plan plan_for(const FourierRequest& request) {
   static std::mutex planner;
   static std::map<std::tuple<int, int, int>, fftwf_plan> plans;

@@ -1,7 +1,8 @@
-// tempolux-images -- reads textures and environments; opened by lib/image/images_by_module.cpp at need.
+// modules/tempolux-images.cpp -- reads textures and environment maps. lib/image/images_by_module.cpp opens this module
+// when a scene has images.
 //
-// A shared object of its own because most scenes have no image, and starting with OpenEXR, libpng and libjpeg costs
-// five million instructions.
+// A separate shared object, because most scenes have no image, and loading OpenEXR, libpng and libjpeg takes five
+// million instructions.
 #include <array>
 #include <cstring>
 #include <exception>

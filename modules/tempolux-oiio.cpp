@@ -1,8 +1,9 @@
-// tempolux-oiio -- reads one JPEG or TIFF through OpenImageIO and prints its pixels: lib/image/image_pipe.h.
+// modules/tempolux-oiio.cpp -- a child program that reads one JPEG or TIFF with OpenImageIO and writes its pixels to
+// standard output (lib/image/image_pipe.h).
 //
-// A program of its own, started by lib/image/any_io.cpp under limits of memory and time: linking Debian's OpenImageIO
-// costs 0.4 s and 130 MB at every start, and files of strangers reach 261 libraries through it. The file is opened
-// before it is looked at; then modules/guard.h takes away what reading does not need.
+// A separate program, which lib/image/any_io.cpp starts under limits of memory and time: linking Debian's OpenImageIO
+// costs 0.4 s and 130 MB at every start, and an untrusted file reaches 261 libraries through it. The program opens the
+// file and calls guard_process() before it reads the first byte.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -44,7 +45,7 @@ Request take_request() {
   return request;
 }
 
-/// Limits before any file is touched. No plugin folders, no threads of its own.
+/// Sets OpenImageIO's limits before a file is read: no plugin folders, no threads.
 std::unique_ptr<OIIO::ImageInput> reader(const Request& request) {
   const std::uint64_t megabytes = request.ask.max_pixels * request.ask.max_channels * sizeof(float) / (1 << 20) + 1;
   OIIO::attribute("limits:imagesize_MB", int(std::min<std::uint64_t>(megabytes, 1 << 20)));
@@ -94,7 +95,8 @@ int main() {
   std::string words;
   try {
     run();
-    std::_Exit(0);  // at a plain end 261 libraries would put their things away, which the guard need not allow
+    // a regular exit would run the exit code of 261 libraries, whose system calls the guard does not allow
+    std::_Exit(0);
   } catch (const Refused& refused) { words = refused.words; } catch (const std::bad_alloc&) {
     words = "needs more memory than reading it may take; convert it to EXR or PNG, or make it smaller";
   } catch (const std::exception& error) { words = error.what(); }

@@ -1,10 +1,10 @@
-// tempolux-vdb -- reads one density of each OpenVDB file that it is asked for and prints its voxels:
-// lib/volume/vdb_pipe.h.
+// modules/tempolux-vdb.cpp -- a child program that reads one density grid of each requested OpenVDB file and writes its
+// voxels to standard output (lib/volume/vdb_pipe.h).
 //
-// A program of its own, started by lib/volume/vdb_file.cpp under limits of memory and time: damaged files crash or hang
-// OpenVDB 10, and starting with it costs .06 s and 32 MB that scenes without smoke need not pay. All files are opened
-// before the first is looked at; then modules/guard.h takes away what reading does not need. openvdb::io::File opens
-// files by itself, so that its part is done here: finding grids by their descriptors.
+// A separate program, which lib/volume/vdb_file.cpp starts under limits of memory and time: damaged files can crash or
+// hang OpenVDB 10, and loading it costs .06 s and 32 MB, which scenes without smoke should not pay. The program opens
+// all files and calls guard_process() before it reads the first byte. openvdb::io::File would open files itself, so
+// this program finds grids by their descriptors.
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -35,10 +35,11 @@ struct Refused {
   std::string words;
 };
 
-constexpr std::size_t kMostNames = 12;  ///< of grids, in a message
+constexpr std::size_t kMostNames = 12;  ///< number of grids listed in a message
 constexpr std::int32_t kMostGrids = 1024;
 
-/// Refuses what is no VDB by other words than what is damaged. The file is at its beginning before and after.
+/// Refuses a file that is not a VDB with another message than a damaged one. The stream is at the beginning of the file
+/// before and after.
 void look_at_beginning(std::istream& file) {
   char bytes[12] = {};
   file.read(bytes, sizeof bytes);
@@ -63,7 +64,7 @@ std::string printable(std::string text, std::size_t most) {
 struct Candidate {
   openvdb::io::GridDescriptor place;  ///< where the grid lies in the file
   std::string name;
-  openvdb::GridBase::Ptr metadata;  ///< the grid: whole, or its description alone
+  openvdb::GridBase::Ptr metadata;  ///< the grid: complete, or its metadata alone
   bool is_number() const { return metadata->isType<openvdb::FloatGrid>() || metadata->isType<openvdb::DoubleGrid>(); }
   bool is_density() const {
     return is_number() &&
@@ -81,12 +82,12 @@ std::string listed(const std::vector<Candidate>& grids) {
   return text + (grids.size() > kMostNames ? ", ..." : "");
 }
 
-/// A file that is open already, as openvdb::io::File would read it.
+/// Reads an open file as openvdb::io::File would.
 class OpenFile : openvdb::io::Archive {
  public:
   explicit OpenFile(std::istream& file) : file_(file) {}
 
-  /// All grids, in the order of their names; of files with a table of places the descriptions alone.
+  /// All grids, sorted by name; metadata alone if the file has a table of offsets.
   std::vector<Candidate> grids() {
     readHeader(file_);
     metadata_->setSeekable(true);
@@ -114,7 +115,7 @@ class OpenFile : openvdb::io::Archive {
     return grids;
   }
 
-  /// The whole grid; one that has its voxels from another (an instance) with these.
+  /// Reads the whole grid. An instance gets the voxels of the grid that it refers to.
   openvdb::GridBase::Ptr whole(const Candidate& grid, const std::vector<Candidate>& all) {
     if (!inputHasGridOffsets()) return grid.metadata;
     const openvdb::GridBase::Ptr loaded = voxels_of(grid.place);
@@ -136,7 +137,7 @@ class OpenFile : openvdb::io::Archive {
     return count;
   }
 
-  /// A file that was written to a pipe: one grid follows the other, and all are read.
+  /// Reads all grids of a file that was written to a pipe, one after the other.
   std::vector<Candidate> grids_in_sequence() {
     file_.clear();
     file_.seekg(0);
@@ -157,10 +158,10 @@ class OpenFile : openvdb::io::Archive {
 
   std::istream& file_;
   openvdb::io::StreamMetadata::Ptr metadata_ =
-      std::make_shared<openvdb::io::StreamMetadata>();  ///< the stream points here
+      std::make_shared<openvdb::io::StreamMetadata>();  ///< the stream refers to this object
 };
 
-/// The one to read: by name, else "density", else the only density.
+/// The grid to read: by name, else "density", else the only density grid.
 const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& wanted) {
   std::string name = wanted.empty() ? "density" : wanted;
   long number = -1;
@@ -195,7 +196,7 @@ const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& 
 
 std::array<double, 12> affine_of(const openvdb::math::Transform& transform) {
   if (!transform.isLinear()) throw Refused{"its grid is bent (a frustum); resample it to a box"};
-  const auto m = transform.baseMap()->getAffineMap()->getMat4();  // of row vectors
+  const auto m = transform.baseMap()->getAffineMap()->getMat4();  // for row vectors
   std::array<double, 12> rows{};
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 4; ++c) rows[std::size_t(4 * r + c)] = m(c, r);
@@ -210,7 +211,7 @@ void check(double value, const openvdb::Coord& at) {
                 ") is " + std::to_string(value) + ": a density is finite and not negative"};
 }
 
-/// Tiles (blocks of one value) that are not 0 become voxels.
+/// Converts tiles (blocks with a single value) other than 0 into voxels.
 template <class Tree>
 void expand_tiles(Tree& tree) {
   std::vector<std::pair<openvdb::CoordBBox, typename Tree::ValueType>> tiles;
@@ -251,7 +252,7 @@ void print(Grid& grid, const std::string& name) {
   for (const auto* leaf : leaves) {
     VoxelBlock block;
     block.origin = {leaf->origin().x(), leaf->origin().y(), leaf->origin().z()};
-    for (openvdb::Index i = 0; i < 512; ++i) {  // active or not: what is stored is what is read
+    for (openvdb::Index i = 0; i < 512; ++i) {  // reads stored values, active or not
       check(double(leaf->getValue(i)), leaf->offsetToGlobalCoord(i));
       block.values[i] = float(leaf->getValue(i));
     }
@@ -265,7 +266,7 @@ struct Request {
   std::ifstream file;
 };
 
-/// All that is asked for, each file opened and none looked at.
+/// Reads all requests and opens their files without reading them.
 std::vector<Request> open_all() {
   std::vector<Request> requests;
   for (std::string path, grid; std::getline(std::cin, path) && std::getline(std::cin, grid);)
@@ -285,13 +286,14 @@ void read(Request& request) {
   else throw Refused{"its grid could not be read"};
 }
 
-/// What OpenVDB and TBB do at first use: types are registered, numbers of processors read, other libraries opened.
+/// Triggers what OpenVDB and TBB do at first use: they register types, read the number of processors and open other
+/// libraries.
 void warm_up() {
   openvdb::initialize();
   tbb::parallel_for(0, 2, [](int) {});
 }
 
-/// Standard input, whole, as a file on standard output.
+/// Reads a grid of colours from standard input and writes a VDB file with it to standard output.
 void write() {
   tempolux::VdbWriteHead head;
   const auto take = [](void* to, std::size_t size) {
@@ -304,7 +306,7 @@ void write() {
   take(name.data(), name.size());
   auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
   grid->setName(name);
-  openvdb::Mat4d place = openvdb::Mat4d::identity();  // of row vectors
+  openvdb::Mat4d place = openvdb::Mat4d::identity();  // for row vectors
   for (int a = 0; a < 3; ++a) {
     place(a, a) = head.voxel[std::size_t(a)];
     place(3, a) = head.first_centre[std::size_t(a)];
@@ -335,11 +337,11 @@ void run(bool writes) {
 
 int main(int argc, char** argv) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism,
-                                       1);  // a guarded process starts no other
+                                       1);  // a guarded process cannot start threads
   std::string words;
   try {
     run(argc > 1 && std::string(argv[1]) == "write");
-    std::_Exit(0);  // at a plain end TBB would start threads again, to take things down
+    std::_Exit(0);  // at a regular exit TBB would start threads
   } catch (const Refused& refused) { words = refused.words; } catch (const std::bad_alloc&) {
     words = "does not fit the memory it may use; raise --max-memory, or resample it coarser";
   } catch (const std::exception& error) {

@@ -51,11 +51,12 @@ class FrameFilter {
   /// ones. The frame is not used after the call. Throws InputError if it differs from the middle frame in size or
   /// layers.
   void add(const WindowLight& frame, const FlowFrame& flow);
-  /// Call once, after all frames were added. The image says the noise that is left (tell_left_noise in left_noise.h).
+  /// Call once, after all frames were added. Writes the remaining noise to the image's attributes
+  /// (write_remaining_noise in left_noise.h).
   Image finish(Image image);
-  /// The same of a part of a picture, whose attributes stay.
+  /// Filters a part of a picture; its attributes do not change.
   void filter(Image& image);
-  /// After either: by pixel (left_noise.h); empty where nothing was filtered.
+  /// The squared error by pixel after finish() or filter() (left_noise.h); empty if nothing was filtered.
   LeftError left_error() const;
 
  private:
@@ -63,8 +64,8 @@ class FrameFilter {
   std::unique_ptr<State> state_;
 };
 
-/// The same without other frames, tile by tile, which takes little memory besides the image. The result differs from
-/// FrameFilter's by rounding only.
+/// Filters a frame without other frames, tile by tile, which takes little memory besides the image. The result differs
+/// from FrameFilter's only by rounding.
 Image filter_alone(Image image, const FilterOptions& options);
 
 }  // namespace tempolux

@@ -9,12 +9,12 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBlock = 32;        ///< pixels
-constexpr double kMiddle = 0.18;  ///< where exposure puts the median of the pixels' means
+constexpr int kBlock = 32;        ///< pixels: edge of the blocks from which the standard error is estimated
+constexpr double kMiddle = 0.18;  ///< value to which the exposure brings the median of the pixels' means
 const std::string kNoise = "tempolux:noise.";
 
-/// The factor that puts the median of pixels' means at kMiddle; if more than half are black, the median of those that
-/// are not; 1 of a black picture.
+/// The factor that brings the median of the pixels' means to kMiddle. If more than half of the pixels are black, the
+/// median of the others is used; 1 for a black picture.
 double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
   std::vector<float> means(picture[0]->size());
   for (std::size_t p = 0; p < means.size(); ++p)
@@ -28,13 +28,13 @@ double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
   return means.empty() ? 1 : kMiddle / median();
 }
 
-/// Slope of the sRGB code, 0 to 255, at an exposed value; 0 where the code is clipped.
+/// Slope of the sRGB code (0 to 255) at an exposed value; 0 where the code is clipped.
 double slope_of_code(double value) {
   if (value < 0 || value > 1) return 0;
   return 255 * (value <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(value, 1 / 2.4 - 1));
 }
 
-/// Means of squared errors over pixels, and the standard error by blocks.
+/// Mean of squared errors over pixels, and its standard error from blocks of pixels.
 class Mean {
  public:
   void add(double sum, double count) {
@@ -52,10 +52,10 @@ class Mean {
   double sum_ = 0, count_ = 0, squares_ = 0, products_ = 0, counts_ = 0;
 };
 
-/// Of the squared errors in one unit.
+/// Squared errors in one unit.
 struct Errors {
   std::string name;
-  double unknown = 0;  ///< the least noise that the raw frame says to have
+  double unknown = 0;  ///< lower bound of the raw frame's measured noise
   Mean whole, noise, known;
 
   Errors(const char* unit, const Image& frame) : name(kNoise + unit) {
@@ -71,7 +71,7 @@ struct Errors {
   }
 };
 
-/// Adds a block whose pixel (0, 0) is (left, top).
+/// Adds the block whose first pixel is (left, top).
 void add_block(const LeftError& error, const Image& frame, int left, int top, double exposure, Errors& linear,
                Errors& codes) {
   const auto picture = frame.rgb("");

@@ -1,4 +1,4 @@
-// lib/filter/left_noise.h -- how far a filtered frame is from the light that its samples estimate.
+// lib/filter/left_noise.h -- estimates the error that remains in a filtered frame.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace tempolux {
 
-/// What is estimated of the squared error of a filtered picture, by pixel and colour [(W/m^2/sr)^2]. One pixel's value
-/// may be far off; means over many pixels are meant. Empty: nothing was filtered.
+/// Estimates of a filtered picture's squared error, by pixel and colour [(W/m^2/sr)^2]. The estimate of one pixel is
+/// very noisy; only means over many pixels are meaningful. Empty: nothing was filtered.
 struct LeftError {
-  Colours whole;  ///< noise that is left, and blur; may be below 0
-  Colours noise;  ///< noise alone
-  Colours known;  ///< variance of the raw picture, as its halves know it
+  Colours whole;  ///< remaining noise and blur; may be negative
+  Colours noise;  ///< remaining noise alone
+  Colours known;  ///< variance of the raw picture, estimated from its halves
 };
 
-/// Adds up layers. With M the raw picture, G the filtered one, n and k half the differences of their halves, all of
-/// them sums over layers, an unbiased estimate of (G - truth)^2 is
+/// Sums the error over layers. Let M be the raw picture, G the filtered one, and n and k half the differences of their
+/// halves, all of them sums over layers. An unbiased estimate of (G - truth)^2 is
 ///     (G - M)^2 - n^2 + 2 k n   [Stein: Estimation of the mean of a multivariate normal distribution, 1981],
-/// as n^2 is the variance of M and k n the covariance of G and M. k^2 is the variance of G.
+/// because n^2 estimates the variance of M and k n the covariance of G and M. k^2 estimates the variance of G.
 class LeftNoise {
  public:
   /// Adds a layer: raw and filtered halves.
@@ -31,14 +31,18 @@ class LeftNoise {
   Colours raw_, left_, change_;  ///< n, k and G - M
 };
 
-/// Writes the root mean square over pixels and colours of the error that is left, in W/m^2/sr and in sRGB codes, into
-/// the frame's attributes tempolux:noise.*, in place of those of the raw frame (formats/frames/frames.md 3). It is the
-/// mean of `whole`, or that of `noise` if it is larger: choose() takes what has the least `whole`, which makes that too
-/// small, the more the fewer pixels hold most of the noise. Added is what halves do not know: they agree about a thing
-/// smaller than a pixel that samples met or missed. It is the square of the noise that the raw frame says, by pixels
-/// rendered twice, less one standard error, beyond the mean of `known`. The error in codes is the linear one times the
-/// slope of the sRGB curve at the filtered value, 0 where that is clipped. The standard error is that of blocks of 32 x
-/// 32 pixels: errors of near pixels are alike. Nothing filtered, or no R, G and B: the attributes are removed.
+/// Writes the root mean square of the remaining error over pixels and colours, in W/m^2/sr and in sRGB codes, to the
+/// frame's attributes tempolux:noise.*, in place of the raw frame's (formats/frames/frames.md 3).
+///
+/// The squared error is the mean of `whole`, or of `noise` if that is larger: choose() takes the candidate with the
+/// least `whole`, so its `whole` is too small, most of all if few pixels hold most of the noise. To this is added the
+/// error that halves cannot show, because both halves agree about an object smaller than a pixel that samples met or
+/// missed: the square of the raw frame's noise, measured with pixels that were rendered twice, less one standard error,
+/// minus the mean of `known`. The error in codes is the linear error times the slope of the sRGB curve at the filtered
+/// value, 0 where the code is clipped. The standard error comes from blocks of 32 x 32 pixels, because errors of
+/// neighbouring pixels are correlated.
+///
+/// If nothing was filtered or R, G and B are missing, the attributes are removed.
 void tell_left_noise(const LeftError& error, Image& frame);
 
 }  // namespace tempolux

@@ -16,8 +16,9 @@ float smooth_step(float x) {
   x = std::clamp(x, 0.0f, 1.0f);
   return x * x * (3 - 2 * x);
 }
-/// Mean loss of GGX below which multiple reflection is left out: there f_ms is all at grazing angles, and
-/// cosine samples of it would weigh more than ten times their mean. Full at three times this.
+/// Mean loss of GGX below which multiple reflection is left out: f_ms is then concentrated at grazing angles, and
+/// cosine-distributed samples of it would have weights of more than ten times their mean. At three times this loss f_ms
+/// counts in full.
 constexpr float kLeastLost = 0.01f;
 
 /// Schlick's Fresnel term.
@@ -41,11 +42,11 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
   const float metallic = material.metallic;
   transmission_ = material.transmission * (1 - metallic);
   if (transmission_ > 0) {
-    const float ior = material.ior > 0 ? material.ior : 1e4f;  // ior 0: reflects everything, says KHR_materials_ior
+    const float ior = material.ior > 0 ? material.ior : 1e4f;  // KHR_materials_ior: ior 0 reflects everything
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
-    // An index next to 1 hardly refracts: a lobe narrower than float32 can tell goes straight through.
+    // An index close to 1 hardly refracts: a lobe narrower than float32 resolves goes straight through.
     const float alpha = material.roughness * material.roughness;
     if (material.roughness >= kMirrorRoughness && (material.thin_walled || alpha * (ior - 1) > 2e-5f)) {
       rough_.emplace(ior, alpha, material.thin_walled, front);
@@ -57,7 +58,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
   lambert_ = metallic < 1;
   diffuse_ = max_component(rho_) > 0;
   f90_ = material.specular * (1 - metallic) + metallic;
-  if (!(f90_ > 0)) return;  // specular = metallic = 0: matte, F0 is 0 as well
+  if (!(f90_ > 0)) return;  // specular = metallic = 0: matte, and F0 is 0 as well
   specular_ = true;
   f0_ = dielectric_f0(material) * (1 - metallic) + material.base_color * metallic;
   f0_max_ = max_component(f0_);
@@ -79,7 +80,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     }
     mean_albedo_ = f0_max_ * m.a + f90_ * m.b + max_component(multiple_) * lost * lost;
   }
-  // A lobe that reflects everything leaves nothing to the Lambert lobe.
+  // A lobe that reflects all light leaves none for the Lambert lobe.
   const float rest = 1 - mean_albedo_;
   if (rest > 1e-6f) coupling_scale_ = 1 / std::sqrt(rest);
   else diffuse_ = false;
@@ -106,7 +107,7 @@ Rgb Bsdf::specular_albedo(float cos_o) const {
   return r.single + r.multiple;
 }
 
-/// c(w), 1 without a reflection above the Lambert lobe.
+/// c(w); 1 without a reflection above the Lambert lobe.
 float Bsdf::coupling(const Reflection& r) const {
   return specular_ ? std::max(0.0f, 1 - max_component(r.single + r.multiple)) * coupling_scale_ : 1;
 }
@@ -119,7 +120,7 @@ Rgb Bsdf::diffuse_reflectance(float cos_o) const {
 
 float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
 
-/// P(D): the Lambert lobe's share of what uniform light would leave towards wo.
+/// P(D): the Lambert lobe's share of the uniform light that is reflected towards wo.
 float Bsdf::diffuse_probability(const Reflection& r) const {
   if (!diffuse_) return 0;
   if (!specular_) return 1;
@@ -169,13 +170,13 @@ float Bsdf::pdf_diffuse(Vec3 wi, const Direction& wo) const {
   return diffuse_probability(wo.reflected) * pdf_hemisphere_cos(wi.z) * (1 - transmission_);
 }
 
-/// What is reflected more than once, as a share of event S.
+/// The share of event S that is reflected more than once.
 float Bsdf::multiple_share(const Reflection& r) {
   const float multiple = channel_mean(r.multiple), total = multiple + channel_mean(r.single);
   return total > 0 ? multiple / total : 0;
 }
 
-/// Of event S, without P(S): visible normals and, for what is reflected more than once, the cosine.
+/// pdf of event S [1/sr] without P(S): visible normals for single reflection, the cosine for multiple reflection.
 float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
   const float share = multiple_share(r);
   return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);

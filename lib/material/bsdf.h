@@ -13,73 +13,76 @@ namespace tempolux {
 
 /// Scattering of one material at one point, in the local frame of the shading normal (z = normal).
 ///
-/// f = f_D + f_S [1/sr]. wi and wo are unit vectors away from the surface, both on the side z > 0, else f = 0
-/// (but for glass: a rough one scatters to wi.z < 0 too; delta lobes are sampled only).
+/// f = f_D + f_S [1/sr]. wi and wo are unit vectors away from the surface, both on the side z > 0, else f = 0. Two
+/// exceptions: rough glass also scatters to wi.z < 0, and delta lobes can only be sampled.
 ///
 /// f_S is GGX (ggx.h) with Schlick's Fresnel term F = F0 + (F90 - F0) (1 - wo h)^5, or below a roughness of
 /// kMirrorRoughness a delta mirror with the same F. From glTF 2.0 and KHR_materials_specular, _ior:
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic)
-/// plus the light that microfacets reflect more than once, which GGX alone loses (70 % of a rough white
-/// metal at normal incidence), by Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", 2017:
+/// Light that microfacets reflect more than once, which GGX alone loses (70 % for a rough white metal at normal
+/// incidence), is added as by Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", 2017:
 ///     f_ms(wi, wo) = F_ms (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean)),
 ///     F_ms = F_mean^2 E_mean / (1 - F_mean (1 - E_mean)),   F_mean = (20 F0 + F90) / 21,
-/// where E is the albedo of GGX for F = 1. It is reciprocal, and for F = 1 all light comes back: the
-/// directional albedo A(w) of f_S is F0 a + F90 b + F_ms (1 - E), a + b = E, with a and b from a table. f_ms
-/// fades in between roughness 0.23 and 0.34 (mean loss of 1 and 3 %); below, grazing light loses up to 11 %.
+/// where E is the albedo of GGX for F = 1. f_ms is reciprocal, and for F = 1 all light is reflected. The directional
+/// albedo A(w) of f_S is F0 a + F90 b + F_ms (1 - E) with a + b = E; a and b come from a table. f_ms is faded in
+/// between the roughnesses 0.23 and 0.34 (mean loss of 1 and 3 %); below, grazing light loses up to 11 %.
 ///
-/// f_D is the Lambert lobe rho / pi, rho = base_color (1 - metallic), under the reflection above it, coupled
-/// as by Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", EG 2001:
+/// f_D is the Lambert lobe rho / pi with rho = base_color (1 - metallic), under the reflection above it, coupled as by
+/// Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", EG 2001:
 ///     f_D(wi, wo) = rho/pi  c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean),
-/// A of the channel with the largest F0, A_mean = 2 integral_0^1 A(mu) mu dmu. Then
+/// with A of the channel with the largest F0 and A_mean = 2 integral_0^1 A(mu) mu dmu. Then
 ///     integral of c(w) cos / pi = (1 - A_mean) / sqrt(1 - A_mean) = sqrt(1 - A_mean), and
 ///     integral of f_D(wi, wo) cos_i = rho c(wo) sqrt(1 - A_mean) = rho (1 - A(wo)):
-/// the Lambert lobe gets what is not reflected, and D + S returns A + rho (1 - A) <= 1 from either side. For
-/// a matte material (F0 = F90 = 0) there is no f_S and c is 1 exactly.
+/// the Lambert lobe receives the light that f_S does not reflect, and D and S together return A + rho (1 - A) <= 1 in
+/// either direction. A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1.
 ///
-/// Glass (KHR_materials_transmission) takes its share, transmission (1 - metallic), of all this: a boundary that
-/// reflects by the exact Fresnel equations and lets the rest through, tinted by base_color at each boundary;
-/// refracted at a solid (index ior inside), straight through a thin wall; smooth below kMirrorRoughness, else
-/// rough_glass.h. Radiance is not scaled by the index squared inside a solid (what is carried is L / n^2): what
-/// enters leaves, and what a Lambert lobe inside returns is what it returns outside. sample() serves photons, which
-/// carry watts, as it stands; their density inside is n^2 times too high for that scale (photon_trace.h).
+/// Glass (KHR_materials_transmission) replaces the share transmission (1 - metallic) of all this by a boundary that
+/// reflects by the exact Fresnel equations and transmits the rest, tinted by base_color at each boundary. Light is
+/// refracted at a solid (index ior inside) and goes straight through a thin wall. The boundary is smooth below
+/// kMirrorRoughness, else rough_glass.h describes it. Radiance is not scaled by the squared index inside a solid: paths
+/// carry L / n^2, so that a Lambert lobe inside a solid returns the same radiance as one outside. sample() also serves
+/// photons, which carry watts, without a change; the density of photons inside a solid is n^2 times too high for this
+/// scale (photon_trace.h).
 class Bsdf {
  public:
-  /// front: wo is on the front side of the triangle, outside a solid of glass.
+  /// front: wo is on the triangle's front side, which is outside a solid of glass.
   explicit Bsdf(const MaterialValues& material, bool front = true);
 
-  /// Does light arrive at a Lambert lobe here? True of a black one too: what it receives can be measured.
+  /// True if the material has a Lambert lobe, also a black one: the light that a black lobe receives can be measured.
   bool has_lambert() const { return lambert_; }
   bool has_diffuse() const { return diffuse_; }  ///< a Lambert lobe that reflects
   bool has_specular() const { return specular_ || transmission_ > 0; }
   bool specular_is_delta() const { return !rough_ && (delta_ || !specular_); }  ///< all S lobes
-  /// Which light eval_specular passes on: share of light samples to be aimed at the side z < 0. 1 inside a solid
-  /// of rough glass, where the light is outside; 0 outside of one, where what is beyond meets its other side.
+  /// The share of light samples to be taken on the side z < 0, where eval_specular transmits light from. 1 inside a
+  /// solid of rough glass, because the light is outside; 0 outside a solid, because light that crosses it meets its
+  /// other side.
   float light_share_beyond() const { return light_share_beyond_; }
-  /// rho of the Lambert lobe, before coupling.
+  /// rho of the Lambert lobe, without coupling.
   Rgb diffuse_albedo() const { return rho_; }
-  /// c(w) above, 1 for a matte material; cos_theta > 0.
+  /// c(w) above; 1 for a matte material; cos_theta > 0.
   float diffuse_coupling(float cos_theta) const;
-  /// A_S(wo): what the S lobes reflect of uniform light towards wo, by the albedo table; 0 for a matte
+  /// A_S(wo): the share of uniform light that the S lobes reflect towards wo, from the albedo table; 0 for a matte
   /// material.
   Rgb specular_albedo(float cos_o) const;
-  /// What the Lambert lobe reflects of uniform light towards wo: rho (1 - A_S(wo)), rho for a matte material.
+  /// The share of uniform light that the Lambert lobe reflects towards wo: rho (1 - A_S(wo)); rho for a matte material.
   Rgb diffuse_reflectance(float cos_o) const;
-  /// Factor for light arriving from wi before it is averaged into an irradiance E, so that f_D's radiance is
-  /// diffuse_reflectance(cos_o) E / pi exactly: (1 - A_S(wi)) / (1 - A_S,mean), 1 for a matte material.
+  /// Weight of light from wi in an irradiance E, such that f_D's radiance is exactly diffuse_reflectance(cos_o) E / pi:
+  /// (1 - A_S(wi)) / (1 - A_S,mean); 1 for a matte material.
   float arrival_weight(float cos_i) const;
 
-  /// A direction and what of uniform light is reflected towards it: a look-up in a table, made once for many questions.
+  /// A direction with the shares of uniform light that are reflected towards it: one look-up in the table serves
+  /// several calls.
   struct Direction {
     Vec3 w{};
     struct Reflection {
-      Rgb single{0.0f}, multiple{0.0f};  ///< by one and by several microfacet reflections
-      float lost = 0;                    ///< 1 - E: what GGX alone would lose at F = 1
-    } reflected;                         ///< none below the surface
+      Rgb single{0.0f}, multiple{0.0f};  ///< shares reflected by one and by several microfacets
+      float lost = 0;                    ///< 1 - E: the share that GGX alone would lose at F = 1
+    } reflected;                         ///< 0 below the surface
   };
   Direction along(Vec3 w) const { return {w, w.z > 0 ? reflection(w.z) : Reflection{}}; }
 
-  /// f_D and f_S apart [1/sr]; without the cosine. Delta lobes evaluate to 0.
+  /// f_D and f_S [1/sr], without the cosine. Delta lobes evaluate to 0.
   Rgb eval_diffuse(const Direction& wi, const Direction& wo) const;
   Rgb eval_specular(const Direction& wi, const Direction& wo) const;
   Rgb eval_diffuse(Vec3 wi, Vec3 wo) const { return eval_diffuse(along(wi), along(wo)); }
@@ -93,12 +96,13 @@ class Bsdf {
     bool delta = false;
     bool transmitted = false;  ///< wi is on the other side, z < 0
   };
-  /// Draws wi given wo: lobe by u_lobe, direction by u. weight is for the chosen event alone: the event D
-  /// carries f_D cos / (P(D) pdf_D), the event S carries f_S cos / (P(S) pdf_S), so that light paths can be
-  /// told apart. Zero weight if wo is below the surface or nothing is reflected.
+  /// Draws wi for wo: u_lobe chooses the lobe, u the direction. The weight is that of the chosen event alone: f_D cos /
+  /// (P(D) pdf_D) or f_S cos / (P(S) pdf_S), so that light paths can be sorted by events. The weight is zero if wo is
+  /// below the surface or nothing is reflected.
   Sample sample(const Direction& wo, float u_lobe, Vec2 u) const;
   Sample sample(Vec3 wo, float u_lobe, Vec2 u) const { return sample(along(wo), u_lobe, u); }
-  /// A Lambert lobe that reflects, and nothing else: sample() is sample_matte(wo, sample_hemisphere_cos(u)).
+  /// True if the material is a reflecting Lambert lobe and nothing else: sample() is then sample_matte(wo,
+  /// sample_hemisphere_cos(u)).
   bool is_matte() const { return diffuse_ && !specular_ && !(transmission_ > 0); }
   Sample sample_matte(Vec3 wo, Vec3 cosine_direction) const {
     if (!(wo.z > 0)) return {};
@@ -107,18 +111,18 @@ class Bsdf {
             .pdf_solid_angle = pdf_hemisphere_cos(cosine_direction.z),
             .diffuse = true};
   }
-  /// Density of sample() choosing wi by event D, by event S [1/sr], choice probability included.
+  /// pdf with which sample() draws wi by event D, by event S [1/sr], including the probability of the event.
   float pdf_diffuse(Vec3 wi, const Direction& wo) const;
   float pdf_specular(Vec3 wi, const Direction& wo) const;
   float pdf_diffuse(Vec3 wi, Vec3 wo) const { return pdf_diffuse(wi, along(wo)); }
   float pdf_specular(Vec3 wi, Vec3 wo) const { return pdf_specular(wi, along(wo)); }
-  /// Density of event S choosing wi once it is chosen [1/sr]; infinity of mirrors, and of all that has glass in it.
+  /// pdf of wi for a given event S [1/sr]; infinite for mirrors and for all materials with glass.
   float gloss_density(Vec3 wi, const Direction& wo) const;
-  /// Can events D and S be drawn apart: a Lambert lobe under a reflection, no glass?
+  /// True if events D and S can be sampled separately: a Lambert lobe under a reflection, without glass.
   bool forks() const { return diffuse_ && specular_ && !(transmission_ > 0); }
-  /// P(D), if it forks: sample() draws event D for u_lobe below it, else event S. wo above the surface.
+  /// P(D), if forks(): sample() draws event D for u_lobe below P(D), else event S. wo is above the surface.
   float diffuse_probability(const Direction& wo) const { return wo.w.z > 0 ? diffuse_probability(wo.reflected) : 1; }
-  /// Does sample() draw event D for this u_lobe, whatever its other numbers?
+  /// True if sample() draws event D for this u_lobe, whatever its other random numbers are.
   bool draws_diffuse(const Direction& wo, float u_lobe) const;
 
  private:
@@ -146,14 +150,14 @@ class Bsdf {
   float mean_albedo_ = 0;     ///< A_mean of the channel with the largest F0
   float coupling_scale_ = 1;  ///< 1 / sqrt(1 - A_mean)
   Rgb transmission_tint_{0.0f};
-  float transmission_ = 0;   ///< share of glass, event S; the rest scatters as described above
-  float eta_ = 1;            ///< index on wo's side / index beyond; 1 for a thin wall's way through
-  float eta_reflected_ = 1;  ///< the same for its Fresnel term
+  float transmission_ = 0;   ///< share of glass, event S; the rest scatters as above
+  float eta_ = 1;            ///< index on wo's side / index on the other side; 1 for transmission through a thin wall
+  float eta_reflected_ = 1;  ///< the same for the Fresnel term
   float light_share_beyond_ = 0;
   std::optional<RoughGlass> rough_;  ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
 
-inline constexpr float kMirrorRoughness = 0.02f;  ///< below: a delta mirror
+inline constexpr float kMirrorRoughness = 0.02f;  ///< smoother surfaces are delta mirrors
 
 }  // namespace tempolux

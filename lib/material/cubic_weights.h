@@ -1,11 +1,12 @@
-// lib/material/cubic_weights.h -- Lagrange's cubic through four neighbours of a table.
+// lib/material/cubic_weights.h -- cubic Lagrange interpolation between four neighbouring entries of a table.
 #pragma once
 
 #include <algorithm>
 
 namespace tempolux {
 
-/// First of four neighbours among `count` at position in [0, 1], and Lagrange's weights of the four.
+/// Returns the first of four neighbours among `count` entries for a position in [0, 1], and sets their Lagrange
+/// weights.
 inline int cubic_weights(float position, int count, float weight[4]) {
   const float at = position * float(count - 1);
   const int first = std::clamp(int(at) - 1, 0, count - 4);

@@ -1,4 +1,4 @@
-// lib/material/glass_albedo.h -- what a rough boundary of glass loses when each ray meets one microfacet only.
+// lib/material/glass_albedo.h -- the energy that a rough glass boundary loses if each ray meets a single microfacet.
 #pragma once
 
 #include <algorithm>
@@ -6,16 +6,16 @@
 
 namespace tempolux {
 
-/// 1 - E for the lobe of rough_glass.h: E = what is reflected and let through of uniform light, for one alpha
-/// and index, seen from outside or inside. Cubic in a table (glass_albedo_table.cpp) over sqrt(1 - 1/index),
-/// sqrt(alpha) and a column: within 3e-3 of the integrals (tested). The column is the square root of
-/// x = cos (1 + alpha) / (cos + alpha) outside; inside the critical angle, where the loss bends, lies in the
-/// middle and the columns close up towards it.
+/// 1 - E for the lobe of rough_glass.h. E is the share of uniform light that is reflected and transmitted, for one
+/// alpha and index, seen from outside or inside. Cubic interpolation in a table (glass_albedo_table.cpp) over sqrt(1 -
+/// 1/index), sqrt(alpha) and a column; within 3e-3 of the integrals (tested). Outside, the column is the square root of
+/// x = cos (1 + alpha) / (cos + alpha). Inside, the critical angle, where the loss has a bend, lies in the middle, and
+/// columns are denser close to it.
 class GlassLoss {
  public:
-  /// index >= 1 and alpha are held within the table's range. Sides: 0 outside, 1 inside.
+  /// index >= 1 and alpha are clamped to the table's range. Sides: 0 outside, 1 inside.
   GlassLoss(float index, float alpha);
-  /// Towards cos_theta in (0, 1]; at least 0.
+  /// 1 - E for light towards cos_theta in (0, 1]; at least 0.
   float at(int side, float cos_theta) const;
   /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu; at least 1e-7.
   float mean(int side) const;
@@ -24,9 +24,9 @@ class GlassLoss {
   float column(int side, float cos_theta) const;
 
   float alpha_;
-  float critical_;      ///< cos of the critical angle
-  int first_[2];        ///< of four planes and four rows in use
-  float weight_[2][4];  ///< of each
+  float critical_;      ///< cosine of the critical angle
+  int first_[2];        ///< first of the four planes and of the four rows used for interpolation
+  float weight_[2][4];  ///< weights of these
 };
 
 namespace glass_table {
@@ -34,7 +34,7 @@ inline constexpr int kPlanes = 11, kRows = 15, kColumns = 24;
 extern const float kLoss[2][kPlanes][kRows][kColumns];
 extern const float kMean[2][kPlanes][kRows];
 
-/// Where planes, rows and columns lie: position 0 is the first, 1 the last.
+/// Coordinates of planes, rows and columns: position 0 is the first, 1 the last.
 inline double index_of_plane(double position) { return position < 1 ? 1 / (1 - position * position) : 1e4; }
 inline double alpha_of_row(double position) { return position * position > 4e-4 ? position * position : 4e-4; }
 inline double cos_of_column(int side, double index, double position, double alpha) {

@@ -1,4 +1,4 @@
-// lib/material/inside.h -- which solids of glass a ray is inside of, and what they absorb on the way.
+// lib/material/inside.h -- which solids of glass a ray is inside, and how much light they absorb.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace tempolux {
 
-/// Is this the boundary of a solid that light passes through (KHR_materials_volume)?
+/// True if the material is the boundary of a transparent solid (KHR_materials_volume).
 inline bool is_solid_glass(const MaterialValues& m) { return m.transmission > 0 && !m.thin_walled; }
 
-/// Share of light left after `distance` m inside the solid: attenuation_color^(distance / attenuation_distance)
-/// (Beer and Lambert, as KHR_materials_volume has it). 1 for clear glass; 0 is exact, nothing is NaN.
+/// Transmittance of `distance` m inside the solid: attenuation_color^(distance / attenuation_distance) (Beer and
+/// Lambert, as in KHR_materials_volume). 1 for clear glass. Never NaN: a colour of 0 gives exactly 0.
 inline Rgb transmittance(const MaterialValues& m, float distance) {
   if (!(m.attenuation_distance < INFINITY)) return Rgb(1.0f);
   const float lengths = std::min(distance / m.attenuation_distance, 1e30f);
@@ -22,36 +22,39 @@ inline Rgb transmittance(const MaterialValues& m, float distance) {
           std::pow(m.attenuation_color.b, lengths)};
 }
 
-/// Followed along a path by the sides of the boundaries it meets. Going through a front enters the solid, going
-/// through a back leaves it; solids nest kDeepest deep (the outermost is forgotten beyond), the innermost alone
-/// absorbs. A path that starts inside knows it when it meets a back it never entered by: the way there was inside.
-/// What meets nothing more is outside of all (an open solid absorbs nothing of what escapes). Solids are known by
-/// their materials; going out through a back of another one leaves the innermost.
+/// The solids that a path is inside, from the sides of the boundaries it crosses: crossing a front enters the solid,
+/// crossing a back leaves it. Solids may be nested kDeepest deep (with more, the outermost is forgotten), and only the
+/// innermost absorbs. If a path starts inside a solid, this is noticed when it meets a back without having entered: its
+/// way there was inside. A path that meets nothing more is outside of all solids (an open solid does not absorb light
+/// that escapes). Solids are identified by their materials; leaving by a back of another material leaves the innermost
+/// solid.
 class Inside {
  public:
   bool any() const { return count_ > 0; }
-  /// Light left on the way of `distance` m to a surface of material `met`, seen from its front or back.
+  /// Transmittance of the last `distance` m before a surface of material `met`, seen from its front or back.
   Rgb transmittance_to(std::span<const Material> materials, std::uint32_t met, bool front, float distance) const {
     if (count_ > 0) return transmittance(materials[within_[count_ - 1]], distance);
     return !front && is_solid_glass(materials[met]) ? transmittance(materials[met], distance) : Rgb(1.0f);
   }
-  /// Light left after `distance` m in the innermost solid that the path is known to be inside of.
+  /// Transmittance of `distance` m in the innermost solid.
   Rgb transmittance_over(std::span<const Material> materials, float distance) const {
     return count_ > 0 ? transmittance(materials[within_[count_ - 1]], distance) : Rgb(1.0f);
   }
-  /// Product of n^2 of the solids: what irradiance by watts is too high for radiance kept as L / n^2.
+  /// Product of n^2 of the solids: the factor by which irradiance from photons, in watts, is too high for radiance that
+  /// is kept as L / n^2.
   float index_squared(std::span<const Material> materials) const {
     float product = 1;
     for (int i = 0; i < count_; ++i) product *= materials[within_[i]].ior * materials[within_[i]].ior;
     return product > 0 ? product : 1;
   }
-  /// After an event S at the boundary of a solid (is_solid_glass), on the side seen.
+  /// Updates the state after an event S at the boundary of a solid (is_solid_glass). front: the side that the path came
+  /// from.
   void scatter(std::uint32_t material, bool front, bool transmitted) {
     if (transmitted) {
       if (front) enter(material);
       else leave(material);
     } else if (!front && count_ == 0) {
-      enter(material);  // reflected where the path started
+      enter(material);  // reflected inside the solid in which the path started
     }
   }
 
@@ -72,7 +75,7 @@ class Inside {
     for (--count_; at < count_; ++at) within_[at] = within_[at + 1];
   }
 
-  std::uint32_t within_[kDeepest];  ///< the innermost last
+  std::uint32_t within_[kDeepest];  ///< the innermost is the last
   int count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// lib/material/rough_glass.h -- a rough boundary of glass: GGX microfacets that reflect and let through.
+// lib/material/rough_glass.h -- a rough boundary of glass: GGX microfacets that reflect and transmit.
 #pragma once
 
 #include "lib/core/vec.h"
@@ -7,34 +7,36 @@
 
 namespace tempolux {
 
-/// Both lobes of a rough dielectric, local frame, wo on the side z > 0; wi above (reflected) or below.
+/// Both lobes of a rough dielectric in the local frame; wo is on the side z > 0, wi above (reflected) or below
+/// (transmitted).
 ///
-/// Solid: Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, (20) and (21),
-/// with Smith's height-correlated masking G = 1 / (1 + L(wi) + L(wo)) on both sides and the exact Fresnel term F:
+/// Solid: Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, (20) and (21), with
+/// Smith's height-correlated masking G = 1 / (1 + L(wi) + L(wo)) on both sides and the exact Fresnel term F:
 ///     f_r = F D(h) G / (4 cos_i cos_o),                                    h = normalize(wi + wo)
 ///     f_t = (1 - F) D(h) G |wi h| |wo h| / (cos_i cos_o (wi h + eta wo h)^2),  h = +-normalize(wi + eta wo)
-/// eta = (index on wo's side) / (index beyond). f_t is for radiance that is not scaled by the index squared inside
-/// (bsdf.h): Walter's times (index of wi / index of wo)^2. With it n_o^2 f_t(wi, wo) = n_i^2 f_t(wo, wi), and
-/// a photon, which carries watts, is scattered by the same f with its own direction for wo: no factor on either way.
-/// Thin wall, as KHR_materials_transmission: f_t = (1 - F) x the reflected lobe without F mirrored at the
-/// surface, so that a smoother wall lets through straighter.
+/// eta = (index on wo's side) / (index on the other side). f_t applies to radiance that is not scaled by the squared
+/// index inside (bsdf.h): it is Walter's f_t times (index of wi / index of wo)^2. Then n_o^2 f_t(wi, wo) = n_i^2
+/// f_t(wo, wi), and a photon, which carries watts, is scattered by the same f with its own direction as wo, without a
+/// further factor. Thin wall, as in KHR_materials_transmission: f_t = (1 - F) x the reflected lobe without F, mirrored
+/// at the surface, so that light goes straighter through a smoother wall.
 ///
-/// Light that meets several microfacets, 1 - E, is spread as by Kulla & Conty (2017) over both sides:
-///     f_ms(wi, wo) = share (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean(side of wi))),
-/// share of the side beyond: b seen from outside, d from inside, b / d = n^2 (1 - E_mean,in) / (1 - E_mean,out)
-/// for reciprocity, b = 1 - F_mean where d stays below 1; the rest is reflected. All light comes back.
+/// Light that meets several microfacets, 1 - E, is distributed over both sides as by Kulla & Conty (2017):
+///     f_ms(wi, wo) = share (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean(side of wi))).
+/// The share of the other side is b if seen from outside and d if seen from inside. Reciprocity requires b / d = n^2 (1
+/// - E_mean,in) / (1 - E_mean,out). b = 1 - F_mean as long as d is below 1. The rest is reflected. No light is lost.
 class RoughGlass {
  public:
-  /// index >= 1, of the solid; alpha of GGX in (0, 1]; outside: wo is outside the solid (no matter if thin).
+  /// index >= 1: of the solid; alpha of GGX in (0, 1]; outside: wo is outside the solid (any value for a thin wall).
   RoughGlass(float index, float alpha, bool thin, bool outside);
 
   float eval(Vec3 wi, Vec3 wo) const;  ///< f [1/sr], without a tint
   float pdf(Vec3 wi, Vec3 wo) const;   ///< of sample() [1/sr]
-  /// A direction wi above or below; eval |cos| / pdf is its weight. Not unit or on no side: lost (rare).
+  /// Draws a direction wi above or below the surface with the weight eval |cos| / pdf. In rare cases the result is not
+  /// a unit vector or lies in the surface: the sample is lost.
   Vec3 sample(Vec3 wo, float u_lobe, Vec2 u) const;
 
  private:
-  struct Pair {  ///< of directions: what one microfacet scatters, and the density of sample() that does
+  struct Pair {  ///< for a pair of directions: f of single scattering, and the pdf of sample() for it
     float f = 0, pdf = 0;
   };
   Pair single(Vec3 wi, Vec3 wo) const;
@@ -42,13 +44,13 @@ class RoughGlass {
   float mean_loss(bool beyond) const;
   float multiple_density(float cos_i) const;
 
-  GlassLoss loss_;  ///< of a solid
-  GgxAlbedo wall_;  ///< of a thin wall: that of a mirror
+  GlassLoss loss_;  ///< for a solid
+  GgxAlbedo wall_;  ///< for a thin wall: the albedo of a mirror
   float alpha_, alpha2_;
-  float eta_;  ///< index on wo's side / beyond, of the Fresnel term
+  float eta_;  ///< index on wo's side / index on the other side, for the Fresnel term
   bool thin_;
-  int side_;                    ///< of wo: 0 outside, 1 inside
-  float share_beyond_;          ///< of f_ms
+  int side_;                    ///< side of wo: 0 outside, 1 inside
+  float share_beyond_;          ///< share of f_ms on the other side
   float spread2_, log_spread_;  ///< of multiple_density
 };
 

@@ -1,4 +1,4 @@
-// lib/material/seen_side.h -- a surface point turned to where it is looked at from.
+// lib/material/seen_side.h -- a surface point with its normals turned to the viewer.
 #pragma once
 
 #include "lib/core/frame.h"
@@ -6,11 +6,11 @@
 
 namespace tempolux {
 
-/// Cosine below which a shading normal looks away from a direction.
+/// smallest cosine between a shading normal and a direction that it faces
 inline constexpr float kLooksAway = 1e-4f;
 
-/// Normals on the side of wo (unit, away from the surface) and wo in the frame in which the material scatters. Where
-/// the shading normal looks away from wo the geometric one takes its place.
+/// Normals on the side of wo (unit, away from the surface), and wo in the local frame of the Bsdf. The geometric normal
+/// replaces a shading normal that faces away from wo.
 struct SeenSide {
   Vec3 normal_geometric, normal;
   Frame frame;  ///< z = normal
@@ -22,12 +22,12 @@ struct SeenSide {
         frame(normal),
         wo_local(frame.to_local(wo)) {}
 
-  /// A normal of the surface, turned to the side that is seen.
+  /// A normal of the surface, turned to the side of wo.
   Vec3 facing(Vec3 n) const { return dot(n, normal_geometric) < 0 ? -n : n; }
 
-  /// Is wi on the lit side of both normals? Only then does light from it count.
+  /// True if wi is on the lit side of both normals. Light from other directions does not count.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
-  /// Is it beyond both of them? Then light passes through from there.
+  /// True if wi is on the other side of both normals, from where light is transmitted.
   bool sees_beyond(Vec3 wi) const { return dot(wi, normal_geometric) < 0 && dot(wi, normal) < 0; }
 
  private:

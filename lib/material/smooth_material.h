@@ -1,4 +1,4 @@
-// lib/material/smooth_material.h -- which surfaces mirror or let through without spreading.
+// lib/material/smooth_material.h -- finds materials that mirror or transmit light without spreading it.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace tempolux {
 
-/// The first material of the frame's surfaces that reflects or lets through by mirrors and smooth glass alone; kNone:
-/// none. Its factors decide: a texture that makes parts of it smooth is not looked at.
+/// The first material of the frame's surfaces that scatters by mirrors and smooth glass alone; kNone if there is none.
+/// Only its factors count: textures that make parts of it smooth are ignored.
 std::uint32_t first_smooth_material(const SceneFrame& frame);
 
 }  // namespace tempolux

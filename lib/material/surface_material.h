@@ -1,4 +1,4 @@
-// lib/material/surface_material.h -- what a material is at a hit: its factors times its textures there.
+// lib/material/surface_material.h -- the material at a hit: its factors times its textures.
 #pragma once
 
 #include <optional>
@@ -8,23 +8,25 @@
 
 namespace tempolux {
 
-/// Width of what a ray stands for, for choosing the level of textures: it grows by `spread` metres per metre.
+/// The width of a ray, which decides the level of textures. The width grows by `spread` metres per metre.
 ///
-/// A camera ray starts with a pixel's angle and keeps it through events S (curved mirrors, and what gloss spreads, are
-/// not accounted for). After an event D, and from lights, there is none: the finest level is read. Coarse levels keep
-/// the mean of an image, but light goes neither by the mean roughness, normal or metalness nor by what an image has
-/// beside the chart that a surface shows, and a cone depends on which end a path is begun from: what photons met of a
-/// lamp far away would be another surface than what eyes meet of a wall near by. Cones of a fiftieth cost a fox's
-/// ground 0.2 % of its light, and made caustics of AlphaBlendModeTest's bed 3 % brighter by photons than by paths.
+/// A camera ray starts with the angle of a pixel and keeps it through events S (the spreading by curved mirrors and
+/// gloss is ignored). After an event D, and for rays from lights, the width is 0 and the finest level is read. Coarser
+/// levels would be wrong there: they keep the mean of an image, but light does not depend linearly on roughness, normal
+/// or metalness, they mix in parts of an image that the surface does not use, and a cone depends on the end at which a
+/// path starts, so that photons and camera paths would meet different surfaces. In tests, cones of a fiftieth cost 0.2
+/// % of the light on the ground of the scene Fox, and made caustics in AlphaBlendModeTest 3 % brighter by photons than
+/// by paths.
 struct RayCone {
   float width = 0, spread = 0;  ///< m; m/m
   void advance(float distance) { width += spread * distance; }
 };
 
-/// The material at a hit. A material without textures is its factors: that costs one test.
+/// The material at a hit. For a material without textures this is its factors, which costs one test.
 class SurfaceMaterial {
  public:
-  /// Bends point.normal by the normal map if there is one. width [m]: RayCone; 0: none. `point` is of `frame`.
+  /// Applies the normal map, if there is one, to point.normal. width [m]: RayCone; 0: the finest level. `point` belongs
+  /// to `frame`.
   SurfaceMaterial(const SceneFrame& frame, SurfacePoint& point, float width = 0)
       : values_(&frame.materials[point.material]) {
     if (frame.materials[point.material].textures) [[unlikely]]
@@ -43,16 +45,17 @@ class SurfaceMaterial {
   std::optional<MaterialValues> textured_;
 };
 
-/// Has the material a Lambert lobe somewhere on a surface (Bsdf::has_lambert), whatever its textures say?
+/// True if the material can have a Lambert lobe somewhere on a surface (Bsdf::has_lambert), for any texture values.
 bool may_have_lambert(const Material& material);
 
-/// Which lobes reflect (or, of S, let through) anything, by factors and whatever textures may make of them.
+/// Which lobes reflect or transmit any light, by factors and for any texture values.
 struct Lobes {
   bool lambert = false, specular = false;
   Lobes& operator|=(const Lobes& other) { return lambert |= other.lambert, specular |= other.specular, *this; }
 };
 Lobes lobes_of(const Material& material);
-/// Of all surfaces that have triangles. Without S lobes there is no caustic light, without Lambert lobes no indirect.
+/// The lobes of all surfaces with triangles. Without S lobes there is no caustic light, without Lambert lobes no
+/// indirect light.
 Lobes lobes_of(const SceneFrame& frame);
 
 }  // namespace tempolux
