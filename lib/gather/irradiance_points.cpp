@@ -31,11 +31,11 @@ bool stores_light(const SceneFrame& frame, const Surface& surface) {
   return may_have_lambert(frame.materials[surface.material]);
 }
 
-constexpr std::uint32_t kMostSites = 1u << 30;  ///< of a side of a surface
+constexpr std::uint32_t kMostSites = 1u << 30;  ///< per side of a surface
 
 using Areas = ParallelArray<double>;
 
-/// m^2 of each of a surface's triangles.
+/// Area of each of a surface's triangles [m^2].
 Areas triangle_areas(const Surface& surface) {
   const auto& triangles = surface.primitive->triangles;
   Areas areas(triangles.size());
@@ -45,10 +45,10 @@ Areas triangle_areas(const Surface& surface) {
   return areas;
 }
 
-/// A surface's triangles, or those pieces of them that points are spread over.
+/// The triangles of a surface, or the pieces of them over which points are spread.
 struct Ground {
-  std::vector<TrianglePiece> pieces;  ///< none: all triangles
-  Areas areas;                        ///< m^2 of each
+  std::vector<TrianglePiece> pieces;  ///< empty: all triangles
+  Areas areas;                        ///< of each triangle or piece, m^2
 };
 
 Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
@@ -59,8 +59,8 @@ Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
   return {std::move(pieces), std::move(areas)};
 }
 
-/// The point at u.x of the way along the line of a surface's triangles' (or pieces') areas, of which `cumulative` is
-/// the running sum. Normal 0 if its triangle has no area.
+/// The point at the share u.x of the summed areas of a surface's triangles (or pieces); `cumulative` is their running
+/// sum. The normal is 0 if the triangle has no area.
 IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> pieces,
                          std::span<const double> cumulative, Vec2 u, bool back) {
   const double along = double(u.x) * cumulative.back();
@@ -81,8 +81,8 @@ IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> 
   return point;
 }
 
-/// Adds one surface's points, both sides: a scrambled Sobol sequence each, by area. The ground's areas become their
-/// running sum. `rank` tells surfaces of one object apart.
+/// Adds the points of both sides of a surface, each side by a scrambled Sobol sequence, uniform by area. Replaces the
+/// ground's areas by their running sum. `rank` distinguishes the surfaces of one object.
 void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double area_per_point, std::uint64_t seed,
               std::vector<IrradiancePoint>& points) {
   const std::span<double> areas = ground.areas;
@@ -105,8 +105,8 @@ void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double
       points.end());
 }
 
-/// Of the spheres that hold what cameras see, those that points are spread in; none: everywhere. By the area of what
-/// stands or, where nothing of it lies in them, of what moves.
+/// Of the spheres around what cameras see, those in which points are spread; empty: everywhere. Chosen by the area of
+/// static surfaces, or of movers if no static surface lies in the spheres.
 std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const AimSphere> seen) {
   if (seen.empty()) return {};
   std::vector<double> standing(seen.size()), moving(seen.size());
@@ -121,13 +121,13 @@ std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const
   return spheres_with_points(seen, stands ? standing : moving);
 }
 
-/// Are there Lambert lobes under a coat that reflects? Then light counts by the angle it arrives at.
+/// True if there are Lambert lobes under a coat that reflects: light must then be weighted by its direction.
 bool any_coated(const SceneFrame& frame) {
   return std::any_of(frame.materials.begin(), frame.materials.end(),
                      [](const Material& m) { return lobes_of(m).lambert && lobes_of(m).specular; });
 }
 
-/// Do shading normals differ from triangles' anywhere, by more than half a degree?
+/// True if shading normals differ from the triangles' by more than half a degree anywhere.
 bool any_bent(const SceneFrame& frame) {
   constexpr float kBent = 0.99996f;
   return std::any_of(frame.surfaces.begin(), frame.surfaces.end(), [&](const Surface& surface) {
@@ -145,8 +145,7 @@ bool any_bent(const SceneFrame& frame) {
   });
 }
 
-/// How the surface a point is on scatters: shading normal on the point's side; its lobes if the Lambert lobe lies under
-/// a coat.
+/// Scattering at a point: the shading normal on the point's side, and the Bsdf if the Lambert lobe lies under a coat.
 struct Scattering {
   Vec3 normal, smooth;  ///< smooth: without a normal map
   std::optional<Bsdf> coat;
@@ -154,7 +153,7 @@ struct Scattering {
   LitSurface lit(Vec3 geometric) const { return {geometric, smooth, normal, coat ? &*coat : nullptr}; }
 };
 
-/// As the point's normal says, without a coat, if its surface is not found.
+/// Uses the point's normal and no coat if the point's surface is not found.
 Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
   Hit hit;
   if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
@@ -169,8 +168,7 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   return found;
 }
 
-/// Calls each(sample, random bits of its way through media) for the stratified light samples of a point that can give
-/// it light.
+/// Calls each(sample, random bits for media on its path) for the stratified light samples of a point that can light it.
 template <class Each>
 void for_light_samples(const Lights& lights, const IrradiancePoint& point, float offset, int samples,
                        const Scattering& scattering, const PathRandom& random, const Each& each) {
@@ -188,7 +186,7 @@ void for_light_samples(const Lights& lights, const IrradiancePoint& point, float
   }
 }
 
-/// Direct light at a point: mean over light samples of what arrives.
+/// Direct light at a point: the mean over its light samples.
 Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset, int samples,
                  const Scattering& scattering, const PathRandom& random) {
   Rgbd sum{0.0};
@@ -199,7 +197,8 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
   return Rgb(sum / double(samples));
 }
 
-/// Neighbours in space one after the other: look-ups and rays find their data in cache. `which`: numbers of points.
+/// Sorts points by position, so that successive look-ups and rays find their data in the cache. `which`: indices of
+/// points.
 std::vector<std::uint32_t> in_space(const std::vector<IrradiancePoint>& points, std::span<const std::uint32_t> which) {
   std::vector<Vec3> positions;
   for (const std::uint32_t i : which) positions.push_back(points[i].position);
@@ -208,7 +207,7 @@ std::vector<std::uint32_t> in_space(const std::vector<IrradiancePoint>& points, 
   return order;
 }
 
-/// Where all lights are, scene space; nothing if some are infinitely far.
+/// Box around all lights, in scene space; empty if there are distant lights.
 std::optional<Box3> box_of_lights(const SceneFrame& frame) {
   if (frame.environment) return std::nullopt;
   Box3 box;
@@ -230,7 +229,7 @@ PathRandom point_random(const PointOptions& options, std::uint32_t point) {
 
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) {
   const std::vector<AimSphere> region = region_of_points(frame, options.seen);
-  std::vector<std::optional<Ground>> grounds(frame.surfaces.size());  // of those that store light
+  std::vector<std::optional<Ground>> grounds(frame.surfaces.size());  // of surfaces that store light
   double standing = 0, moving = 0;
   for (std::size_t i = 0; i < grounds.size(); ++i) {
     if (!stores_light(frame, frame.surfaces[i])) continue;
@@ -290,7 +289,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which,
                      std::vector<IrradiancePoint>& points) {
-  // Where photons were not aimed they are far apart: that says nothing of the places that points lie at.
+  // Where photons were not aimed they are far apart, and their spacing says nothing about the places with points.
   std::function<bool(Vec3)> where;
   if (const std::vector<AimSphere> region = region_of_points(tracer.frame(), options.seen); !region.empty())
     where = [region](Vec3 place) {
