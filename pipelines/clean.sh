@@ -1,5 +1,5 @@
 #!/bin/sh
-# clean.sh -- remove what was built in this tree and what the pipeline made in OUT. Files of others in the same folders stay.
+# clean.sh -- removes what was built in this tree and what the pipeline made in OUT. Other files in these folders stay.
 for preset in release debug asan tsan no-oiio fuzz; do
   grep -qs '^CMAKE_PROJECT_NAME:STATIC=tempolux$' "$TOP/build/$preset/CMakeCache.txt" && rm -rf "$TOP/build/$preset"
 done

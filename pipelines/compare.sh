@@ -1,8 +1,9 @@
 #!/bin/sh
-# compare.sh A B PAGE -- a page of two runs: frames that both have, side by side in time. A, B: folders OUT of make; PAGE: HTML to write.
+# compare.sh A B PAGE -- makes a page that compares two runs: the frames that both have, side by side, as a film.
+# A, B: folders OUT of make; PAGE: the HTML file to write.
 #
-# The page holds its pictures and asks for nothing else. Both runs are shown at one exposure, the one that suits A's first frame. BIN has the
-# tools.
+# The page contains its pictures and loads no other file. Both runs are shown at one exposure, the one that suits A's
+# first frame. The environment has BIN, the folder of the tools.
 a=$1 b=$2 page=$3
 [ -d "$a/frames" ] || { echo "compare.sh: $a: has no frames; run make with OUT=$a first" >&2; exit 2; }
 [ -d "$b/frames" ] || { echo "compare.sh: $b: has no frames; OTHER=FOLDER names the OUT of another run" >&2; exit 2; }

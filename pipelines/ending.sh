@@ -1,6 +1,8 @@
-# ending.sh -- ending COMMAND...: runs a command that ends when this script is told to. Read by scripts beside it.
+# ending.sh -- ending COMMAND...: runs a command and ends it when this script gets a signal. Other scripts read this
+# file.
 #
-# A shell acts on a signal when its command has ended: one that is stopped would leave the command running. The command runs in the background.
+# A shell acts on a signal only after its command has ended, so a script that is stopped would leave the command
+# running. Therefore the command runs in the background.
 child=
 stop() { [ -z "$child" ] || { kill "$child"; wait "$child"; } 2> /dev/null; exit 130; }
 trap stop INT TERM

@@ -1,26 +1,28 @@
 #!/bin/sh
-# progress.sh -- what make says at the screen. Run inside OUT by run.sh and stages.mk.
+# progress.sh -- prints the progress of make. run.sh and stages.mk run it inside OUT.
 #
 #     progress.sh begin        how much there is to do
 #     progress.sh say FILE     before the command that makes FILE:  [12/97] 0:41, about 4:50 left: frame 3, pixels
 #     progress.sh end          after the last one: what the frames cost, how noisy they are, where to look
 #
-# The environment has PROGRESS, a file that gets a line for each command begun; TOTAL, how many commands there will be; WEIGHT, what they
-# weigh together (progress.sh weigh); BEGAN, when the first one did (date +%s).
+# The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
+# WEIGHT, their estimated cost in all (progress.sh weigh); BEGAN, the time at which the first one began (date +%s).
 clock() { if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60)); else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi; }
 
 stage() {   # a file inside OUT in words
   case $1 in
     photons) echo photons;; stands) echo 'photons of what stands still';; moved) echo 'photons that movers change';;
-    refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';; stands_points) echo 'light on what stands still';;
+    refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';;
+    stands_points) echo 'light on what stands still';;
     split) echo 'bright points apart';; cache) echo 'indirect light';; stands_cache) echo 'indirect light on what stands still';;
-    kept) echo 'indirect light, kept over time';; textures) echo 'light textures';; counts) echo 'photons counted';; windows) echo 'light from photons of many frames';; lights) echo 'which way sky and sun come in';;
+    kept) echo 'indirect light, kept over time';; textures) echo 'light textures';; counts) echo 'photons counted';;
+    windows) echo 'light from photons of many frames';; lights) echo 'which way sky and sun come in';;
     pictures | raw) echo pixels;; filtered) echo 'noise filter';; smoky) echo smoke;; keys) echo 'pixels of a key frame';;
     walk) echo 'distance of keys';; walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
   esac
 }
 
-# What commands cost beside each other, from names of files on standard input: CPU seconds of a frame of the demo.
+# Relative costs of the commands for the file names on standard input: CPU seconds for a frame of the demo.
 weigh() {
   awk -F / 'BEGIN { w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7; w["path"] = 60; w["cache"] = 5; w["kept"] = 5
                     w["photons"] = w["stands"] = w["points"] = w["stands_points"] = w["filtered"] = w["textures"] = w["lights"] = w["smoky"] = 1 }
@@ -66,8 +68,9 @@ frames_of() { [ "$1" = 1 ] && echo "1 frame of $SIZE" || echo "$1 frames of $SIZ
 
 begin() { echo "$(frames_of "$(count frames)"), $QUALITY: $TOTAL commands to run (V=1 shows them)"; }
 
-# Statistics of all commands that led to the frames, those of earlier makes too; what compares them with path tracing is not among them.
-# Noise is told in brightness steps of a screen, of which white has 255. The audit is what frames say of their own light.
+# Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
+# with path tracing. Noise is printed in brightness steps of a screen, of which white has 255. The audit is the bias
+# that frames report of their own light.
 end() {
   frames=$(sed -n 's/^frames := //p' plan.mk)
   # shellcheck disable=SC2086

@@ -1,7 +1,8 @@
 #!/bin/sh
-# run.sh GOAL -- ask scene-plan what the frames need, then make the goal inside OUT by the rules of stages.mk.
+# run.sh GOAL -- asks scene-plan what the frames need, then makes the goal inside OUT with the rules of stages.mk.
 #
-# Run by Makefile.example, which exports its variables. Names of files stay in quoted variables from here to the commands.
+# Makefile.example runs this script and exports its variables. File names stay in quoted variables from here to the
+# commands.
 set -f   # words are split at blanks and nothing else
 absolute() {   # absolute NAME: the variable, if it names a file, by its whole path
   eval "value=\$$1"
@@ -23,7 +24,7 @@ case $goal in
   film) film=yes goal=demo;;
 esac
 
-# The wish as options. What is empty is left to the preset.
+# The wish as options. The preset decides about empty variables.
 set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channels "$CHANNELS" --camera "$CAMERA" \
   --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" --strategy "$STRATEGY" \
   --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" --reference-samples "$REFERENCE_SAMPLES"
@@ -67,7 +68,7 @@ fi
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 
-# Which commands will run: those that make -n shows. progress.sh counts them.
+# The commands that will run are those that make -n prints. progress.sh counts them.
 PROGRESS=$aside/progress BEGAN=$(date +%s)
 MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")

@@ -1,9 +1,11 @@
 #!/bin/sh
-# show.sh MARKER INPUT... -- makes what a user looks at. MARKER is a file shown/WHAT-KEY, which says what is shown now. Run inside OUT by stages.mk.
+# show.sh MARKER INPUT... -- makes the files that a user looks at. MARKER is a file shown/WHAT-KEY; it holds a digest of
+# what is shown now. stages.mk runs this script inside OUT.
 #
 #     shown/0012-KEY PICTURE                frames/0012.exr, a copy
 #     shown/0012-KEY.png PICTURE EXPOSURE   frames/0012.png
-#     shown/exposure-KEY PICTURE            the marker holds the exposure that suits the picture. One for all frames: brightness does not jump
+#     shown/exposure-KEY PICTURE            the marker holds the exposure that suits the picture; all frames share
+#                                           it, so that the brightness does not jump
 #     shown/sheet-KEY EXPOSURE              sheet.png, all frames of plan.mk; a walkthrough's keys have a border
 #     shown/walk-KEY INTERVAL...            walk.log, where keys were placed and why
 #
@@ -17,11 +19,12 @@ trap 'rm -f "$part"' EXIT
 info() { ending $RUN "$BIN/tempolux-info" "$@"; }
 part_of() { part=${1%/*}/.${1##*/}.tmp.$(uname -n).$$; }   # a name that make tidy knows
 
-# What a file shows, as its marker holds it: digests of frames, and whatever else $1 says. A command may have made the same picture again.
+# The text of a marker: digests of the shown frames, and $1. A command may have made the same picture again: then the
+# text is equal and nothing is shown anew.
 shows() { said=$1; shift; now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $("$BIN/tempolux-info" --digest "$@" | cut -d' ' -f1 | cksum)"; }
 is_shown() { [ -f "$file" ] && [ "$now" = "$(cat "$@" 2> /dev/null)" ]; }   # is_shown OLD_MARKER...
 
-# Two makes that show other pictures of a frame go one after the other: the marker is that of what lies there.
+# Two makes that show different pictures of a frame run one after the other: the marker always fits the shown file.
 lock() { exec 9> shown/.lock; ! command -v flock > /dev/null || flock 9; }
 publish() { rm -f "$@"; [ ! -f "$part" ] || mv -f "$part" "$file"; echo "$now" > "$marker"; }   # publish OLD_MARKER...
 

@@ -3,9 +3,9 @@
 # plan.mk, written by scene-plan, lists the files of this run (formats/plan/plan.md). It has two lines for each file:
 #     points/0012-bcbdec5026.irradpoints: words := --frame 12 --photons photons/0012-6706adedf0.photons
 #     points/0012-bcbdec5026.irradpoints: | photons/0012-6706adedf0.photons
-# `words` are options of the command below. What stands after the bar must exist before. The digits after the frame are a hash
-# of everything that the file is made from, rules of this page included: a file that exists is right, so no times are compared.
-# To replace a stage by a program of your own, change its rule here.
+# `words` are options of the command below. Files after the bar must exist before. The digits after the frame are a hash
+# of everything that the file is made from, including the rules of this page. So a file that exists is up to date, and
+# times are not compared. To replace a stage by a program of your own, change its rule here.
 PLAN = plan.mk
 include $(PLAN)
 # An empty variable leaves out its option. Names of files stay in the environment.
@@ -14,7 +14,8 @@ shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-co
 scene  = "$$SCENE" $(words) $(shared)
 drawn  = $(scene) $(seed)
 seen   = $(drawn) --camera "$$CAMERA"
-seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}# another set of random numbers, of `make measure` alone: in a folder of its own, as no key knows it
+# Other random numbers, for `make measure` alone: it has its own folder, because keys do not include the seed.
+seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}
 quiet  = $(if $V,,@)
 run    = $(quiet)$(say)exec $(RUN) "$$BIN"# exec: what stops make stops the command
 say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
@@ -22,7 +23,8 @@ say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh bef
 .PHONY: demo report
 demo: $(frames) $(previews) sheet.png $(log)
 
-# Light: photons of a state of light. Where things move, first those of what stands, then what movers change of them.
+# Light: the photons of a state of light. With movers, first the photons of the static scene, then the changes by
+# movers.
 photons/%.photons:
 	$(run)/photon-trace $(drawn) -o $@ --stats photons/$*.json
 stands/%.photons stands/%.paths:
@@ -32,7 +34,8 @@ moved/%.photons:
 refined/%.photons:
 	$(run)/photon-trace $(drawn) -o $@ --stats refined/$*.json
 
-# What photons say of the light on all surfaces: irradiance points, which gather rays read. Bright ones apart, where that pays.
+# Light of photons on all surfaces: irradiance points, which gather rays read. Bright points are separated where it
+# pays.
 points/%.irradpoints:
 	$(run)/irradcache-build points $(drawn) -o $@ --stats points/$*.json
 stands_points/%.irradpoints:
@@ -40,55 +43,60 @@ stands_points/%.irradpoints:
 split/%.low.irradpoints split/%.high.irradpoints:
 	$(run)/photonmap-split $(words) --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
 
-# Indirect light, gathered in records where the cameras need it; kept: records that keep what they have gathered over time.
+# Indirect light, gathered in records where the cameras need them. kept: records that keep their gathered light over
+# time.
 cache/%.irradcache:
 	$(run)/irradcache-build records $(seen) -o $@ --stats cache/$*.json
 stands_cache/%.irradcache:
 	$(run)/irradcache-build records $(seen) -o $@ --stats stands_cache/$*.json
 kept/%.irradcache kept/%.radsamples:
 	$(run)/gather-temporal final $(seen) -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
-# In smoke and previews: light textures, photons counted in elements of the surfaces and smoothed; windows: those of many frames.
+# In smoke and previews: light textures, which count photons in elements of the surfaces and smooth them. windows: the
+# photons of many frames.
 textures/%.meshirrad:
 	$(run)/st-filter mesh $(scene) -o $@ --stats textures/$*.json
 counts/%.meshirrad:
 	$(run)/st-filter mesh $(scene) -o $@ --stats counts/$*.json
 windows/%.meshirrad:
 	$(run)/gather-temporal density $(scene) -o $@ --stats windows/$*.json
-# From where light of sky and suns reaches what the cameras of a segment see.
+# The directions from which light of sky and suns reaches the places that the cameras of a segment see.
 lights/%.lightgrid:
 	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json
 
 .INTERMEDIATE: $(passing)# removed when read, not made again where what is made from it is there
-# Pixels. raw: samples in halves, for the filter, removed when a frame that is filtered alone has been; keys: for warping; smoky: with smoke put in.
+# Pixels. raw: frames in two halves of samples, for the filter; removed after a frame was filtered alone. keys: frames
+# for warping. smoky: frames with smoke.
 pictures/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats pictures/$*.json
 raw/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats raw/$*.json
 filtered/%.exr:
-	$(quiet)test -f $@ || { $(say). "$$PIPELINES/ending.sh" && ending $(RUN) "$$BIN"/st-filter $(words) -o $@ --stats filtered/$*.json; } || test -f $@
+	$(quiet)test -f $@ || { $(say). "$$PIPELINES/ending.sh" && \
+	  ending $(RUN) "$$BIN"/st-filter $(words) -o $@ --stats filtered/$*.json; } || test -f $@
 	$(quiet)rm -f $(filter $(passing),$|)
 smoky/%.exr:
 	$(run)/volume-compose $(seen) -o $@ --stats smoky/$*.json
 keys/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
-# Between keys: an interval is warped or halved (walkthrough.sh says how); then each of its frames is warped and completed.
+# Between keys: an interval is warped or halved (walkthrough.sh decides); then each of its frames is warped and
+# completed.
 walk/%.done:
 	$(walk_rule)
 walked/%.exr:
 	$(quiet)$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
-# make runs a line that names $(MAKE) even for -n: here it stands in a variable.
+# make runs a line that contains $(MAKE) even with -n: here a variable holds it.
 walk_rule = $(if $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS)))),,+)$(quiet)$(say)exec env MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' \
   SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
-# What a user looks at: frames, previews, the sheet, a walkthrough's log (show.sh). shown/WHAT-KEY says what a file shows now: a marker that is missing
-# makes its file anew, and a file that was removed comes back.
+# Files that a user looks at: frames, previews, the sheet, a walkthrough's log (show.sh). shown/WHAT-KEY is the marker
+# of a file: if it is missing, the file is made, and a file that was removed is made again.
 show = exec env PLAN="$(PLAN)" sh "$$PIPELINES/show.sh" $(firstword $(filter shown/%,$@ $|)) $(filter-out $(frames) $(firstword $(filter shown/%,$@ $|)),$|)
 shown/%:
 	$(quiet)$(show)
 $(frames) $(previews) sheet.png walk.log:
 	$(quiet)test -f $@ || $(show)
 
-# How wrong is a frame, against path tracing in two halves whose noise is known? And what did it cost, all stages counted?
+# Compares frames with path tracing in two halves, whose noise is known, and adds up the cost of all stages.
 path/%.exr path/%_a.exr path/%_b.exr:
 	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
 error/%.json:

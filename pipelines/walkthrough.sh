@@ -1,15 +1,17 @@
 #!/bin/sh
-# walkthrough.sh -- what METHOD=walkthrough does beyond rules (walkthrough.md). Run inside OUT by stages.mk.
+# walkthrough.sh -- the parts of METHOD=walkthrough that are more than rules (walkthrough.md). stages.mk runs it inside
+# OUT.
 #
 #     walkthrough.sh interval TARGET KEY_A KEY_B MIDDLE KEY_MIDDLE THRESHOLD LEFT RIGHT
 #     walkthrough.sh frame TARGET INTERVAL FRAME CHANNELS OPTION...
-#     walkthrough.sh log INTERVAL...          what was decided, in the order of frames
-#     walkthrough.sh marks                    by walk.log the frames that are keys, as an option for the sheet
+#     walkthrough.sh log INTERVAL...          prints the decisions, in the order of frames
+#     walkthrough.sh marks                    prints the key frames in walk.log, as an option for the sheet
 #
-# An interval lies between two key pictures; LEFT and RIGHT are its halves, "-" where nothing lies between. TARGET says "warp", or
-# "split" if the picture of the middle frame became a key. A frame looks there which keys it is warped from. OPTIONs are its light. CHANNELS: what of it the
-# filter writes; "-": it is not filtered.
-# The environment has BIN, RUN, SHARED, CAMERA and MAKE_FILES, the command that makes files of the plan.
+# An interval lies between two key pictures. LEFT and RIGHT are its halves, or "-" if a half holds no frame. TARGET
+# holds "warp", or "split" if the picture of the middle frame became a key; a frame reads there which keys it is warped
+# from. OPTIONs are the options of the frame's light. CHANNELS are the channels that the filter writes; "-": the frame
+# is not filtered. The environment has BIN, RUN, SHARED, CAMERA and MAKE_FILES, the command that makes files of the
+# plan.
 set -e
 . "${0%/*}/ending.sh"
 command=$1; shift
@@ -23,8 +25,8 @@ warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
 
-# Both keys warped to frame $1 in folder $2: exit 1 if a viewer sees in more than the share $threshold of what is not masked what either errs by. Adds the share
-# to $seen, in percent.
+# Warps both keys to frame $1 in folder $2. Exits with 1 if a viewer sees the error of either warped picture in more
+# than the share $threshold of the pixels that are not masked. Appends the share in percent to $seen.
 differ() {
   warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
@@ -36,7 +38,8 @@ differ() {
   return $code
 }
 
-# Is what the keys give for frames at one, two and three quarters of the interval as good as rendered? How much is masked there?
+# Decides whether frames warped to one, two and three quarters of the interval are as good as rendered ones, and how
+# many of their pixels are masked.
 decide() {
   a=$1 b=$2 middle=$3 threshold=$4 try=$5 seen= verdict=warp causes= distant=0
   first=$(number "$(frame_of "$a")") last=$(number "$(frame_of "$b")") before=$first
@@ -53,7 +56,8 @@ decide() {
     [ "$n" = 0 ] || causes="$causes $cause $(percent "$n" "$pixels")"
     case $cause in occlusion | changed_light | border | undersampled) distant=$((distant + n));; esac
   done
-  # What no key sees grows with their distance: halving it saves half of that in every frame, and costs a key.
+  # The area that no key sees grows with the distance of the keys: halving the interval saves half of this area in
+  # every frame and costs a key.
   [ $((distant * (last - first))) -gt $((2 * pixels)) ] && verdict=split
   seen=$(printf '%s\n' $seen | sort -g | tail -n 1)
   echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  seen ${seen:-none}${seen:+%}  traced $(percent "$traced" "$pixels"):$causes  $verdict"
@@ -93,7 +97,7 @@ frame() {
   [ "$channels" = - ] || ending $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
 }
 
-# What was decided, halves after the whole.
+# Prints the decisions, for an interval before its halves.
 log() {
   for interval; do
     read -r verdict x y left right < "$interval"
@@ -103,7 +107,8 @@ log() {
   done
 }
 
-# An interval that was halved has a line and its halves have theirs: ends of those that were not, and middles of those that were.
+# walk.log has a line for an interval that was halved and for its halves. Keys are the ends of intervals that were not
+# halved and the middles of those that were.
 marks() {
   keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" } /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
     while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,)
