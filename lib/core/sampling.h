@@ -53,20 +53,6 @@ inline void sample_hemisphere_cos(std::span<const Vec2> u, Vec3* directions) {
 }
 inline float pdf_hemisphere_cos(float cos_theta) { return std::max(0.0f, cos_theta) * kInvPi; }
 
-/// Uniform direction on the sphere; pdf_solid_angle is 1/(4 pi).
-inline Vec3 sample_sphere(Vec2 u) {
-  const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - z * z)), phi = 2 * kPi * u.y;
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
-/// Uniform direction within the cone of half angle acos(cos_max) about +z; pdf 1/(2 pi (1 - cos_max)). The argument is
-/// 1 - cos_max, so that narrow cones keep their digits.
-inline Vec3 sample_cone(Vec2 u, float one_minus_cos_max) {
-  const float omc = u.x * one_minus_cos_max, phi = 2 * kPi * u.y;
-  const float r = std::sqrt(std::max(0.0f, omc * (2 - omc)));
-  return {r * std::cos(phi), r * std::sin(phi), 1 - omc};
-}
-
 /// Barycentric (b1, b2) of a uniform point in a triangle; b0 = 1 - b1 - b2.
 /// Low-distortion map of Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 inline Vec2 sample_triangle(Vec2 u) {

@@ -69,25 +69,4 @@ IrradianceEstimate estimate_irradiance(const PhotonIndex& index, Vec3 point, Vec
   return estimate_within(index, query, radius_floor, scratch);
 }
 
-IrradianceEstimate estimate_irradiance_fixed(const PhotonIndex& index, Vec3 point, Vec3 normal,
-                                             const IrradianceOptions& options, NeighbourList& scratch) {
-  require_valid(options);
-  if (!std::isfinite(options.max_radius))
-    throw std::invalid_argument("irradiance estimate: a fixed radius must be finite");
-  return estimate_within(index, make_query(point, normal, options), options.max_radius, scratch);
-}
-
-void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points, std::span<const Vec3> normals,
-                          const IrradianceOptions& options, std::span<IrradianceEstimate> results) {
-  require_valid(options);
-  if (points.size() != normals.size() || points.size() != results.size())
-    throw std::invalid_argument("irradiance estimate: as many normals and results as points");
-  const std::vector<std::uint32_t> order = morton_order(points);
-  parallel_chunks(order.size(), 512, [&](std::size_t first, std::size_t last) {
-    NeighbourList scratch;
-    for (std::size_t i = first; i < last; ++i)
-      results[order[i]] = estimate_irradiance(index, points[order[i]], normals[order[i]], options, scratch);
-  });
-}
-
 }  // namespace tempolux

@@ -43,14 +43,4 @@ struct IrradianceEstimate {
 IrradianceEstimate estimate_irradiance(const PhotonIndex& index, Vec3 point, Vec3 normal,
                                        const IrradianceOptions& options, NeighbourList& scratch);
 
-/// The estimate with a fixed radius: sum over all photons within max_radius / (pi max_radius^2). neighbours and
-/// min_radius are ignored; max_radius must be finite.
-IrradianceEstimate estimate_irradiance_fixed(const PhotonIndex& index, Vec3 point, Vec3 normal,
-                                             const IrradianceOptions& options, NeighbourList& scratch);
-
-/// estimate_irradiance for many points in any order. Visits them along a space-filling curve, in parallel, and writes
-/// results[i] for points[i]. The three spans have the same length.
-void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points, std::span<const Vec3> normals,
-                          const IrradianceOptions& options, std::span<IrradianceEstimate> results);
-
 }  // namespace tempolux

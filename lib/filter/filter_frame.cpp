@@ -8,7 +8,7 @@
 #include "formats/error.h"
 #include "lib/filter/choose.h"
 #include "lib/filter/fit.h"
-#include "lib/filter/left_noise.h"
+#include "lib/filter/remaining_noise.h"
 #include "lib/filter/picture.h"
 #include "lib/filter/resolve.h"
 #include "lib/filter/rows.h"
@@ -122,7 +122,7 @@ struct FrameFilter::State {
   std::size_t before, after, added = 0;
   std::array<std::optional<Collector>, 2>
       collectors;  ///< for the matte layers, by half; light of mirrors has no flow of its own
-  LeftNoise left;
+  RemainingNoise remaining;
 
   float dark(const Image& image, const std::string& layer) const {
     if (const auto found = options.dark.find(layer); found != options.dark.end()) return found->second;
@@ -144,7 +144,7 @@ struct FrameFilter::State {
       if (candidates.of(l).empty() || group.raw[0].layers[l][0].empty()) continue;
       const Halves raw = raw_halves(image, group, l),
                    chosen = choose(raw, candidates.of(l), around, dark(image, group.layers[l]));
-      left.add(raw, chosen);
+      remaining.add(raw, chosen);
       for (std::size_t c = 0; c < 3; ++c)
         put_mean(chosen, c, float_channel(image, channel_name(group.layers[l], c))->values);
     }
@@ -196,13 +196,13 @@ void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
 
 Image FrameFilter::finish(Image image) {
   filter(image);
-  tell_left_noise(left_error(), image);
+  write_remaining_noise(remaining_error(), image);
   return image;
 }
 
 void FrameFilter::filter(Image& image) { state_->filter(image); }
 
-LeftError FrameFilter::left_error() const { return state_->left.error(); }
+RemainingError FrameFilter::remaining_error() const { return state_->remaining.error(); }
 
 namespace {
 
@@ -238,7 +238,7 @@ Image filter_alone(Image image, const FilterOptions& options) {
         holds(image, channel_name(layer, 2)))
       of_tile.dark[layer] = dark_of(image.rgb(layer));
   Image out{image.width, image.height, {}, {}, {}, {}};
-  LeftError left_error;
+  RemainingError remaining_error;
   for (int top = 0; top < image.height; top += kHigh)
     for (int left = 0; left < image.width; left += kWide) {
       const int x0 = std::max(0, left - reach()), y0 = std::max(0, top - reach());
@@ -261,16 +261,16 @@ Image filter_alone(Image image, const FilterOptions& options) {
         Channel* to = float_channel(out, channel.name);
         copy(channel.values, to ? to->values : out.add(channel.name).values);
       }
-      const LeftError of_this = filter.left_error();
+      const RemainingError of_this = filter.remaining_error();
       for (std::size_t c = 0; c < 3 && !of_this.whole[c].empty(); ++c) {
-        copy(of_this.whole[c], left_error.whole[c]);
-        copy(of_this.noise[c], left_error.noise[c]);
-        copy(of_this.known[c], left_error.known[c]);
+        copy(of_this.whole[c], remaining_error.whole[c]);
+        copy(of_this.noise[c], remaining_error.noise[c]);
+        copy(of_this.known[c], remaining_error.known[c]);
       }
     }
   for (Channel& channel : out.channels) float_channel(image, channel.name)->values = std::move(channel.values);
   leave_numbers(image);
-  tell_left_noise(left_error, image);
+  write_remaining_noise(remaining_error, image);
   return image;
 }
 

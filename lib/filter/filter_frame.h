@@ -9,7 +9,7 @@
 
 #include "lib/filter/collect.h"
 #include "lib/filter/fit.h"
-#include "lib/filter/left_noise.h"
+#include "lib/filter/remaining_noise.h"
 #include "lib/filter/light.h"
 
 namespace tempolux {
@@ -52,12 +52,12 @@ class FrameFilter {
   /// layers.
   void add(const WindowLight& frame, const FlowFrame& flow);
   /// Call once, after all frames were added. Writes the remaining noise to the image's attributes
-  /// (write_remaining_noise in left_noise.h).
+  /// (write_remaining_noise in remaining_noise.h).
   Image finish(Image image);
   /// Filters a part of a picture; its attributes do not change.
   void filter(Image& image);
-  /// The squared error by pixel after finish() or filter() (left_noise.h); empty if nothing was filtered.
-  LeftError left_error() const;
+  /// The squared error by pixel after finish() or filter() (remaining_noise.h); empty if nothing was filtered.
+  RemainingError remaining_error() const;
 
  private:
   struct State;

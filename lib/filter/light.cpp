@@ -36,12 +36,12 @@ class MadeUpNoise {
   MadeUpNoise(const Image& image, const LightGroup& group) : group_(group) {
     const Surfaces& on = group.surfaces;
     const bool diffuse = !group.layers[0].empty() && has_colour(image, "diffuse.variance");
-    const std::string told = diffuse ? "diffuse.variance" : has_colour(image, "variance") ? "variance" : "";
+    const std::string stored = diffuse ? "diffuse.variance" : has_colour(image, "variance") ? "variance" : "";
     for (std::size_t l = 0; l < group.layers.size(); ++l)
       for (std::size_t c = 0; c < 3; ++c) {
         Plane& noise = noise_.emplace_back(on.width, on.height);
         if (group.raw[0].layers[l][c].empty()) continue;
-        if (!told.empty()) take(image.find(channel_name(told, c))->values, l, c, noise);
+        if (!stored.empty()) take(image.find(channel_name(stored, c))->values, l, c, noise);
         else if (!on.albedo[0].empty()) estimate(group.raw[0].layers[l][c], noise);
       }
   }

@@ -207,9 +207,9 @@ float BrightPoints::lamp_share(float distance, float lamp_distance) {
 }
 
 /// Explicit share of a site's light at a receiver `distance` m away.
-float BrightPoints::share(const Site& site, float distance, bool reads_near) const {
+float BrightPoints::share(const Site& site, float distance, bool reads_close) const {
   if (site.lamp_distance > 0) return lamp_share(distance, site.lamp_distance);
-  return explicit_share(distance) * (reads_near ? 1 : PointLookup::share_of_far(site.radius, distance));
+  return explicit_share(distance) * (reads_close ? 1 : PointLookup::share_of_far(site.radius, distance));
 }
 
 Rgb BrightPoints::radiance(const Site& site, Vec3 wo) const {
@@ -237,7 +237,7 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const double distance = length(d), here = dot(n, d), there = -dot(m, d);  // cosines times the distance
     const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
     if (!(here > 0 && there > 0 && dot(wi, geometric) > 0)) continue;
-    const float part = share(site, float(distance), at.reads_near);
+    const float part = share(site, float(distance), at.reads_close);
     if (!(part > 0)) continue;
     ++counts.shadow_rays;
     const Ray shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);

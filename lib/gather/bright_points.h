@@ -63,7 +63,7 @@ class BrightPoints {
   std::size_t site_count() const { return sites_.size(); }
 
   /// The share that gather rays contribute of the light at a hit `distance` m away, which `point` represents.
-  float left(const PointLookup::Light& point, float distance) const {
+  float remaining_share(const PointLookup::Light& point, float distance) const {
     const float high = high_[point.point];
     return high > 0 ? 1 - high * explicit_share(distance) : 1.0f;
   }
@@ -72,7 +72,7 @@ class BrightPoints {
   /// The share that gather rays contribute of the direct light of a lamp: the rays meet a place y after `distance` m,
   /// and the lamp is `lamp_distance` m from y. `point` represents y, or is nullptr if no point does. 1 if the point is
   /// not marked as close to a lamp.
-  float left_of_lamp(const PointLookup::Light* point, float distance, float lamp_distance) const {
+  float remaining_lamp_share(const PointLookup::Light* point, float distance, float lamp_distance) const {
     return (!point || point->beside_lamp) && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance)
                                                                          : 1.0f;
   }
@@ -83,7 +83,7 @@ class BrightPoints {
     Vec3 normal;  ///< unit, on the lit side
     /// The Bsdf of the place, if its lobes weight light by direction (Bsdf::arrival_weight); else null.
     const Bsdf* coat = nullptr;
-    bool reads_near = false;  ///< rays from here read the points of close hits, too, and do not continue
+    bool reads_close = false;  ///< rays from here read the points of close hits, too, and do not continue
   };
   /// The mean over `samples` explicit samples of the light that arrives at the place. Adds the shadow rays to `counts`.
   BrightLight arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const;
@@ -104,7 +104,7 @@ class BrightPoints {
   };
   std::optional<Site> site_at(const IrradiancePoint& place, float area) const;
   void sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven, const BrightOptions& options);
-  float share(const Site& site, float distance, bool reads_near) const;
+  float share(const Site& site, float distance, bool reads_close) const;
   static float lamp_share(float distance, float lamp_distance);
   void place_high(const Lights& lights, const BrightOptions& options);
   void place_lamp_light(std::span<const LampPhoton> photons);

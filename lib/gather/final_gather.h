@@ -49,8 +49,6 @@ class FinalGather {
 
   /// Estimates the radiance along gather rays.
   const IncomingRadiance& incoming() const { return incoming_; }
-  /// The order in which gather() follows the cells (indices j N_phi + k).
-  std::span<const std::uint32_t> cell_order() const { return strata_[kFewer].order; }
 
  private:
   static constexpr int kDistanceRays = 64, kEnoughMet = 8;

@@ -37,33 +37,33 @@ DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& trace
   return divided;
 }
 
-PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing,
+PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& static_tracer,
                                 const Lights& lights, const PointOptions& options, GatherPoints& points) {
   const SceneFrame& frame = whole.frame();
   const MovingObjects moving(frame);
   const PlacedPoints placed = place_points(frame, options);
   const auto own_points = std::ranges::find_if(placed.points, [&](const auto& p) { return moving.contains(p.object); });
-  const auto standing_count = std::size_t(own_points - placed.points.begin());
-  if (standing_count != points.points.size() || placed.spacing != points.spacing)
+  const auto static_count = std::size_t(own_points - placed.points.begin());
+  if (static_count != points.points.size() || placed.spacing != points.spacing)
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
-                     std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
+                     std::to_string(points.points.size()) + ", not " + std::to_string(static_count) +
                      "); give the options they were made with, --importance included");
   // Positions and normals as placed: a file rounds normals, which would change the light samples.
-  for (std::size_t i = 0; i < standing_count; ++i) {
+  for (std::size_t i = 0; i < static_count; ++i) {
     points.points[i].position = placed.points[i].position;
     points.points[i].normal = placed.points[i].normal;
   }
   const Vec3d static_shift = shift_of(light.fixed.header.origin, frame),
               dynamic_shift = shift_of(light.moved.header.origin, frame);
   const PointUpdateCounts counts = update_points(
-      {whole, standing, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
+      {whole, static_tracer, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
   // Photons on movers are in the dynamic map only.
   formats::PhotonBlock on_movers;
   for (std::size_t i = 0; i < light.moved.photons.size(); ++i)
     if (moving.contains(light.moved.photons[i].object)) append(light.moved, i, light.moved.photons[i], on_movers);
   points.points.insert(points.points.end(), own_points, placed.points.end());
   std::vector<std::uint32_t> own;
-  for (std::size_t i = standing_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));
+  for (std::size_t i = static_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));
   estimate_points(whole, lights, on_movers, dynamic_shift, options, own, points.points);
   return counts;
 }

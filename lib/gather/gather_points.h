@@ -50,7 +50,7 @@ struct MovedPhotons {
 };
 /// Updates `points` of the static scene to a frame and adds points on movers (update_points). Throws InputError if the
 /// points were not made with these options.
-PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing,
+PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& static_tracer,
                                 const Lights& lights, const PointOptions& options, GatherPoints& points);
 
 }  // namespace tempolux

@@ -47,7 +47,7 @@ struct IncomingRadiance::Further {
   bool sees_lamps = false;
   float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered it
   /// The high part was sampled explicitly at the ray's start, so its end contributes the rest only.
-  bool low = false;
+  bool bright_sampled = false;
 
   LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
@@ -209,10 +209,11 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       ++to.counts.points_read;
       const bool even = lights_.empty() || points_.is_uniform(*point);
       if (source) source->partial |= !even;
-      result = scale * (even ? point->all : beside_edge(met, *point, from.low, random, to.counts));
-      if (from.low) result *= bright_->left(*point, met.distance);
+      result = scale * (even ? point->all : beside_edge(met, *point, from.bright_sampled, random, to.counts));
+      if (from.bright_sampled) result *= bright_->remaining_share(*point, met.distance);
     } else {
-      const Rgb kept = scale * (from.low && point && !near ? bright_->left(*point, met.distance) : 1.0f);
+      const Rgb kept =
+          scale * (from.bright_sampled && point && !near ? bright_->remaining_share(*point, met.distance) : 1.0f);
       result = kept * scattered(met, point, from, kept, random, depth, to);
       if (source) source->partial = true;
     }
@@ -227,20 +228,20 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   Rgb weight = next.weight;
   if (!survives(weight, kLargestSurvival, random.get1(2, Purpose::roulette))) return result;
-  Further beyond = from;
-  beyond.key = mix64(from.key + 2);
-  beyond.weight *= weight;
-  beyond.low = false;
-  beyond.phase = 0;
+  Further after = from;
+  after.key = mix64(from.key + 2);
+  after.weight *= weight;
+  after.bright_sampled = false;
+  after.phase = 0;
   if (source) source->partial = true;
-  return result + weight * reflected_beyond(met.hit, travel, met.distance, beyond, depth + 1, to,
-                                            solid && front == next.transmitted ? &material : nullptr);
+  return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to,
+                                                   solid && front == next.transmitted ? &material : nullptr);
 }
 
 /// Radiance along a ray that continues after an event S at `start`. `distance`: length of the path so far [m]. The ray
 /// may be inside solid glass.
-Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
-                                       const Gathered& to, const MaterialValues* inside) const {
+Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from,
+                                              int depth, const Gathered& to, const MaterialValues* inside) const {
   Hit hit;
   ++to.counts.rays;
   const Ray ray = spawn_ray(start, travel);
@@ -300,7 +301,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   if (point) irradiance = points_.point(*point).caustic;
   if (point && points_.is_uniform(*point) && met.distance >= points_.spacing() * threshold(random))
     irradiance += points_.point(*point).direct;
-  else irradiance += sampled_light(met, side, point, from.low, random, to.counts);
+  else irradiance += sampled_light(met, side, point, from.bright_sampled, random, to.counts);
   if (bright_) {
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
@@ -317,28 +318,30 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   return irradiance;
 }
 
-/// Direct irradiance at a hit from one light sample. point: represents the hit, or nullptr. low: light of close lamps
-/// was sampled explicitly at the ray's start (BrightPoints::remaining_lamp_share).
-Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point, bool low,
-                                    const PathRandom& random, GatherCounts& counts) const {
+/// Direct irradiance at a hit from one light sample. point: represents the hit, or nullptr. bright_sampled: light of
+/// close lamps was sampled explicitly at the ray's start (BrightPoints::remaining_lamp_share).
+Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point,
+                                    bool bright_sampled, const PathRandom& random, GatherCounts& counts) const {
   DirectSample direct;
   const Receiver at{met.hit, side.normal_geometric, side.normal, met.bsdf->has_specular() ? met.bsdf : nullptr};
   if (lights_.empty() ||
       !sample_direct(lights_, at, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), direct))
     return Rgb(0.0f);
-  const float left = low && !direct.light.distant
-                         ? bright_->left_of_lamp(point, met.distance, length(direct.light.position - met.hit.position))
-                         : 1.0f;
-  if (!(left > 0)) return Rgb(0.0f);
+  const float share =
+      bright_sampled && !direct.light.distant
+          ? bright_->remaining_lamp_share(point, met.distance, length(direct.light.position - met.hit.position))
+          : 1.0f;
+  if (!(share > 0)) return Rgb(0.0f);
   ++counts.shadow_rays;
-  return direct.irradiance * (left * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));
+  return direct.irradiance * (share * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));
 }
 
 /// Irradiance at a hit where direct light is not that of the point.
-Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random,
-                                  GatherCounts& counts) const {
+Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, bool bright_sampled,
+                                  const PathRandom& random, GatherCounts& counts) const {
   const IrradiancePoint& point = points_.point(light);
-  return point.indirect + point.caustic + sampled_light(met, SeenSide(met.hit, met.wo), &light, low, random, counts);
+  return point.indirect + point.caustic +
+         sampled_light(met, SeenSide(met.hit, met.wo), &light, bright_sampled, random, counts);
 }
 
 }  // namespace tempolux

@@ -74,14 +74,14 @@ class IncomingRadiance {
   Rgb scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                 const Gathered& to) const;
-  Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
-                       const Gathered& to, const MaterialValues* inside) const;
+  Rgb radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
+                              const Gathered& to, const MaterialValues* inside) const;
   Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                 const PathRandom& random, int depth, const Gathered& to) const;
   static float threshold(const PathRandom& random);
-  Rgb beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random,
+  Rgb beside_edge(const Met& met, const PointLookup::Light& light, bool bright_sampled, const PathRandom& random,
                   GatherCounts& counts) const;
-  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, bool low,
+  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, bool bright_sampled,
                     const PathRandom& random, GatherCounts& counts) const;
 
   const Tracer& tracer_;

@@ -57,13 +57,13 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
                                     const AimSphere& around, double area, std::uint64_t seed,
                                     const std::function<bool(Vec3)>& wanted);
 
-/// Estimates the irradiance of all points:
-/// - direct: by light sampling with stratified shadow rays, with the shading normal at the point, and times
-///   Bsdf::arrival_weight under a coat;
-/// - caustic and indirect: by the density of the photons of that kind (FootprintDensity, PointDensity); caustic light
-///   also with the shading normal if the photons store directions. Normal maps are read at their finest level, because
-///   points represent the hits of gather rays (RayCone). photon_shift is added to the photons' positions: the scene's
-///   space minus theirs. Same results for any number of threads.
+/// Estimates the irradiance of all points. Direct light: by light sampling with stratified shadow rays, the shading
+/// normal at the point, and times Bsdf::arrival_weight under a coat. Caustic and indirect light: by the density of the
+/// photons of that kind (FootprintDensity, PointDensity); caustic light also with the shading normal if the photons
+/// store directions. Normal maps are read at their finest level, because points represent the hits of gather rays.
+///
+/// photon_shift is added to the photons' positions: the scene's space minus theirs. Same results for any number of
+/// threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::vector<IrradiancePoint>& points);
 

@@ -347,16 +347,4 @@ void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const 
     elements[i].irradiance = {float(irradiance[i].r), float(irradiance[i].g), float(irradiance[i].b)};
 }
 
-std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
-                                                const MeshFilter& filter) {
-  std::vector<formats::MeshElement> elements = all_elements(frame, sums.cuts());
-  put_sums(sums, elements);
-  std::vector<Rgbd> flux;
-  for (const formats::MeshElement& e : elements)
-    flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * sums.unit());
-  smooth_elements(frame, flux, filter, {}, elements);
-  leave_out_dark(elements);
-  return elements;
-}
-
 }  // namespace tempolux

@@ -121,8 +121,4 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements);
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 
-/// The elements that receive light through the filter, in the order of the file.
-std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
-                                                const MeshFilter& filter);
-
 }  // namespace tempolux

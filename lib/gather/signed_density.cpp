@@ -13,9 +13,9 @@ double largest(Rgb flux) { return double(std::max({std::abs(flux.r), std::abs(fl
 
 }  // namespace
 
-SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons,
+SignedDensity::SignedDensity(const Tracer& static_tracer, std::span<const formats::Photon> photons,
                              const DensityOptions& options, Vec3d shift)
-    : options_(options), area_(standing), index_(photons, kind_bit(formats::PathKind::indirect), shift) {
+    : options_(options), area_(static_tracer), index_(photons, kind_bit(formats::PathKind::indirect), shift) {
   if (!(options_.max_radius > 0) && index_.size() > 0)
     options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
 }

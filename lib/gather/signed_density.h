@@ -19,7 +19,7 @@ namespace tempolux {
 class SignedDensity {
  public:
   /// shift: m, added to the photons' positions.
-  SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options,
+  SignedDensity(const Tracer& static_tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                 Vec3d shift);
 
   struct Change {

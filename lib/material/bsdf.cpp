@@ -50,7 +50,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     const float alpha = material.roughness * material.roughness;
     if (material.roughness >= kMirrorRoughness && (material.thin_walled || alpha * (ior - 1) > 2e-5f)) {
       rough_.emplace(ior, alpha, material.thin_walled, front);
-      light_share_beyond_ = material.thin_walled ? 0.5f : front ? 0.0f : 1.0f;
+      light_share_behind_ = material.thin_walled ? 0.5f : front ? 0.0f : 1.0f;
     }
     if (transmission_ >= 1) return;
   }

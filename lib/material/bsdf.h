@@ -57,7 +57,7 @@ class Bsdf {
   /// The share of light samples to be taken on the side z < 0, where eval_specular transmits light from. 1 inside a
   /// solid of rough glass, because the light is outside; 0 outside a solid, because light that crosses it meets its
   /// other side.
-  float light_share_beyond() const { return light_share_beyond_; }
+  float light_share_behind() const { return light_share_behind_; }
   /// rho of the Lambert lobe, without coupling.
   Rgb diffuse_albedo() const { return rho_; }
   /// c(w) above; 1 for a matte material; cos_theta > 0.
@@ -153,7 +153,7 @@ class Bsdf {
   float transmission_ = 0;   ///< share of glass, event S; the rest scatters as above
   float eta_ = 1;            ///< index on wo's side / index on the other side; 1 for transmission through a thin wall
   float eta_reflected_ = 1;  ///< the same for the Fresnel term
-  float light_share_beyond_ = 0;
+  float light_share_behind_ = 0;
   std::optional<RoughGlass> rough_;  ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };

@@ -25,11 +25,11 @@ RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
       side_(thin || outside ? 0 : 1) {
   const float through = 1 - std::min(1.0f, mean_fresnel(index));
   if (thin) {
-    share_beyond_ = through;
+    share_behind_ = through;
   } else {
     const float ratio = loss_.mean(0) / (loss_.mean(1) * index * index);  // d / b
     const float b = std::min(through, through > 0 ? 1 / std::max(1.0f, ratio) : 0.0f);
-    share_beyond_ = side_ == 0 ? b : b * ratio;
+    share_behind_ = side_ == 0 ? b : b * ratio;
   }
   // From grazing angles on, 1 - E falls about as 1 / (cos^2 + alpha^2).
   spread2_ = std::max(alpha2_, 1e-6f);
@@ -37,14 +37,14 @@ RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
 }
 
 /// 1 - E for cos_theta on wo's side or on the other side.
-float RoughGlass::loss(bool beyond, float cos_theta) const {
-  if (!thin_) return loss_.at(beyond ? 1 - side_ : side_, cos_theta);
+float RoughGlass::loss(bool behind, float cos_theta) const {
+  if (!thin_) return loss_.at(behind ? 1 - side_ : side_, cos_theta);
   const AlbedoPair e = wall_.at(cos_theta);
   return std::max(0.0f, 1 - (e.a + e.b));
 }
 
-float RoughGlass::mean_loss(bool beyond) const {
-  if (!thin_) return loss_.mean(beyond ? 1 - side_ : side_);
+float RoughGlass::mean_loss(bool behind) const {
+  if (!thin_) return loss_.mean(behind ? 1 - side_ : side_);
   const AlbedoPair e = wall_.mean();
   return std::max(1e-7f, 1 - (e.a + e.b));
 }
@@ -56,12 +56,12 @@ float RoughGlass::multiple_density(float cos_i) const {
 
 RoughGlass::Pair RoughGlass::single(Vec3 wi, Vec3 wo) const {
   const float cos_i = std::abs(wi.z);
-  const bool beyond = wi.z < 0;
+  const bool behind = wi.z < 0;
   float cos_t;
-  if (!beyond || thin_) {
+  if (!behind || thin_) {
     const Vec3 h = normalize(Vec3{wi.x, wi.y, cos_i} + wo);
     const float reflectance = fresnel_dielectric(std::clamp(dot(wo, h), 0.0f, 1.0f), eta_, cos_t);
-    const float share = beyond ? 1 - reflectance : reflectance;
+    const float share = behind ? 1 - reflectance : reflectance;
     return {share * ggx::distribution(h, alpha2_) * ggx::visibility(cos_i, wo.z, alpha2_),
             share * ggx::pdf_reflected(h, wo.z, alpha2_)};
   }
@@ -78,13 +78,13 @@ RoughGlass::Pair RoughGlass::single(Vec3 wi, Vec3 wo) const {
 }
 
 float RoughGlass::eval(Vec3 wi, Vec3 wo) const {
-  const bool beyond = wi.z < 0;
-  const float share = beyond ? share_beyond_ : 1 - share_beyond_;
-  return single(wi, wo).f + share * kInvPi * loss(beyond, std::abs(wi.z)) * loss(false, wo.z) / mean_loss(beyond);
+  const bool behind = wi.z < 0;
+  const float share = behind ? share_behind_ : 1 - share_behind_;
+  return single(wi, wo).f + share * kInvPi * loss(behind, std::abs(wi.z)) * loss(false, wo.z) / mean_loss(behind);
 }
 
 float RoughGlass::pdf(Vec3 wi, Vec3 wo) const {
-  const float several = loss(false, wo.z), share = wi.z < 0 ? share_beyond_ : 1 - share_beyond_;
+  const float several = loss(false, wo.z), share = wi.z < 0 ? share_behind_ : 1 - share_behind_;
   return (1 - several) * single(wi, wo).pdf + several * share * multiple_density(std::abs(wi.z));
 }
 
@@ -93,7 +93,7 @@ Vec3 RoughGlass::sample(Vec3 wo, float u_lobe, Vec2 u) const {
   if (u_lobe < several) {
     const float cos = std::sqrt(std::min(1.0f, spread2_ * std::expm1(u.y * log_spread_)));
     const float sin = std::sqrt(std::max(0.0f, 1 - cos * cos)), phi = 2 * kPi * u.x;
-    return {sin * std::cos(phi), sin * std::sin(phi), u_lobe < several * share_beyond_ ? -cos : cos};
+    return {sin * std::cos(phi), sin * std::sin(phi), u_lobe < several * share_behind_ ? -cos : cos};
   }
   u_lobe = (u_lobe - several) / (1 - several);
   const Vec3 h = ggx::sample_visible_normal(wo, alpha_, u);

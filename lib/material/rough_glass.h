@@ -40,8 +40,8 @@ class RoughGlass {
     float f = 0, pdf = 0;
   };
   Pair single(Vec3 wi, Vec3 wo) const;
-  float loss(bool beyond, float cos_theta) const;
-  float mean_loss(bool beyond) const;
+  float loss(bool behind, float cos_theta) const;
+  float mean_loss(bool behind) const;
   float multiple_density(float cos_i) const;
 
   GlassLoss loss_;  ///< for a solid
@@ -50,7 +50,7 @@ class RoughGlass {
   float eta_;  ///< index on wo's side / index on the other side, for the Fresnel term
   bool thin_;
   int side_;                    ///< side of wo: 0 outside, 1 inside
-  float share_beyond_;          ///< share of f_ms on the other side
+  float share_behind_;          ///< share of f_ms on the other side
   float spread2_, log_spread_;  ///< of multiple_density
 };
 

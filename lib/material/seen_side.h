@@ -28,7 +28,7 @@ struct SeenSide {
   /// True if wi is on the lit side of both normals. Light from other directions does not count.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
   /// True if wi is on the other side of both normals, from where light is transmitted.
-  bool sees_beyond(Vec3 wi) const { return dot(wi, normal_geometric) < 0 && dot(wi, normal) < 0; }
+  bool sees_behind(Vec3 wi) const { return dot(wi, normal_geometric) < 0 && dot(wi, normal) < 0; }
 
  private:
   static Vec3 viewed_normal(const SurfacePoint& point, Vec3 wo, Vec3 geometric) {

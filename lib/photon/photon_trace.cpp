@@ -78,7 +78,7 @@ struct Arrival {
 
   /// Event S into directions in which the eye uses the geometric normal, since the shading normal faces away from them
   /// (SeenSide). Black for other directions, and if D was drawn. Comes in addition to the events by the shading normal.
-  Bsdf::Sample scatter_beyond(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
+  Bsdf::Sample scatter_by_geometric_normal(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
     Bsdf::Sample next = bsdf.sample(geometric.to_local(wi), u_lobe, u);
     travel = geometric.to_world(next.wi);
@@ -408,12 +408,12 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const bool aims =
       !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
   float aimed = 1;
-  bool beyond = false;  // if both sides are possible, one is chosen with probability 1/2, so each counts twice
+  bool both = false;  // if both sides are possible, one is chosen with probability 1/2, so each counts twice
   if (bsdf.has_specular() && at.bent()) {
-    next = at.scatter_beyond(bsdf, u_lobe, draw.u, travel);
-    beyond = !is_black(next.weight);
+    next = at.scatter_by_geometric_normal(bsdf, u_lobe, draw.u, travel);
+    both = !is_black(next.weight);
   }
-  if (!(beyond && random.get1(draw.bounce, Purpose::lobe, 1) < 0.5f)) {
+  if (!(both && random.get1(draw.bounce, Purpose::lobe, 1) < 0.5f)) {
     next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction) : bsdf.sample(at.wi_local, u_lobe, draw.u);
     travel = at.frame.to_world(next.wi);
     if (!at.flat && !(at.wi_local.z > 0)) next.diffuse = true;
@@ -427,7 +427,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
                      std::max(1e-6f, side * next.wi.z);
     }
   }
-  if (beyond) next.weight *= 2;
+  if (both) next.weight *= 2;
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
   const Rgb reflected = flux * next.weight;
   const float survival =

@@ -46,15 +46,15 @@ struct PilotMaps {
   std::size_t touched = 0;
 };
 
-PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const EmissionTable& emission,
+PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, const EmissionTable& emission,
                      std::uint64_t seed) {
   PhotonOptions options;
   options.seed = seed;
   options.photon_count = kPaths;
   options.group_count = 1;
   options.set_kinds("indirect");
-  const Tracer whole_tracer(frame), fixed_tracer(standing);
-  const Lights whole_lights(frame, emission), fixed_lights(standing, emission);
+  const Tracer whole_tracer(frame), fixed_tracer(static_scene);
+  const Lights whole_lights(frame, emission), fixed_lights(static_scene, emission);
   const PhotonTracer whole(whole_tracer, whole_lights, options);
   PhotonTracer fixed(fixed_tracer, fixed_lights, options);
   const MoverWatch watch({moving_boxes(frame)});
@@ -85,8 +85,8 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const 
 
 MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                          std::uint64_t seed) {
-  const SceneFrame standing = static_scene_of(frame);
-  const PilotMaps maps = trace_maps(frame, standing, emission, seed);
+  const SceneFrame static_scene = static_scene_of(frame);
+  const PilotMaps maps = trace_maps(frame, static_scene, emission, seed);
   const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}),
       dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
   const Tracer tracer(frame);
@@ -116,10 +116,10 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
   return {double(maps.touched) / double(kPaths), places > 0 ? double(near) / double(places) : 0};
 }
 
-MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double standing_records) {
+MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double static_records) {
   const double light =
       1 / double(std::max<std::size_t>(states, 1)) + kLeastLight + kLightByTouched * pilot.touched_share;
-  const double records = standing_records + kLeastRecords + pilot.gathered_share;
+  const double records = static_records + kLeastRecords + pilot.gathered_share;
   const std::string because = "what moves touches " + per_cent(pilot.touched_share) +
                               " of the paths of light and matters at " + per_cent(pilot.gathered_share) +
                               " of what is seen; " + std::to_string(states) + " states of light";

@@ -33,11 +33,11 @@ struct MovingChoice {
 };
 
 /// The cheapest method for `states` states of light. If the static scene is computed once, photons and points of a
-/// state cost 1 / states + .2 + 3 touched_share of their full cost, and its records cost standing_records + .1 +
-/// gathered_share of theirs (docs/methods/dynamic.md has the measurements). standing_records: the cost of the static
+/// state cost 1 / states + .2 + 3 touched_share of their full cost, and its records cost static_records + .1 +
+/// gathered_share of theirs (docs/methods/dynamic.md has the measurements). static_records: the cost of the static
 /// records per frame that uses them, in units of the cost of one frame's records. The method `time` is never chosen:
 /// the records of a frame then depend on all states before it in the segment, so a single frame in the middle of a
 /// segment costs as much as ten (S5, 320x180: 13.2 CPU s instead of 1.9). It serves whole ranges of frames, on request.
-MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double standing_records);
+MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double static_records);
 
 }  // namespace tempolux

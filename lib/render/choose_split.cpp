@@ -52,7 +52,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
     for (std::size_t i = first; i < last; ++i) {
       if (!seen.places[i].exists()) continue;
       all[i] = 0;
-      const SeenPlace& met = seen.beyond[i];
+      const SeenPlace& met = seen.next_places[i];
       if (!met.exists()) continue;
       SurfacePoint surface = met.surface;
       const SurfaceMaterial material(frame, surface);

@@ -55,6 +55,56 @@ class OtherFrame {
   std::vector<const Surface*> there_;
 };
 
+/// Stores one number in each plane at pixel i.
+template <std::size_t kCount>
+void set(const std::array<float*, kCount>& planes, std::size_t i, const std::array<float, kCount>& numbers) {
+  for (std::size_t c = 0; c < kCount; ++c) planes[c][i] = numbers[c];
+}
+
+/// The samples of the requested channels, which the constructor adds to the image; null: not requested.
+struct DataPlanes {
+  float* z = nullptr;
+  std::array<float*, 3> normal{}, position{}, albedo{};
+  std::array<float*, 4> motion{};
+  std::uint32_t* id = nullptr;
+
+  DataPlanes(const std::vector<std::string>& channels, Image& image) {
+    const auto names = [&](const char* group, const std::vector<const char*>& all) {
+      return asked(channels, group) ? all : std::vector<const char*>{};
+    };
+    const std::array<std::vector<const char*>, 5> added{
+        names("Z", {"Z"}), names("N", {"N.X", "N.Y", "N.Z"}), names("P", {"P.X", "P.Y", "P.Z"}),
+        names("albedo", {"albedo.R", "albedo.G", "albedo.B"}),
+        names("motion", {"forward.u", "forward.v", "backward.u", "backward.v"})};
+    // All channels are added before any is looked up: adding may move them.
+    for (const auto& group : added)
+      for (const char* name : group) image.add(name);
+    if (asked(channels, "id")) image.add_ids("id.object");
+    const std::array<float**, 5> planes{&z, normal.data(), position.data(), albedo.data(), motion.data()};
+    for (std::size_t g = 0; g < added.size(); ++g)
+      for (std::size_t c = 0; c < added[g].size(); ++c) planes[g][c] = image.find(added[g][c])->values.data();
+    if (asked(channels, "id")) id = image.find("id.object")->ids.data();
+  }
+  bool none() const { return !(z || normal[0] || position[0] || albedo[0] || motion[0] || id); }
+  /// Pixel i shows no surface: the other planes keep 0.
+  void set_empty(std::size_t i) const {
+    if (z) z[i] = INFINITY;
+    if (id) id[i] = kNone;
+  }
+  /// Stores object, normal and world position of pixel i. direction: of the ray; origin: of the scene's space.
+  void set_surface(std::size_t i, const SurfacePoint& point, Vec3 direction, Vec3d origin) const {
+    if (id) id[i] = point.object;
+    if (normal[0]) {
+      const Vec3 n = dot(point.normal, direction) > 0 ? -point.normal : point.normal;
+      set(normal, i, {n.x, n.y, n.z});
+    }
+    if (position[0]) {
+      const Vec3d world = Vec3d(point.position) + origin;
+      set(position, i, {float(world.x), float(world.y), float(world.z)});
+    }
+  }
+};
+
 }  // namespace
 
 void check_channels(const std::vector<std::string>& channels) {
@@ -68,48 +118,19 @@ void check_channels(const std::vector<std::string>& channels) {
 
 void add_data_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                        const NeighbourFrame& next, const NeighbourFrame& previous, Image& image) {
-  // Channels are added first, then looked up: adding may move them.
-  const auto add3 = [&](const char* a, const char* b, const char* c) {
-    image.add(a);
-    image.add(b);
-    image.add(c);
-  };
-  const bool z = asked(channels, "Z"), n = asked(channels, "N"), p = asked(channels, "P"), id = asked(channels, "id"),
-             albedo = asked(channels, "albedo"), motion = asked(channels, "motion");
-  if (!(z || n || p || id || albedo || motion)) return;
-  if (z) image.add("Z");
-  if (n) add3("N.X", "N.Y", "N.Z");
-  if (p) add3("P.X", "P.Y", "P.Z");
-  if (albedo) add3("albedo.R", "albedo.G", "albedo.B");
-  if (motion) {
-    image.add("forward.u");
-    image.add("forward.v");
-    image.add("backward.u");
-    image.add("backward.v");
-  }
-  if (id) image.add_ids("id.object");
-  const auto values = [&](const char* name) -> float* {
-    Channel* channel = image.find(name);
-    return channel ? channel->values.data() : nullptr;
-  };
-  float *const Z = values("Z"), *const NX = values("N.X"), *const NY = values("N.Y"), *const NZ = values("N.Z"),
-               *const PX = values("P.X"), *const PY = values("P.Y"), *const PZ = values("P.Z"),
-               *const AR = values("albedo.R"), *const AG = values("albedo.G"), *const AB = values("albedo.B"),
-               *const FU = values("forward.u"), *const FV = values("forward.v"), *const BU = values("backward.u"),
-               *const BV = values("backward.v");
-  std::uint32_t* const ID = id ? image.find("id.object")->ids.data() : nullptr;
+  const DataPlanes planes(channels, image);
+  if (planes.none()) return;
+  const bool motion = planes.motion[0];
   const OtherFrame later(motion ? next : NeighbourFrame{}, scene.frame());
   const OtherFrame earlier(motion ? previous : NeighbourFrame{}, scene.frame());
-  const Vec3d origin = scene.frame().origin;
   const RayCone cone = view.cone();
+  const auto width = std::size_t(view.width());
+  const auto centre = [&](std::size_t i) { return Vec2{float(int(i % width)) + 0.5f, float(int(i / width)) + 0.5f}; };
 
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
     constexpr std::size_t kTogether = 8;  // a packet
     std::array<Ray, kTogether> rays;
     std::array<Hit, kTogether> hits;
-    const auto centre = [&](std::size_t i) {
-      return Vec2{float(int(i % std::size_t(view.width()))) + 0.5f, float(int(i / std::size_t(view.width()))) + 0.5f};
-    };
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t k = (i - first) % kTogether;
       if (k == 0) {
@@ -117,44 +138,24 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
         for (std::size_t j = 0; j < count; ++j) rays[j] = view.ray(centre(i + j).x, centre(i + j).y);
         scene.tracer.intersect(std::span(rays).first(count), std::span(hits).first(count));
       }
-      const auto [x, y] = centre(i);
-      const Ray& ray = rays[k];
       const Hit& hit = hits[k];
       if (hit.surface == kNone) {
-        if (Z) Z[i] = INFINITY;
-        if (ID) ID[i] = kNone;
+        planes.set_empty(i);
         continue;
       }
       SurfacePoint point = scene.tracer.surface_point(hit);
       const SurfaceMaterial material(scene.frame(), point, cone.width + cone.spread * hit.t);
-      if (Z) Z[i] = float(view.depth(point.position));
-      if (ID) ID[i] = point.object;
-      if (NX) {
-        const Vec3 normal = dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal;
-        NX[i] = normal.x;
-        NY[i] = normal.y;
-        NZ[i] = normal.z;
+      planes.set_surface(i, point, rays[k].direction, scene.frame().origin);
+      if (planes.z) planes.z[i] = float(view.depth(point.position));
+      if (planes.albedo[0]) {
+        const Rgb rho = Bsdf(material).diffuse_albedo();
+        set(planes.albedo, i, {rho.r, rho.g, rho.b});
       }
-      if (PX) {
-        const Vec3d world = Vec3d(point.position) + origin;
-        PX[i] = float(world.x);
-        PY[i] = float(world.y);
-        PZ[i] = float(world.z);
-      }
-      if (AR) {
-        const Bsdf bsdf(material);
-        const Rgb rho = bsdf.diffuse_albedo();
-        AR[i] = rho.r;
-        AG[i] = rho.g;
-        AB[i] = rho.b;
-      }
-      if (FU) {
+      if (motion) {
+        const auto [x, y] = centre(i);
         const std::array<double, 2> here = view.project(point.position).value_or(std::array{double(x), double(y)});
         const Vec2 f = later.motion(point, here), b = earlier.motion(point, here);
-        FU[i] = f.x;
-        FV[i] = f.y;
-        BU[i] = b.x;
-        BV[i] = b.y;
+        set(planes.motion, i, {f.x, f.y, b.x, b.y});
       }
     }
   });

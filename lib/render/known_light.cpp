@@ -19,19 +19,19 @@ std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geomet
                                             : std::nullopt;
 }
 
-std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 geometric, float distance,
-                                                 float u) const {
+std::optional<KnownLight::PointLight> KnownLight::point_light(const SurfacePoint& hit, Vec3 geometric, float distance,
+                                                              float u) const {
   if (!points) return std::nullopt;
   const PointLookup::Light* light = points->find(hit.position, geometric);
   if (!light || !points->is_uniform_indirect(*light) || PointLookup::is_near(*light, distance, u)) return std::nullopt;
-  if (points->is_uniform(*light)) return Told{light->all};
+  if (points->is_uniform(*light)) return PointLight{light->all};
   const IrradiancePoint& point = points->point(*light);
-  return Told{point.indirect + point.caustic, false};
+  return PointLight{point.indirect + point.caustic, false};
 }
 
-float KnownLight::left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
+float KnownLight::remaining_share(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
   const PointLookup::Light* light = bright ? points->find(hit.position, geometric) : nullptr;
-  return light && !PointLookup::is_near(*light, distance, u) ? bright->left(*light, distance) : 1.0f;
+  return light && !PointLookup::is_near(*light, distance, u) ? bright->remaining_share(*light, distance) : 1.0f;
 }
 
 std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look) {

@@ -46,18 +46,18 @@ class KnownLight {
     return photons ? photons->caustic(position, surface) : Rgb(0.0f);
   }
   /// Irradiance that a point stores for a hit.
-  struct Told {
+  struct PointLight {
     Rgb irradiance{0.0f};
-    bool direct =
-        true;  ///< of all kinds; else of all but direct: where the border of a shadow runs paths sample that themselves
+    /// True if the irradiance includes direct light. False where the border of a shadow runs: paths sample it there.
+    bool has_direct = true;
   };
   /// Irradiance at a hit `distance` m from the last Lambert lobe of the path. Empty if no point represents the hit, if
   /// the point's indirect light is not that of the hit, or if the hit is close (PointLookup::is_near with `u` in [0,
   /// 1)).
-  std::optional<Told> told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
+  std::optional<PointLight> point_light(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
   /// Share of the light from the hit's Lambert lobe that was not sampled explicitly at the place where the path comes
-  /// from. 1 if the hit is so close that the path continues for its light. `u` as for point_irradiance().
-  float left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
+  /// from. 1 if the hit is so close that the path continues for its light. `u` as for point_light().
+  float remaining_share(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
 };
 
 /// The first surface with a Lambert lobe that a raster position sees. At mirrors and glass the ray follows the likelier

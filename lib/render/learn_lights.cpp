@@ -256,7 +256,7 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<cons
   for (std::size_t v = 0; v < views.size(); ++v) {
     const SeenPlaces more = places_seen(scene, views[v], options.looks / int(views.size()), options.seed ^ v << 32);
     seen.places.insert(seen.places.end(), more.places.begin(), more.places.end());
-    seen.beyond.insert(seen.beyond.end(), more.beyond.begin(), more.beyond.end());
+    seen.next_places.insert(seen.next_places.end(), more.next_places.begin(), more.next_places.end());
   }
   const float extent = extent_of(seen.places);
   const auto exist = std::ranges::count_if(seen.places, &SeenPlace::exists);
@@ -265,7 +265,7 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<cons
   auto grid = std::make_unique<LightGrid>(extent / kAcrossSeen,
                                           scene.lights.has_environment() ? scene.frame().environment : nullptr);
   std::vector<Place> places;
-  for (const std::vector<SeenPlace>* from : {&seen.places, &seen.beyond})
+  for (const std::vector<SeenPlace>* from : {&seen.places, &seen.next_places})
     for (const SeenPlace& place : *from)
       if (place.exists()) places.push_back({place, grid->key(place.surface.position, place.normal)});
   const std::vector<std::vector<Place>> cells = by_cell(std::move(places));

@@ -16,14 +16,14 @@ std::vector<float> influences_of(std::span<const RecordChange> changes) {
 
 }  // namespace
 
-LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> standing, std::span<const RecordChange> changes,
+LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records, std::span<const RecordChange> changes,
                                std::span<const IrradianceRecord> gathered, float least_cosine,
                                const InfluenceThresholds& thresholds, MovingObjects moving)
-    : influence_(standing, influences_of(changes), thresholds),
+    : influence_(static_records, influences_of(changes), thresholds),
       updated_(kReadOnly),
       gathered_(kReadOnly),
       moving_(std::move(moving)) {
-  std::vector<IrradianceRecord> updated(standing.begin(), standing.end());
+  std::vector<IrradianceRecord> updated(static_records.begin(), static_records.end());
   for (std::size_t i = 0; i < updated.size(); ++i)
     for (int c = 0; c < 3; ++c) updated[i].irradiance[c] = std::max(0.0f, changes[i].update[c]);
   updated_.narrow(least_cosine);

@@ -18,9 +18,9 @@ namespace tempolux {
 /// is the gathered share for the influence at the place, and 1 on movers. Method: docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
-  /// changes[i] belongs to standing[i]. least_cosine: the smallest cosine between normals for which a record of either
-  /// set counts.
-  LocalisedLight(std::span<const IrradianceRecord> standing, std::span<const RecordChange> changes,
+  /// changes[i] belongs to static_records[i]. least_cosine: the smallest cosine between normals for which a record of
+  /// either set counts.
+  LocalisedLight(std::span<const IrradianceRecord> static_records, std::span<const RecordChange> changes,
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 

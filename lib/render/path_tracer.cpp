@@ -20,7 +20,7 @@ constexpr float kLargestSurvival = 0.998f;
 struct SampledLobes {
   bool diffuse, specular;
   float times_diffuse = 1, times_specular = 1;
-  float left = 1;  ///< share of the Lambert lobe's light that is to be added (KnownHere)
+  float remaining_share = 1;  ///< share of the Lambert lobe's light that is to be added (KnownHere)
   bool forks = false;
 
   /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
@@ -47,42 +47,42 @@ struct LightAdder {
   /// Rough glass also transmits light from behind. Draws one side for this sample; `share` receives the probability of
   /// that side. Returns true for the side behind.
   bool draw_side(float& share) const {
-    const float share_beyond = x.bsdf.light_share_beyond();
+    const float share_behind = x.bsdf.light_share_behind();
     share = 1;
-    if (!(share_beyond > 0)) [[likely]]
+    if (!(share_behind > 0)) [[likely]]
       return false;
-    const bool beyond = random.get1(bounce, Purpose::light_choice) < share_beyond;
-    share = beyond ? share_beyond : 1 - share_beyond;
-    return beyond;
+    const bool behind = random.get1(bounce, Purpose::light_choice) < share_behind;
+    share = behind ? share_behind : 1 - share_behind;
+    return behind;
   }
   /// Takes one sample of the lights `from`.
   void add_one(Lights::From from, Layers& result, std::uint64_t& shadow_rays) const {
     float share;
-    const bool beyond = draw_side(share);
+    const bool behind = draw_side(share);
     LightSample light;
-    if (scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal,
+    if (scene.lights.sample(x.surface.position, behind ? -x.normal : x.normal,
                             random.get2(bounce, Purpose::light_point), light, from))
-      add(light, beyond, share, result, shadow_rays);
+      add(light, behind, share, result, shadow_rays);
   }
   /// Takes one sample of a directional light.
   void add_sun(Layers& result, std::uint64_t& shadow_rays) const {
     float share;
-    const bool beyond = draw_side(share);
+    const bool behind = draw_side(share);
     LightSample light;
-    if (scene.lights.sample_sun(x.surface.position, beyond ? -x.normal : x.normal, random.get1(bounce, Purpose::sun),
+    if (scene.lights.sample_sun(x.surface.position, behind ? -x.normal : x.normal, random.get1(bounce, Purpose::sun),
                                 light))
-      add(light, beyond, share, result, shadow_rays);
+      add(light, behind, share, result, shadow_rays);
   }
-  void add(const LightSample& light, bool beyond, float share, Layers& result, std::uint64_t& shadow_rays) const;
+  void add(const LightSample& light, bool behind, float share, Layers& result, std::uint64_t& shadow_rays) const;
 };
 
-void LightAdder::add(const LightSample& light, bool beyond, float share, Layers& result,
+void LightAdder::add(const LightSample& light, bool behind, float share, Layers& result,
                      std::uint64_t& shadow_rays) const {
   const bool has_diffuse = lobes.diffuse && x.bsdf.has_diffuse(), has_specular = specular();
-  if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
+  if (behind ? !x.sees_behind(light.wi) : !x.sees(light.wi)) return;
   const Bsdf::Direction from = x.bsdf.along(x.frame.to_local(light.wi));
   const Vec3 wi = from.w;
-  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * lobes.left : Rgb(0.0f);
+  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * lobes.remaining_share : Rgb(0.0f);
   Rgb glossy = has_specular ? x.bsdf.eval_specular(from, x.eye) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
@@ -92,9 +92,9 @@ void LightAdder::add(const LightSample& light, bool beyond, float share, Layers&
   if (is_black(diffuse) && is_black(glossy)) return;
   ++shadow_rays;
   const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
-  const float left = transmittance(scene.tracer, shadow, {random.hashed(), bounce, way_shadow});
-  if (!(left > 0)) return;
-  Rgb arriving = throughput * light.facing_irradiance * (std::abs(wi.z) / share) * left;
+  const float passed = transmittance(scene.tracer, shadow, {random.hashed(), bounce, way_shadow});
+  if (!(passed > 0)) return;
+  Rgb arriving = throughput * light.facing_irradiance * (std::abs(wi.z) / share) * passed;
   if (inside.any())
     arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;
@@ -103,19 +103,19 @@ void LightAdder::add(const LightSample& light, bool beyond, float share, Layers&
 
 /// What a path remembers of its last event D (a Lambert lobe or a collision in a medium): which light was added there
 /// already, and how far its rays have spread since.
-struct Beyond {
+struct SinceDiffuse {
   bool matte = false;           ///< there was an event D
   bool caustic_known = false;   ///< light that arrives there by events S was added
   bool indirect_known = false;  ///< light that arrives there by events D was added
   bool specular = false;        ///< the path has had events S since
   /// Bright points were sampled explicitly there: a Lambert lobe that the path meets contributes only the rest.
-  bool low = false;
+  bool bright_sampled = false;
   /// m: the distance from a Lambert lobe at which rays would have spread as far. Equal to the path's length since the
   /// last event D; 0 if the path has met only smooth mirrors and glass.
-  float width = 0;
+  float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
 
-  void advance(float way) { width += spread * way; }
+  void advance(float way) { distance += spread * way; }
   /// Widens the spread by a glossy event of this pdf [1/sr]. A Lambert lobe has 1/pi in its middle, and its rays spread
   /// by one metre per metre.
   void widen(float density) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * density))); }
@@ -127,56 +127,10 @@ struct Beyond {
 /// The light that was added at x from records, points and photons; the path must not add it again.
 struct KnownHere {
   bool indirect = false, direct = false, caustic = false;
-  bool low = false;  ///< bright points were sampled explicitly
-  float left = 1;    ///< share of the Lambert lobe's light that was not sampled explicitly at the path's previous place
+  bool bright_sampled = false;  ///< bright points were sampled explicitly
+  float remaining_share =
+      1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the path's previous place
 };
-
-KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 smooth, const Beyond& beyond,
-                          const Rgb& throughput, const EyePath& path, float u, const PathRandom& random, Layers& result,
-                          RayCounts& counts) {
-  KnownHere here;
-  if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.width, u);
-  // The Lambert lobe's total for uniform light is rho (1 - A_S(wo)), see bsdf.h.
-  const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.left);
-  // The layer indirect, or the layer of the surface that the path has seen before.
-  const Layer layer = path.after(true).after(true).layer();
-  // With bright points, a point's irradiance stands for the remaining light only. A glossy ray has not sampled bright
-  // points, so the path continues.
-  if (beyond.matte || (beyond.spread > 0 && !known.bright)) {
-    if (const std::optional<KnownLight::Told> told = known.told(x.surface, x.normal_geometric, beyond.width, u)) {
-      ++counts.points_read;
-      result[layer] += reflected * told->irradiance;
-      return {true, told->direct, true, false, here.left};
-    }
-  }
-  const auto sample_bright = [&](int samples) {
-    if (!known.bright) return;
-    GatherCounts rays;
-    const Bsdf* const coat = x.bsdf.has_specular() ? &x.bsdf : nullptr;
-    result[layer] +=
-        reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
-    counts.shadow += rays.shadow_rays;
-    here.low = true;
-  };
-  if (known.has_caustic()) {
-    here.caustic = true;
-    result[path.after(true).after(false).layer()] +=
-        reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
-  }
-  if (beyond.matte) {
-    sample_bright(1);
-    return here;
-  }
-  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal)) {
-    ++counts.lookups;
-    here.indirect = true;
-    result[layer] += reflected * *indirect;
-  } else {
-    ++counts.gathered;
-    sample_bright(known.bright_samples);
-  }
-  return here;
-}
 
 /// The state of a path on its way.
 struct Walk {
@@ -189,9 +143,16 @@ struct Walk {
   EyePath path;
   Inside inside;
   LastScatter last;
-  Beyond beyond;
+  SinceDiffuse since;
   std::uint32_t bounce = 0;
   bool forked = false;
+};
+
+/// A surface that a path has reached.
+struct Vertex {
+  const ShadingPoint& x;
+  const SurfaceMaterial& material;
+  const KnownHere& here;
 };
 
 class EyeTracer {
@@ -205,17 +166,15 @@ class EyeTracer {
   enum class Passed { through, scattered, ended };
   Passed pass_media(const Media& media, Walk& walk) const;
   bool scatter_in_medium(const MediumPoint& point, Walk& walk) const;
-  bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
-               Walk& walk) const;
+  bool scatter(const Vertex& at, float u_lobe, float times, Walk& walk) const;
   bool survives(Walk& walk, float most) const;
   void go_on(const Ray& ray, Walk& walk) const;
   void add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const;
   void arrive(const SurfacePoint& point, Walk& walk) const;
-  bool leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, const SampledLobes& lobes,
-             Walk& walk) const;
+  KnownHere add_known_light(const ShadingPoint& x, Vec3 smooth, const Walk& walk) const;
+  bool leave(const Vertex& at, const SampledLobes& lobes, Walk& walk) const;
   bool step(Walk& walk) const;
-  void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
-                 float times, const Walk& walk) const;
+  void go_onward(const Vertex& at, float u_lobe, float times, const Walk& walk) const;
   void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
     as += rays;
     if (walk.result == &parts_.onward)
@@ -246,20 +205,20 @@ void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
 
 /// Draws the next ray: an event D or S by u_lobe. times: the lobe's probability over the Bsdf's. Returns false if the
 /// path ends.
-bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
-                        float times, Walk& walk) const {
+bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, Walk& walk) const {
+  const auto& [x, material, here] = at;
   const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
   if (is_black(next.weight) || (here.direct && next.diffuse)) return false;
   const Vec3 wi = x.frame.to_world(next.wi);
-  if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) return false;
+  if (next.transmitted ? !x.sees_behind(wi) : !x.sees(wi)) return false;
   walk.throughput *= next.weight * (1 / times);
   walk.path.scatter(next.diffuse);
   if (next.diffuse) {
-    walk.throughput *= here.left;
-    walk.beyond = {true, here.caustic, here.indirect, false, here.low, 0, 1};
+    walk.throughput *= here.remaining_share;
+    walk.since = {true, here.caustic, here.indirect, false, here.bright_sampled, 0, 1};
   } else {
-    walk.beyond.specular = true;
-    walk.beyond.widen(x.bsdf.gloss_density(next.wi, x.eye));
+    walk.since.specular = true;
+    walk.since.widen(x.bsdf.gloss_density(next.wi, x.eye));
   }
   const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
   if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
@@ -270,7 +229,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   if (next.diffuse) walk.cone = {};
   last.position = x.surface.position;
   last.normal = next.transmitted ? -x.normal : x.normal;
-  last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
+  last.light_share = next.transmitted ? x.bsdf.light_share_behind() : 1 - x.bsdf.light_share_behind();
   last.from = scene_.suns_apart ? Lights::From::not_suns : Lights::From::all;
   last.pdf_solid_angle =
       times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye) : x.bsdf.pdf_specular(next.wi, x.eye));
@@ -281,7 +240,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
 /// Scatters in a medium: samples a light, applies Russian roulette and draws a new ray. Returns false if the path ends.
 bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   walk.path.scatter_in_medium();
-  walk.beyond = {true, false, false, false, false, 0, 1};
+  walk.since = {true, false, false, false, false, 0, 1};
   walk.cone = {};
   walk.throughput *= point.albedo;
   if (is_black(walk.throughput)) return false;
@@ -303,15 +262,15 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
 EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   const float way = walk.hit.surface == kNone ? INFINITY : walk.hit.t;
   if (known_ && walk.bounce == 0) {
-    const auto left = float(std::exp(-media.optical_depth(walk.ray.origin, walk.ray.direction, way)));
-    walk.throughput *= left;
-    parts_.own.coverage = 1 - left;
+    const auto passed = float(std::exp(-media.optical_depth(walk.ray.origin, walk.ray.direction, way)));
+    walk.throughput *= passed;
+    parts_.own.coverage = 1 - passed;
     return Passed::through;
   }
   MediumPoint collision;
   if (!collides(media, walk.ray, way, walk.random.hashed(), walk.bounce, collision)) return Passed::through;
   if (walk.bounce == 0) parts_.own.coverage = 1;
-  if (walk.beyond.indirect_known) return Passed::ended;
+  if (walk.since.indirect_known) return Passed::ended;
   if (walk.inside.any())
     walk.throughput *=
         walk.inside.transmittance_over(scene_.frame().materials, length(collision.position - walk.ray.origin));
@@ -338,14 +297,13 @@ void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_
 }
 
 /// Follows effort_.onward rays from the Lambert lobe of the first matte surface: the part `onward`.
-void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe,
-                          float times, const Walk& walk) const {
-  if (here.indirect && here.caustic && !known_->lights_are_met) return;
+void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const Walk& walk) const {
+  if (at.here.indirect && at.here.caustic && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
     Walk next = walk;
     next.random = walk.random.of_sample(effort_.onward_first + i);
     next.result = &parts_.onward;
-    if (scatter(x, material, here, u_lobe, times, next)) follow(next);
+    if (scatter(at, u_lobe, times, next)) follow(next);
   }
 }
 
@@ -357,44 +315,97 @@ void EyeTracer::arrive(const SurfacePoint& point, Walk& walk) const {
   if (walk.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
     walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, walk.hit.t);
   walk.cone.advance(walk.hit.t);
-  walk.beyond.advance(walk.hit.t);
-  if (walk.beyond.light_counts())
+  walk.since.advance(walk.hit.t);
+  if (walk.since.light_counts())
     (*walk.result)[walk.path.layer()] +=
         walk.throughput * weighed_emission(scene_.lights, point, wo, walk.last, walk.cone.width);
 }
 
 /// Follows the rays that leave a surface: one, or one for each lobe where the path forks. Returns false if `walk` ends.
-bool EyeTracer::leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here,
-                      const SampledLobes& lobes, Walk& walk) const {
+bool EyeTracer::leave(const Vertex& at, const SampledLobes& lobes, Walk& walk) const {
+  const ShadingPoint& x = at.x;
   const bool first_matte = walk.path.sharp() && x.bsdf.has_diffuse();
   float u_lobe = walk.random.get1(walk.bounce, Purpose::lobe), times = 1;
   if (lobes.forks) {
     const float diffuse = 1 / lobes.times_diffuse;
     walk.forked = true;
-    Walk beside = walk;
-    if (scatter(x, material, here, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular,
-                beside))
-      follow(beside);
+    Walk branch = walk;
+    if (scatter(at, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular, branch))
+      follow(branch);
     u_lobe *= diffuse;
     times = lobes.times_diffuse;
   }
   if (first_matte && x.bsdf.draws_diffuse(x.eye, u_lobe)) {
-    go_onward(x, material, here, u_lobe, times, walk);
+    go_onward(at, u_lobe, times, walk);
     return false;
   }
-  return scatter(x, material, here, u_lobe, times, walk);
+  return scatter(at, u_lobe, times, walk);
+}
+
+/// Adds the light that records, points and photons hold for x. smooth: the shading normal without a normal map.
+KnownHere EyeTracer::add_known_light(const ShadingPoint& x, Vec3 smooth, const Walk& walk) const {
+  const KnownLight& known = *known_;
+  const SinceDiffuse& since = walk.since;
+  const EyePath& path = walk.path;
+  Layers& result = *walk.result;
+  const float u = walk.random.get1(walk.bounce, Purpose::gather);
+  KnownHere here;
+  if (since.bright_sampled && !since.specular)
+    here.remaining_share = known.remaining_share(x.surface, x.normal_geometric, since.distance, u);
+  // The Lambert lobe's total for uniform light is rho (1 - A_S(wo)), see bsdf.h.
+  const Rgb reflected = walk.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.remaining_share);
+  // The layer indirect, or the layer of the surface that the path has seen before.
+  const Layer layer = path.after(true).after(true).layer();
+  // With bright points, a point's irradiance stands for the remaining light only. A glossy ray has not sampled bright
+  // points, so the path continues.
+  if (since.matte || (since.spread > 0 && !known.bright)) {
+    if (const std::optional<KnownLight::PointLight> stored =
+            known.point_light(x.surface, x.normal_geometric, since.distance, u)) {
+      ++counts_.points_read;
+      result[layer] += reflected * stored->irradiance;
+      return {true, stored->has_direct, true, false, here.remaining_share};
+    }
+  }
+  const auto sample_bright = [&](int samples) {
+    if (!known.bright) return;
+    GatherCounts rays;
+    const PathRandom random(walk.random.hashed().bits(walk.bounce, Purpose::gather), walk.bounce);
+    const Bsdf* const coat = x.bsdf.has_specular() ? &x.bsdf : nullptr;
+    result[layer] +=
+        reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
+    counts_.shadow += rays.shadow_rays;
+    here.bright_sampled = true;
+  };
+  if (known.has_caustic()) {
+    here.caustic = true;
+    result[path.after(true).after(false).layer()] +=
+        reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+  }
+  if (since.matte) {
+    sample_bright(1);
+    return here;
+  }
+  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal)) {
+    ++counts_.lookups;
+    here.indirect = true;
+    result[layer] += reflected * *indirect;
+  } else {
+    ++counts_.gathered;
+    sample_bright(known.bright_samples);
+  }
+  return here;
 }
 
 /// Moves the path from one vertex to the next. Returns false if the path ends.
 bool EyeTracer::step(Walk& walk) const {
   const SceneFrame& frame = scene_.frame();
   if (const Media* const media = frame.media.get()) [[unlikely]] {
-    const Passed passed = pass_media(*media, walk);
-    if (passed != Passed::through) return passed == Passed::scattered;
+    const Passed media_event = pass_media(*media, walk);
+    if (media_event != Passed::through) return media_event == Passed::scattered;
   }
   Layers& result = *walk.result;
   if (walk.hit.surface == kNone) {
-    if (scene_.lights.has_environment() && walk.beyond.light_counts())
+    if (scene_.lights.has_environment() && walk.since.light_counts())
       result[walk.path.layer()] += walk.throughput * weighed_environment(scene_.lights, walk.ray.direction, walk.last);
     return false;
   }
@@ -402,8 +413,8 @@ bool EyeTracer::step(Walk& walk) const {
   SurfacePoint point = scene_.tracer.surface_point(walk.hit);
   arrive(point, walk);
   // True if only light by events S may still be added.
-  const bool only_specular = walk.beyond.indirect_known;
-  if (only_specular && walk.beyond.caustic_known) return false;
+  const bool only_specular = walk.since.indirect_known;
+  if (only_specular && walk.since.caustic_known) return false;
 
   const Vec3 smooth = point.normal;
   const SurfaceMaterial material(frame, point, walk.cone.width);
@@ -413,16 +424,13 @@ bool EyeTracer::step(Walk& walk) const {
   }
   const ShadingPoint x(point, -walk.ray.direction, material);
   KnownHere here{only_specular, only_specular, only_specular};
-  if (known_ && !only_specular && x.bsdf.has_diffuse())
-    here = add_known_light(
-        *known_, x, smooth, walk.beyond, walk.throughput, walk.path, walk.random.get1(walk.bounce, Purpose::gather),
-        PathRandom(walk.random.hashed().bits(walk.bounce, Purpose::gather), walk.bounce), result, counts_);
-  SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
-  lobes.left = here.left;
+  if (known_ && !only_specular && x.bsdf.has_diffuse()) here = add_known_light(x, smooth, walk);
+  SampledLobes lobes{!here.direct, !(walk.since.matte && walk.since.caustic_known)};
+  lobes.remaining_share = here.remaining_share;
   if (known_ && known_->forks() && !walk.forked && walk.path.sharp() && x.bsdf.forks())
     lobes.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   add_light(x, lobes, walk.path.sharp() && x.bsdf.has_diffuse(), walk);
-  return !(here.direct && !x.bsdf.has_specular()) && leave(x, material, here, lobes, walk);
+  return !(here.direct && !x.bsdf.has_specular()) && leave({x, material, here}, lobes, walk);
 }
 
 void EyeTracer::follow(Walk walk) const {

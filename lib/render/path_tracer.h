@@ -157,14 +157,14 @@ struct RenderScene {
 ///   events S after x is then not added.
 /// - Indirect light at x is that of records. The path still continues to its next hit, because that ray is joined with
 ///   light sampling by MIS, and by events S if caustic light is not known.
-/// - Where no record is valid, the ray ends at a hit that a point represents, or continues as a path. An unlit material
-///   shows its base colour as radiance to the camera, directly and through events S (layers emission and specular). It
-///   lights nothing and scatters nothing, here and in photon-trace.
+/// - Where no record is valid, the ray ends at a hit that a point represents, or continues as a path.
 ///
-/// Media (SceneFrame::media): free flight by null collisions, and one light sample at each collision. With `known`, the
-///   camera ray is attenuated exactly, and volume-compose adds the light that media scatter towards it; after an event
-///   S media scatter as without `known`. Light that media scatter to a matte surface is part of its indirect light.
-///   `cone` is the pixel's cone, for the level of textures (CameraView::cone); the default reads the finest level.
+/// An unlit material shows its base colour to the camera, directly and by events S; it lights and scatters nothing.
+/// In media (SceneFrame::media) paths fly by null collisions and take one light sample at each collision. With `known`,
+/// the camera ray is attenuated exactly, and volume-compose adds the light that media scatter towards it; after an
+/// event S media scatter as without `known`. Light that media scatter to a matte surface is part of its indirect light.
+///
+/// `cone` is the pixel's cone, for the level of textures (CameraView::cone); the default reads the finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const KnownLight* known, RayCounts& counts, RayCone cone = {});
 /// Radiance by parts along a ray whose first hit is known (surface kNone: it meets nothing). MIS weights are those of

@@ -65,7 +65,7 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
       if (place.open) continue;
       const SurfacePoint met = scene.tracer.surface_point(hit);
       const SeenSide side(met, -travel);
-      seen.beyond[i] = {met, side.normal, side.normal_geometric, false};
+      seen.next_places[i] = {met, side.normal, side.normal_geometric, false};
     }
   });
   return seen;

@@ -22,7 +22,7 @@ struct SeenPlace {
 
 struct SeenPlaces {
   std::vector<SeenPlace> places;  ///< by index of the camera ray: its first Lambert lobe, through mirrors and glass
-  std::vector<SeenPlace> beyond;  ///< the place that a cosine-distributed ray from there met
+  std::vector<SeenPlace> next_places;  ///< the place that a cosine-distributed ray from there met
 };
 
 /// For cameras one after the other: the share of each camera's view that no camera before has seen, as the mean over

@@ -106,16 +106,6 @@ struct Packet {
 
 }  // namespace
 
-bool Tracer::intersect_static(const Ray& ray, Hit& hit) const {
-  if (!impl_->fixed.exists()) return false;
-  if (!usable(ray)) {
-    impl_->refused.fetch_add(1, std::memory_order_relaxed);
-    return false;
-  }
-  RTCRayHit query{to_embree(ray), {}};
-  return intersect_tree(impl_->fixed, query, hit);
-}
-
 bool Tracer::intersect(const Ray& ray, Hit& hit) const {
   if (!usable(ray)) {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);

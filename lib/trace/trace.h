@@ -59,8 +59,6 @@ class Tracer {
   /// one than intersect(); the same list gives the same hits. alike: false if neighbours differ, which is then no
   /// slower than single rays.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike = true) const;
-  /// Nearest hit with static surfaces only.
-  bool intersect_static(const Ray& ray, Hit& hit) const;
   /// True if a surface lies between the ray's ends.
   bool occluded(const Ray& ray) const;
 

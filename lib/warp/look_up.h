@@ -69,7 +69,6 @@ class KeyView {
   }
   bool same_camera() const { return same_camera_; }
   const KeyFrame& key() const { return key_; }
-  const ObjectMotions& motions() const { return motions_; }
 
  private:
   /// Positions of points in the key, and the surfaces expected there.

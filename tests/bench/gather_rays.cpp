@@ -82,22 +82,20 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
 /// Stratified cosine rays from points of the lit sides, those of one place one after the other, in the order in which
 /// FinalGather follows them.
 std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradiancePoint>& points,
-                             const FinalGather& gather, const Options& options) {
+                             const GatherStrata& strata, const Options& options) {
   std::vector<Ray> rays;
   std::vector<const IrradiancePoint*> lit;
   for (const IrradiancePoint& point : points)
     if (max_component(point.total()) > 0) lit.push_back(&point);
   const float offset = Reach(tracer).offset();
-  int rings, sectors;
-  gather_strata(options.rays, rings, sectors);
   for (int r = 0; r < options.records && !lit.empty(); ++r) {
     const IrradiancePoint& from = *lit[std::size_t(r) * lit.size() / std::size_t(options.records)];
     const Frame frame(from.normal);
     const PathRandom random(1, std::uint64_t(r));
-    for (const std::uint32_t cell : gather.cell_order()) {
+    for (const std::uint32_t cell : strata.order) {
       const Vec2 u = random.get2(cell, Purpose::test);
-      const float sin2 = (float(int(cell) / sectors) + u.x) / float(rings);
-      const float phi = 2 * kPi * (float(int(cell) % sectors) + u.y) / float(sectors);
+      const float sin2 = (float(int(cell) / strata.sectors) + u.x) / float(strata.rings);
+      const float phi = 2 * kPi * (float(int(cell) % strata.sectors) + u.y) / float(strata.sectors);
       const Vec3 local{std::sqrt(sin2) * std::cos(phi), std::sqrt(sin2) * std::sin(phi), std::sqrt(1 - sin2)};
       rays.push_back({from.position + from.normal * offset, frame.to_world(local), 0, INFINITY});
     }
@@ -154,10 +152,11 @@ struct FurtherRays {
   }
 };
 
-double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, GatherCounts& counts, double& sum) {
+/// CPU seconds to gather along all rays, which are `each` for one place.
+double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, std::size_t each, GatherCounts& counts,
+                   double& sum) {
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = mix64(i);
-  const std::size_t each = gather.cell_order().size();
   std::vector<Rgb> radiance(each);
   std::vector<float> distance(each);
   const double start = cpu_seconds();
@@ -197,11 +196,11 @@ void run(const Options& options) {
   GatherOptions gather_options;
   gather_options.rays = options.rays;
   const PointLookup first_lookup(points, spacing, point_clearance(tracer));
-  const std::vector<Ray> rays =
-      gather_rays(tracer, points, FinalGather(tracer, lights, first_lookup, gather_options), options);
+  const GatherStrata strata(options.rays);
+  const std::vector<Ray> rays = gather_rays(tracer, points, strata, options);
   double distance = 0, sum = 0;
   GatherCounts counts;
-  time_gather(FinalGather(tracer, lights, first_lookup, gather_options), rays, counts, sum);
+  time_gather(FinalGather(tracer, lights, first_lookup, gather_options), rays, strata.cells(), counts, sum);
   const double per_ray = double(counts.rays) / double(rays.size());
   const FurtherRays further(tracer, lights, rays, double(counts.near_hits) / double(rays.size()),
                             double(counts.shadow_rays) / double(rays.size()));
@@ -212,8 +211,8 @@ void run(const Options& options) {
     bare_first.push_back(time_bare(tree, rays, distance));
     bare.push_back(bare_first.back() + time_bare(tree, further.cosine, distance) +
                    time_bare_shadow(tree, further.shadow, distance));
-    filling.push_back(time_gather(gather, rays, counts, sum));  // fills the look-up's table
-    with_lookup.push_back(time_gather(gather, rays, counts, sum));
+    filling.push_back(time_gather(gather, rays, strata.cells(), counts, sum));  // fills the look-up's table
+    with_lookup.push_back(time_gather(gather, rays, strata.cells(), counts, sum));
     ratio.push_back(bare.back() / filling.back());
     ratio_first.push_back(bare_first.back() / filling.back());
   }

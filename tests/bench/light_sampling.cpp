@@ -7,6 +7,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "tests/lib/light/light_scene.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -17,7 +18,7 @@ LightScene ring(int count) {
   const PathRandom random(1, 1);
   std::vector<Vec3> corners;
   for (std::uint32_t i = 0; i < std::uint32_t(count); ++i) {
-    const Vec3 n = sample_sphere(random.get2(i, Purpose::test));
+    const Vec3 n = test::sample_sphere(random.get2(i, Purpose::test));
     const Vec3 a = normalize(cross(n, Vec3{0.3f, 0.5f, 0.9f})) * 0.02f, b = cross(n, a), at = n * 3.0f;
     for (const Vec3 c : {at, at + b, at + a}) corners.push_back(c);
   }

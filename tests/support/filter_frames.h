@@ -36,7 +36,7 @@ inline Image wall(int width, int height) {
   return image;
 }
 /// Of each pixel's mean; known of 16 samples.
-inline void tell_variance(Image& image, float variance) {
+inline void set_variance(Image& image, float variance) {
   grey(image, "variance", everywhere(variance));
   plane(image, "samples", everywhere(16));
 }
@@ -49,7 +49,7 @@ inline void moves(Image& image, float u, float v) {
 }
 
 /// Half the difference of the halves of a layer; where the frame says so its noise is known.
-inline void tell_noise(Image& image, const std::string& layer, const OfPixel& noise) {
+inline void set_noise(Image& image, const std::string& layer, const OfPixel& noise) {
   grey(image, layer + ".noise", noise);
 }
 

@@ -1,4 +1,4 @@
-// Sums of photons in cells that can be undone exactly, and filters that lose nothing.
+// Sums of photons in cells that can be undone exactly, and filters that keep the sum.
 #include "lib/compose/fluence_volume.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-/// 2 x 2 x 2 cells of majorants over a box of 1 x 1 x 2 m; the last one holds nothing.
+/// 2 x 2 x 2 cells of majorants over a box of 1 x 1 x 2 m; the last cell is empty.
 MajorantGrid majorants() {
   MajorantGrid grid({{0, 0, 0}, {1, 1, 2}}, {2, 2, 2});
   for (float& value : grid.values()) value = 3;
@@ -21,7 +21,7 @@ struct Deposit {
   Rgb worth;
 };
 
-/// Photons all over the open part.
+/// Photons at uniform places of the cells that are not empty.
 std::vector<Deposit> deposits(std::size_t count, std::uint64_t seed) {
   std::vector<Deposit> all;
   for (std::uint64_t i = 0; all.size() < count; ++i) {
@@ -71,10 +71,9 @@ TEST(FluenceSums, OutsideAndNotFiniteCountNothing) {
   EXPECT_TRUE(FluenceSums(MajorantGrid(), 0.1, 5).sums().empty());
 }
 
-/// Fluence that is the same everywhere stays so under each filter, at the border of the open part too: photons spread
-/// evenly, so many that their own noise is small. 400 000 photons in 7/8 of 20 x 20 x 40 cells are 28 a cell; a
-/// Gaussian of 2 cells takes 356 of these together, 1 % noise; at a corner an eighth, 3 %. The box of width 3 takes
-/// 343, as many. Bilateral weights are less even: 4 %.
+/// Uniform fluence stays uniform under each filter, also at the border of the empty cell. 400 000 uniform photons in
+/// 7/8 of 20 x 20 x 40 cells are 28 per cell. A Gaussian of 2 cells averages 356 of these, a noise of 1 %; at a corner
+/// an eighth, 3 %. The box of width 3 averages 343. Bilateral weights vary more: 4 %.
 TEST(FluenceVolume, EvenLightStaysEven) {
   FluenceSums sums(majorants(), 0.05, 5);
   const std::size_t n = 400000;
@@ -104,7 +103,7 @@ TEST(FluenceVolume, WidthFollowsTheNumberOfPhotons) {
   for (const Deposit& d : deposits(5000, 4)) few.add(d.at, d.worth);
   for (const Deposit& d : deposits(40000, 4)) many.add(d.at, d.worth);
   const float wide = FluenceVolume(few, {}).width(), narrow = FluenceVolume(many, {}).width();
-  EXPECT_NEAR(wide / narrow, 2, 1e-3);  // eight times as many in half the width
+  EXPECT_NEAR(wide / narrow, 2, 1e-3);  // eight times as many photons in half the width
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Light of a peaked phase function, divided between photons and rays from the eye.
+// Light of a peaked phase function, divided between photons and camera rays.
 #include "lib/compose/phase_share.h"
 
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// Integral over the sphere of f(q) / 4 pi, q = 4 pi p(theta). By mu = cos(theta) drawn from p, where it is even in the
-/// number xi: dmu/2 = dxi / q.
+/// Integral over the sphere of f(q) / 4 pi, q = 4 pi p(theta), with mu = cos(theta) drawn from p as a function of a
+/// uniform number xi: dmu/2 = dxi / q.
 template <class F>
 double over_sphere(float g, const F& f) {
   constexpr int steps = 200000;
@@ -19,9 +19,9 @@ double over_sphere(float g, const F& f) {
   return sum / steps;
 }
 
-/// Under light that is the same from everywhere a phase function scatters as even scattering does: the two parts add up
-/// to 1. By photons it is the mean of q share(q), by rays that of 1 - share(q) over what the phase function draws.
-/// 1e-3: quadrature where q is small.
+/// In uniform light every phase function scatters as isotropic scattering does, so the two parts add up to 1. The
+/// photons' part is the mean of q share(q), the rays' part the mean of 1 - share(q) over directions drawn from the
+/// phase function. Quadrature where q is small: 1e-3.
 TEST(PhaseShare, PartsAddUp) {
   for (const float g : {-0.9f, 0.75f, 0.9f, 0.99f})
     for (const int rays : {4, 16, 64}) {
@@ -33,9 +33,9 @@ TEST(PhaseShare, PartsAddUp) {
     }
 }
 
-/// What a photon counts has mean square (1 + g^2) / (1 - g^2)^2 by itself: 50.1 at g = .9, so that 50 photons tell as
-/// much as one that is scattered evenly. (Sum over l of (2 l + 1) g^(2 l), from the phase function's Legendre moments
-/// g^l.) Of its share it is n / m = 16 at most: q share <= n / m, and its mean is 1 at most.
+/// The mean square of a photon's unshared weight is (1 + g^2) / (1 - g^2)^2, which is 50.1 at g = .9: 50 such photons
+/// have the noise of one isotropic photon. (Sum over l of (2 l + 1) g^(2 l), from the phase function's Legendre moments
+/// g^l.) With the share it is at most n / m = 16, because q share <= n / m and its mean is at most 1.
 TEST(PhaseShare, NoPhotonCountsForMany) {
   const double alone = over_sphere(0.9f, [](float q) { return double(q) * double(q); });
   EXPECT_NEAR(alone, 1.81 / (0.19 * 0.19), 0.05);
@@ -46,7 +46,7 @@ TEST(PhaseShare, NoPhotonCountsForMany) {
   EXPECT_LT(shared, alone / 10);
 }
 
-/// Without a peak photons bring everything: 16 rays are worth it from (1 + g) / (1 - g)^2 = 16 on, g = .672.
+/// Without a peak photons contribute all light: 16 rays pay from (1 + g) / (1 - g)^2 = 16 on, g = .672.
 TEST(PhaseShare, EvenScatteringNeedsNoRays) {
   for (const float g : {0.0f, 0.5f, -0.5f, 0.66f}) {
     EXPECT_FALSE(PhaseShare(g, 16).has_rays()) << g;

@@ -114,8 +114,8 @@ TEST(EstimateIrradiance, SeparatesTheSidesOfAThinWallAndLeavesOutTheWallBesideAF
   // In the corner half the disc lies outside: half the value, and nothing of the wall's.
   EXPECT_NEAR(estimate_irradiance(index, {0, 0.5f, 0}, kUp, options, scratch).irradiance.r, 5e3, 1e3);
   // Flattened tenfold, photons one millimetre below count as 10 mm away, whatever their normal.
-  const IrradianceOptions fixed{.max_radius = 0.0099f, .min_cos = kAnyNormal};
-  const double flat = estimate_irradiance_fixed(index, {0.5f, 0.5f, 0}, kUp, fixed, scratch).irradiance.r;
+  const IrradianceOptions within{.max_radius = 0.0099f, .min_cos = kAnyNormal};
+  const double flat = estimate_irradiance(index, {0.5f, 0.5f, 0}, kUp, within, scratch).irradiance.r;
   EXPECT_LT(flat, 5e4);  // 1e6 if the other side were let in
 }
 
@@ -154,15 +154,13 @@ TEST(EstimateIrradiance, HasNoBiasOnAPlaneOfUniformPhotons) {
   struct Rule {
     const char* name;
     IrradianceOptions options;
-    bool fixed;
     double sum;
   };
   const float half = float(mean50), less = float(0.9 * mean50);
-  std::vector<Rule> rules{{"k50", {.neighbours = 50}, false, 0},
-                          {"truncated for half", {.neighbours = 50, .max_radius = half}, false, 0},
-                          {"truncated for most", {.neighbours = 50, .max_radius = less}, false, 0},
-                          {"smallest radius for half", {.neighbours = 50, .min_radius = half}, false, 0},
-                          {"fixed radius", {.max_radius = half}, true, 0}};
+  std::vector<Rule> rules{{"k50", {.neighbours = 50}, 0},
+                          {"truncated for half", {.neighbours = 50, .max_radius = half}, 0},
+                          {"truncated for most", {.neighbours = 50, .max_radius = less}, 0},
+                          {"smallest radius for half", {.neighbours = 50, .min_radius = half}, 0}};
   constexpr int kPlanes = 20, kQueries = 20000;
   NeighbourList scratch;
   for (std::uint64_t plane = 0; plane < kPlanes; ++plane) {
@@ -171,10 +169,7 @@ TEST(EstimateIrradiance, HasNoBiasOnAPlaneOfUniformPhotons) {
       // stratified: 200 x 100 cells
       const Vec2 u = PathRandom(100 + plane, q).get2(1, Purpose::test);
       const Vec3 point{(float(q / 100) + u.x) / 200, (float(q % 100) + u.y) / 100, 0.5f};
-      for (Rule& rule : rules)
-        rule.sum += (rule.fixed ? estimate_irradiance_fixed(index, point, kUp, rule.options, scratch)
-                                : estimate_irradiance(index, point, kUp, rule.options, scratch))
-                        .irradiance.g;
+      for (Rule& rule : rules) rule.sum += estimate_irradiance(index, point, kUp, rule.options, scratch).irradiance.g;
     }
   }
   for (const Rule& rule : rules) {
@@ -184,39 +179,7 @@ TEST(EstimateIrradiance, HasNoBiasOnAPlaneOfUniformPhotons) {
   }
 }
 
-// --- many at once --------------------------------------------------------------------------------------
-
-TEST(EstimateIrradiances, EqualsSingleEstimatesForAnyNumberOfThreads) {
-  // Flux of very different size: the sum's last bits would show any change of its order.
-  std::vector<Photon> photons = periodic_plane(1, 20000);
-  for (std::size_t i = 0; i < photons.size(); ++i)
-    photons[i].flux[i % 3] = std::pow(10.0f, 6 * float(std::int64_t(i * 7919 % 1000) - 500) / 500) / 3;
-  const PhotonIndex index(photons);
-  std::vector<Vec3> points, normals;
-  for (std::uint64_t q = 0; q < 5000; ++q) {
-    const Vec2 u = PathRandom(5, q).get2(0, Purpose::test);
-    points.push_back({u.x, u.y, 0.5f});
-    normals.push_back(q % 3 ? kUp : -kUp);
-  }
-  const IrradianceOptions options{.neighbours = 60, .max_radius = 0.03f};
-  std::vector<IrradianceEstimate> single;
-  for (std::size_t q = 0; q < points.size(); ++q) {
-    NeighbourList fresh;
-    single.push_back(estimate_irradiance(index, points[q], normals[q], options, fresh));
-  }
-  for (int threads : {1, 2, 3, 7}) {
-    const ThreadLimit limit(threads);
-    std::vector<IrradianceEstimate> batch(points.size());
-    estimate_irradiances(index, points, normals, options, batch);
-    for (std::size_t q = 0; q < points.size(); ++q) {
-      ASSERT_EQ(batch[q].irradiance, single[q].irradiance) << "query " << q << ", " << threads << " threads";
-      ASSERT_EQ(batch[q].radius, single[q].radius);
-      ASSERT_EQ(batch[q].count, single[q].count);
-    }
-  }
-}
-
-TEST(EstimateIrradiances, RefusesOptionsOutOfRangeAndUnequalLengths) {
+TEST(EstimateIrradiance, RefusesOptionsOutOfRange) {
   const PhotonIndex index;
   NeighbourList scratch;
   const auto refuses = [&](IrradianceOptions options) {
@@ -228,10 +191,6 @@ TEST(EstimateIrradiances, RefusesOptionsOutOfRangeAndUnequalLengths) {
   refuses({.max_radius = std::numeric_limits<float>::quiet_NaN()});
   refuses({.min_radius = -1});
   refuses({.flattening = 0.5f});
-  EXPECT_THROW(estimate_irradiance_fixed(index, {}, kUp, {}, scratch), std::invalid_argument);
-  std::vector<Vec3> two(2), one(1);
-  std::vector<IrradianceEstimate> results(2);
-  EXPECT_THROW(estimate_irradiances(index, two, one, {}, results), std::invalid_argument);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -22,7 +23,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 Vec2 random2(std::uint64_t i, std::uint32_t use) { return PathRandom(7, i).get2(use, Purpose::test); }
 
 Photon photon_at(Vec3 p, std::uint64_t i) {
-  const Vec3 n = sample_sphere(random2(i, 90));
+  const Vec3 n = test::sample_sphere(random2(i, 90));
   Photon photon{.position = {p.x, p.y, p.z}, .flux = {float(i % 17), 1, -2}};
   photon.object = std::uint16_t(i % 1000);
   photon.normal = formats::encode_normal({n.x, n.y, n.z});
@@ -120,7 +121,7 @@ PhotonQuery query_of(Shape shape, std::uint64_t q, int variant) {
   PhotonQuery query{.point = place(shape, q % 3 == 0 ? q : q + 1000000)};
   if (q % 5 == 1) query.point += Vec3{0.1f, -0.2f, 0.05f};
   if (q % 7 == 2) query.point += Vec3{30, 0, 5};
-  query.normal = sample_sphere(random2(q, 91));
+  query.normal = test::sample_sphere(random2(q, 91));
   if (q % 4 == 0) query.normal = {0, 1, 0};
   if (variant & 1) query.max_radius = std::pow(10.0f, 1.5f - 3 * random2(q, 92).x);
   if (variant & 2) query.min_cos = random2(q, 93).x - 0.3f;

@@ -58,11 +58,11 @@ TEST(Choose, WhereHalvesAgreeThePictureStays) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(out[c], light[c]);
 }
 
-/// V = sigma^2 / 2 is the variance of M. A candidate without noise that is off by b has the best share V / (V + b^2),
-/// so the mean of the result is off by b V / (V + b^2) and its squared error is V b^2 / (V + b^2), for b^2 = V half of
-/// either. V and (F - M)^2 are known by about 60 pixels each, to sqrt(2 / 60) = 18 %: the share is off by 9 % of 1 at
-/// random, which adds (.09)^2 (V + b^2) = .016 V to the squared error, and by a few percent of itself in the mean, as
-/// the inverse of a noisy mean is too large.
+/// V = sigma^2 / 2 is the variance of M. For a candidate without noise and with the bias b, the best share is V / (V +
+/// b^2). The mean of the result then has the bias b V / (V + b^2), and its squared error is V b^2 / (V + b^2), which
+/// for b^2 = V is half of that of either. V and (F - M)^2 are estimated from about 60 pixels each, to sqrt(2 / 60) = 18
+/// %. So the share has a random error of 9 % of 1, which adds (.09)^2 (V + b^2) = .016 V to the squared error, and it
+/// is a few per cent too large in the mean, because the inverse of a noisy mean is too large.
 TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
   const float sigma = 0.1f, variance = sigma * sigma / 2, b = std::sqrt(variance);
   const Colours out = chosen({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}});
@@ -70,15 +70,15 @@ TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
   EXPECT_NEAR(squared_error(out[1], 1), double(variance) / 2, 0.08 * double(variance));
 }
 
-/// Off by 10 standard deviations of M: the share is 1 / 101.
+/// A candidate with a bias of 10 standard deviations of M gets the share 1 / 101.
 TEST(Choose, AWrongCandidateLeavesTheRawPicture) {
   const float sigma = 0.05f, b = 10 * sigma / std::sqrt(2.0f);
   const Colours out = chosen({noise(4, sigma), noise(5, sigma)}, {{constant(1 + b), constant(1 + b)}});
   EXPECT_LT(squared_error(out[0], 1), 1.03 * double(sigma) * double(sigma) / 2);
 }
 
-/// The right one of two leaves next to nothing of the noise, in whatever order they come. Its own estimate of V is off
-/// by 18 %, which w is cut to 1 above.
+/// The right one of two candidates leaves almost none of the noise, in either order. Its own estimate of V has an error
+/// of 18 %, and w is clamped to 1.
 TEST(Choose, TheBetterCandidateIsTaken) {
   const float sigma = 0.1f;
   const Halves right{constant(1), constant(1)}, wrong{constant(1.5f), constant(1.5f)},
@@ -87,9 +87,9 @@ TEST(Choose, TheBetterCandidateIsTaken) {
     EXPECT_LT(squared_error(chosen(raw, candidates)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
 }
 
-/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2,
-/// the mean of (F - M)^2 is (b^2 + V) / 4. With b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean is off by
-/// b / 4. Without the covariance the share would be 1. Tolerance: as above.
+/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise. The covariance of F and M is V / 2,
+/// and the mean of (F - M)^2 is (b^2 + V) / 4. With b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean has
+/// the bias b / 4. Without the covariance the share would be 1. The tolerance is as above.
 TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   const float sigma = 0.1f, b = sigma * std::sqrt(1.5f);
   const Halves raw{noise(8, sigma), noise(9, sigma)};

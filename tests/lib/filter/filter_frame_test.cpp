@@ -1,5 +1,4 @@
-// The filter on pictures whose answer is known: constant, noise, edges, ramps, steps of light that move, what passes
-// by.
+// The filter on pictures with a known answer: constants, noise, edges, ramps, moving steps of light, objects that pass.
 #include "lib/filter/filter_frame.h"
 
 #include <gtest/gtest.h>
@@ -20,28 +19,28 @@ using test::grey;
 using test::moves;
 using test::Noise;
 using test::plane;
-using test::tell_noise;
-using test::tell_variance;
+using test::set_noise;
+using test::set_variance;
 using test::wall;
 
 TEST(Filter, AConstantPictureStays) {
   Image frame = wall(40, 24);
   grey(frame, "direct", everywhere(0.7f));
-  tell_noise(frame, "direct", everywhere(0));
+  set_noise(frame, "direct", everywhere(0));
   moves(frame, 30, 0);
   const Image out = filtered(std::vector<Image>(5, frame));
   for (const char* c : {"direct.R", "direct.G", "direct.B"})
     for (const float v : out.find(c)->values) EXPECT_EQ(v, 0.7f);
 }
 
-/// Two sides, told apart by object, by depth or by normal, whose values differ by less than their noise: no light of
-/// one in the other. One pixel of the 225 of a window would be .1 / 225. Made-up halves of noise .1 give weights that
-/// differ by about 4 %: of the noise of a mean of 225 that leaves 3e-4.
+/// Two sides that differ in object, depth or normal, with values that differ by less than their noise: no light of one
+/// side enters the other. One pixel of the 225 of a window would add .1 / 225. Made-up halves of noise .1 give weights
+/// that differ by about 4 %; this share of the noise of a mean over 225 pixels is 3e-4.
 TEST(Filter, NothingCrossesAnEdge) {
   for (const std::string by : {"object", "depth", "normal"}) {
     Image frame = wall(40, 24);
     grey(frame, "", [](int x, int) { return x < 20 ? 1.0f : 1.1f; });
-    tell_variance(frame, 0.01f);
+    set_variance(frame, 0.01f);
     for (int y = 0; y < 24; ++y)
       for (int x = 20; x < 40; ++x) {
         const auto p = std::size_t(y * 40 + x);
@@ -55,22 +54,23 @@ TEST(Filter, NothingCrossesAnEdge) {
   }
 }
 
-/// Light that changes evenly is a plane everywhere, also where the window is cut at the picture's border (a mean of 15
-/// pixels would be off by .05 to .1 there). The pull on slopes takes .02 / .27 of them at a border: .011 of the widest
-/// window.
+/// Linear light is a plane everywhere, also where the border of the picture cuts the window (a mean over 15 pixels
+/// would have an error of .05 to .1 there). The pull on slopes reduces them by .02 / .27 at a border: .011 for the
+/// widest window.
 TEST(Filter, ARampStaysUpToItsBorder) {
   Image frame = wall(40, 24);
   const auto ramp = [](int x, int y) { return 1 + 0.01f * float(x) - 0.02f * float(y); };
   grey(frame, "", ramp);
-  tell_variance(frame, 4e-4f);
+  set_variance(frame, 4e-4f);
   const Image out = filtered({frame});
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 40; ++x) EXPECT_NEAR(at(out, "G", x, y), ramp(x, y), 0.015f) << x << " " << y;
 }
 
-/// A step of light, 1 to 2, that moves by four pixels a frame over a wall that stands. Noise of .1: every column's mean
-/// error over 60 lines is within 4 sigma of the noise that was there, .1 / sqrt(60). (Without comparing values the
-/// columns it passes in five frames are off by .2 to .8.) Without noise, and told so, the picture stays.
+/// A step of light from 1 to 2 moves by four pixels per frame over a static wall. With a noise of .1, the mean error of
+/// every column over 60 lines is within 4 sigma of the input's noise, .1 / sqrt(60). (If values were not compared, the
+/// columns that the step passes in five frames would have errors of .2 to .8.) If the frame has a variance of 0, the
+/// picture stays.
 TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
   for (const float deviation : {0.0f, 0.1f}) {
     Noise noise(1);
@@ -81,7 +81,7 @@ TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
       std::vector<float> values;
       for (int p = 0; p < 3600; ++p) values.push_back(light(f, p % 60) + deviation * noise());
       grey(frame, "", [&](int x, int y) { return values[std::size_t(y * 60 + x)]; });
-      tell_variance(frame, deviation * deviation);
+      set_variance(frame, deviation * deviation);
       moves(frame, 0, 0);
       frames.push_back(frame);
     }
@@ -94,9 +94,9 @@ TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
   }
 }
 
-/// A pattern that moves with its wall by (3, -2) pixels a frame, v up: followed the right way five frames average its
-/// noise to 1/sqrt(5) of it; 2000 pixels know that to 1.6 %. A wrong sign mixes what differs by twenty times the noise,
-/// and is left out: nothing is gained.
+/// A pattern moves with its wall by (3, -2) pixels per frame, v up. If flow is followed in the right direction, five
+/// frames average the noise to 1/sqrt(5), which 2000 pixels measure to 1.6 %. With a wrong sign the values differ by
+/// twenty times the noise and are left out: the noise does not fall.
 TEST(Filter, TheFlowIsFollowedTheRightWay) {
   const auto pattern = [](int x, int y) { return float((x * 7 + y * 13) % 5); };
   for (const float sign : {1.0f, -1.0f}) {
@@ -108,7 +108,7 @@ TEST(Filter, TheFlowIsFollowedTheRightWay) {
       for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) values.push_back(10 * pattern(x - 3 * f + 100, y - 2 * f + 100) + noise());
       grey(frame, "", [&](int x, int y) { return values[std::size_t(y * 64 + x)]; });
-      tell_variance(frame, 0.01f);
+      set_variance(frame, 0.01f);
       moves(frame, sign * 3, sign * -2);
       frames.push_back(frame);
     }
@@ -124,13 +124,13 @@ TEST(Filter, TheFlowIsFollowedTheRightWay) {
   }
 }
 
-/// Texture is not light: a chequered wall under even light keeps every square.
+/// Texture is not light: a chequered wall under uniform light keeps every square.
 TEST(Filter, AlbedoIsNotBlurred) {
   const auto albedo = [](int x, int y) { return (x + y) % 2 == 0 ? 0.9f : 0.1f; };
   Image frame = wall(32, 32);
   grey(frame, "direct", [&](int x, int y) { return albedo(x, y) * 3; });
   grey(frame, "albedo", albedo);
-  tell_noise(frame, "direct", everywhere(0.01f));
+  set_noise(frame, "direct", everywhere(0.01f));
   const Image out = filtered({frame, frame, frame});
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) EXPECT_NEAR(at(out, "direct.G", x, y), albedo(x, y) * 3, 1e-3f);
@@ -145,7 +145,7 @@ Image layered_frame(Noise& noise) {
       for (std::size_t p = 0; p < frame.pixel_count(); ++p)
         frame.find(c)->values[p] += frame.find(layer + std::string(".") + c)->values[p];
   }
-  tell_variance(frame, 0.1f);
+  set_variance(frame, 0.1f);
   return frame;
 }
 
@@ -166,8 +166,8 @@ TEST(Filter, EmissionAndSpecularPassAndLayersSumToTheImage) {
   }
 }
 
-/// Light of smoke passes and stays in the picture. Of a frame that has some layers alone the picture changes as they
-/// do, and keeps the rest: here 5.
+/// Light of smoke passes the filter and stays in the picture. If a frame holds only some layers, the picture changes
+/// with them and keeps the rest, here 5.
 TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
   Noise noise(1);
   Image smoky = layered_frame(noise);
@@ -185,25 +185,25 @@ TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
   std::erase_if(some.channels, [](const Channel& channel) {
     return channel.name.starts_with("emission") || channel.name.starts_with("specular");
   });
-  for (std::size_t p = 0; p < 32 * 24; ++p)  // R and B hold what was taken out
+  for (std::size_t p = 0; p < 32 * 24; ++p)  // R and B hold the light that is in no layer
     some.find("G")->values[p] =
         some.find("direct.G")->values[p] + some.find("caustic.G")->values[p] + some.find("indirect.G")->values[p] + 5;
   const Image of_some = filtered({some});
-  for (std::size_t p = 0; p < 32 * 24; ++p)  // of numbers up to about 15: some roundings of 2^-21
+  for (std::size_t p = 0; p < 32 * 24; ++p)  // numbers up to about 15: some roundings of 2^-21
     EXPECT_NEAR(of_some.find("G")->values[p],
                 of_some.find("direct.G")->values[p] + of_some.find("caustic.G")->values[p] +
                     of_some.find("indirect.G")->values[p] + 5,
                 1e-5f);
 }
 
-/// A quarter of the pixels in column 20 is what column 19 shows. Their own sample is of either side, and their halves
-/// say so; what comes out is the mixture, from both sides' other pixels; emission likewise.
+/// A quarter of each pixel in column 20 shows the surface of column 19. A sample of such a pixel shows either side, and
+/// its halves show this noise. The result is the mixture of both sides' other pixels; the same holds for emission.
 TEST(Filter, EdgesArePutTogetherByCoverage) {
   Image frame = wall(40, 64);
   const auto mixed = [](int x, int y) { return x < 20 ? 4.0f : x > 20 ? 1.0f : y % 4 == 0 ? 4.0f : 1.0f; };
   for (const char* layer : {"direct", "emission"}) {
     grey(frame, layer, mixed);
-    tell_noise(frame, layer, [&](int x, int y) { return x == 20 ? mixed(x, y) - 1.75f : 0.0f; });
+    set_noise(frame, layer, [&](int x, int y) { return x == 20 ? mixed(x, y) - 1.75f : 0.0f; });
   }
   frame.add_ids("coverage");
   for (int y = 0; y < 64; ++y)
@@ -212,7 +212,7 @@ TEST(Filter, EdgesArePutTogetherByCoverage) {
       if (x == 20) frame.find("coverage")->ids[std::size_t(y * 40 + x)] = 4u << 12;
     }
   const Image out = filtered({frame});
-  for (int y = 16; y < 48; ++y)  // in corners ten pixels of a side are not at hand (unmix.h)
+  for (int y = 16; y < 48; ++y)  // in corners fewer than ten pixels of a side are available (unmix.h)
     for (int x = 0; x < 40; ++x) {
       const float expected = x < 20 ? 4.0f : x > 20 ? 1.0f : 1.75f;
       EXPECT_NEAR(at(out, "direct.G", x, y), expected, 1e-4f) << x << " " << y;
@@ -220,8 +220,8 @@ TEST(Filter, EdgesArePutTogetherByCoverage) {
     }
 }
 
-/// Of a frame that has albedo and says nothing of noise pixels at edges keep their values: what they see of which
-/// surface is not known.
+/// In a frame with albedo and without any variance, pixels at edges keep their values, because the surfaces that they
+/// see are not known.
 TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
   Image frame = wall(40, 24);
   Noise noise(0.1f);
@@ -242,21 +242,22 @@ TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
   EXPECT_LT(after, before / 4);
 }
 
-/// Nothing that is not a number comes out, whatever goes in; values beyond squares in float32 stay.
+/// No output value is infinite or NaN for any input. Values too large for squares in float32 stay.
 TEST(Filter, StrangePixelsAreLeftOutAndFilled) {
-  for (const bool told : {false, true}) {
+  for (const bool has_variance : {false, true}) {
     Image frame = wall(16, 16);
     grey(frame, "", [](int x, int y) {
       if (y == 3) return x == 3 ? NAN : x == 8 ? INFINITY : x == 12 ? -INFINITY : 1.0f;
       return x == 3 && y == 12 ? 1e30f : 1.0f;
     });
-    if (told) tell_variance(frame, 0.01f);
+    if (has_variance) set_variance(frame, 0.01f);
     moves(frame, 1e4f, -1e4f);
     frame.find("forward.u")->values[5] = NAN;
     frame.find("Z")->values[7] = NAN;
     frame.find("Z")->values[9] = 0;
     const Image out = filtered({frame, frame, frame});
-    for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 0.05f) << x;  // made-up halves have noise of .1
+    // made-up halves have a noise of .1
+    for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 0.05f) << x;
     EXPECT_EQ(at(out, "G", 3, 12), 1e30f);
     for (const Channel& channel : out.channels)
       for (const float v : channel.values)
@@ -266,11 +267,11 @@ TEST(Filter, StrangePixelsAreLeftOutAndFilled) {
   grey(one, "", everywhere(0));
   EXPECT_EQ(at(filtered({one, one}), "G", 0, 0), 0);
   grey(one, "direct", everywhere(2));
-  tell_noise(one, "direct", everywhere(1));
+  set_noise(one, "direct", everywhere(1));
   EXPECT_EQ(at(filtered({one}), "direct.G", 0, 0), 2);
 }
 
-/// Tiles are not seen: a picture of three tiles is the same as in one piece, to the rounding of sums.
+/// Tiles are invisible: a picture of three tiles equals the picture filtered in one piece, up to the rounding of sums.
 TEST(Filter, TilesAreNotSeen) {
   Image frame = wall(700, 370);
   Noise noise(0.2f);
@@ -280,7 +281,7 @@ TEST(Filter, TilesAreNotSeen) {
     return 1 + 0.2f * std::sin(0.05f * float(x + y)) + halves[std::size_t(2 * (y * 700 + x) + h)];
   };
   grey(frame, "direct", [&](int x, int y) { return (half(x, y, 0) + half(x, y, 1)) / 2; });
-  tell_noise(frame, "direct", [&](int x, int y) { return (half(x, y, 0) - half(x, y, 1)) / 2; });
+  set_noise(frame, "direct", [&](int x, int y) { return (half(x, y, 0) - half(x, y, 1)) / 2; });
   const Image whole = filtered({frame}), tiled = filter_alone(frame, {});
   for (std::size_t p = 0; p < frame.pixel_count(); ++p)
     EXPECT_NEAR(whole.find("direct.G")->values[p], tiled.find("direct.G")->values[p], 1e-5f);

@@ -1,4 +1,4 @@
-// Frames in halves whose answer is known: noise on a wall, a star, a mirror, what is no number.
+// Frames in halves with a known answer: noise on a wall, a star, a mirror, values that are not finite.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using test::wall;
 
 constexpr int kSide = 96;
 
-/// A wall whose layer is `light` in the mean; each half has independent noise of standard deviation sigma.
+/// A wall whose layer has the mean `light`; each half has independent noise of standard deviation sigma.
 Image noisy(const std::string& layer, const OfPixel& light, float sigma) {
   Image image = wall(kSide, kSide);
   std::mt19937 random(7);
@@ -26,7 +26,7 @@ Image noisy(const std::string& layer, const OfPixel& light, float sigma) {
   for (float& v : a) v = sigma > 0 ? normal(random) : 0;
   for (float& v : b) v = sigma > 0 ? normal(random) : 0;
   const auto at = [](int x, int y) { return std::size_t(y * kSide + x); };
-  test::tell_noise(image, layer, [&](int x, int y) { return (a[at(x, y)] - b[at(x, y)]) / 2; });
+  test::set_noise(image, layer, [&](int x, int y) { return (a[at(x, y)] - b[at(x, y)]) / 2; });
   const OfPixel mean = [&](int x, int y) { return light(x, y) + (a[at(x, y)] + b[at(x, y)]) / 2; };
   grey(image, layer, mean);
   grey(image, "", mean);
@@ -45,9 +45,10 @@ double squared_error(const Image& image, const OfPixel& light) {
   return sum / (kSide * kSide);
 }
 
-/// 169 pixels of a plane leave 1 / 169 of the variance in the middle, up to 4 times that at the borders; the choice is
-/// off by a few percent of w, which leaves (.1)^2 of it. The small window leaves 1 / 25 where it is taken. Less than a
-/// tenth in all; the mean over the wall is that of the samples, to 1 / 10 of its own error.
+/// A plane over 169 pixels leaves 1 / 169 of the variance in the middle and up to 4 times that at the borders. The
+/// choice has an error of a few per cent of w, which leaves (.1)^2 of the variance. The small window leaves 1 / 25
+/// where it is taken. In all less than a tenth. The mean over the wall is that of the samples, to 1 / 10 of its own
+/// error.
 TEST(FilterHalves, NoiseOnAWallGoes) {
   const float sigma = 0.2f;
   const OfPixel light = [](int x, int y) { return 1 + 0.004f * float(x) - 0.002f * float(y); };
@@ -55,8 +56,8 @@ TEST(FilterHalves, NoiseOnAWallGoes) {
     EXPECT_LT(squared_error(filtered(noisy(layer, light, sigma)), light), 0.1 * double(sigma) * double(sigma) / 2);
 }
 
-/// What is seen in mirrors is filtered by what they show (seen.*): here two walls in a mirror that meet at column 40.
-/// Without the channels light crosses the border, or the halves see to it that none is filtered there.
+/// Light in a mirror is filtered by the surfaces that the mirror shows (seen.*): here two walls that meet at column 40.
+/// Without these channels light crosses the border, or the halves prevent any filtering there.
 TEST(FilterHalves, LightInAMirrorIsFilteredByWhatItShows) {
   const float sigma = 0.2f;
   const OfPixel light = [](int x, int) { return x < 40 ? 1.0f : 3.0f; };

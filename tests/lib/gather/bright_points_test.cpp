@@ -1,4 +1,4 @@
-// Bright points sampled explicitly: form factors, the partition with what rays bring, gradients, limits.
+// Bright points sampled explicitly: form factors, the sum with the light of rays, gradients, limits.
 #include "lib/gather/bright_points.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ const Lights& no_lights(const SceneFrame& frame) {
   return *kept.emplace_back(std::make_unique<Lights>(frame, EmissionTable{}));
 }
 
-/// A square patch of 1 m, which one point stands for (spacing 1 m, R = 0.564 m), at height h over a floor, radiance 1
-/// downwards.
+/// A square patch with edges of 1 m, represented by one point (spacing 1 m, R = 0.564 m), at height h above a floor. It
+/// emits radiance 1 downwards.
 struct Patch {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -50,9 +50,10 @@ struct Patch {
   }
 };
 
-/// Patch to point, asked: 1 % for l >= 5 R, 5 % across the fade from 4 R to 6 R. Sixteen sites know the patch to a
-/// fraction of a per cent. In the fade rays bring a part: of 300 gathers x 2000 rays some 600000 x (form factor / pi) =
-/// 10000 meet the patch at 5 R, which is 1 %, less for being stratified by cells.
+/// The irradiance of the patch at a point: within 1 % for l >= 5 R, within 5 % in the fade from 4 R to 6 R. Sixteen
+/// sites integrate the patch to a fraction of a per cent. In the fade rays contribute a part: of 300 gathers x 2000
+/// rays some 600000 x (form factor / pi) = 10000 rays meet the patch at 5 R, an error of 1 %, and less because rays are
+/// stratified by cells.
 TEST(BrightPoints, FormFactorOfAPatch) {
   const double R = 1 / std::sqrt(M_PI);
   for (const double l : {4.2, 4.6, 5.0, 5.5, 6.5, 10.0})
@@ -103,11 +104,11 @@ struct Groups {
   }
 };
 
-/// A box with a block in it: corners, near hits, a thing in the way. Points of random light and random high shares:
-/// whatever they are, what rays leave and explicit samples bring is what rays bring alone. Twelve sets of sites, 12
-/// gathers with each; the difference is within 5 standard errors at each of 5 places (of 11 degrees of freedom: 1 in
-/// 2000), with shares of 0 to 1, and of 1 alone. Explicit samples that left out the near hits, or counted them in full,
-/// are off by 8 and 12 of them in the corner.
+/// A box with a block in it: corners, close hits, and an obstacle. Points have random light and random high shares. For
+/// any values, the light of rays plus explicit samples must equal the light of rays alone. Twelve sets of sites with 12
+/// gathers each; the difference is within 5 standard errors at each of 5 places (with 11 degrees of freedom: exceeded
+/// once in 2000), with shares from 0 to 1, and with shares of 1. If explicit samples left out close hits, or counted
+/// them in full, the difference in the corner would be 8 and 12 standard errors.
 TEST(BrightPoints, PartsAddUpToTheWhole) {
   HandMadeScene scene;
   scene.add_room({0, 0, 0}, {2, 1, 1}, matte(Rgb(0.7f)));
@@ -157,8 +158,8 @@ TEST(BrightPoints, PartsAddUpToTheWhole) {
           << p << " " << k;
 }
 
-/// One spot is drawn with certainty, by the same sites for the same numbers: the differences are those of the
-/// integrand. Steps of 1 mm at 4 m: errors of second order are 1e-3.
+/// A single spot is drawn with certainty, by the same sites for the same random numbers, so differences of the estimate
+/// are those of the integrand. Steps of 1 mm at a distance of 4 m: errors of second order are 1e-3.
 TEST(BrightPoints, GradientsAreDifferences) {
   Patch patch(4);
   const Tracer tracer(patch.scene.frame());
@@ -181,7 +182,8 @@ TEST(BrightPoints, GradientsAreDifferences) {
   }
 }
 
-/// Nothing divided: nothing is sampled, and rays bring the same bits. Something in between: no light.
+/// If no point has a high part, nothing is sampled, and rays have the same bits. If an obstacle lies in between, no
+/// light arrives.
 TEST(BrightPoints, NothingHighAndNothingSeen) {
   Patch patch(4);
   const Lights& lights = no_lights(patch.scene.frame());
@@ -204,7 +206,7 @@ TEST(BrightPoints, NothingHighAndNothingSeen) {
   const BrightPoints bright(tracer, lights, lookup, {1.0f}, {});
   GatherCounts counts;
   EXPECT_EQ(bright.arriving({place_at({0, 0, 0}, {0, 1, 0}), {0, 1, 0}}, 64, PathRandom(1, 2), counts).irradiance.g, 0);
-  EXPECT_EQ(counts.shadow_rays, 64u);  // each drew the one spot
+  EXPECT_EQ(counts.shadow_rays, 64u);  // each sample drew the only spot
 }
 
 }  // namespace

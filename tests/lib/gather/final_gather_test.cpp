@@ -13,8 +13,8 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 
-/// A half plane x > x0 at height h over the origin that shines down with radiance 1: a black-free reflector whose
-/// irradiance points all say pi, so that rho/pi E = 1. Far edges are 2000 h away.
+/// A half plane x > x0 at height h above the origin that shines down with radiance 1: a reflector whose irradiance
+/// points all hold pi / rho, so that rho/pi E = 1. Its far edges are 2000 h away.
 struct HalfPlane {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -35,7 +35,7 @@ struct HalfPlane {
   double tilt() const { return M_PI / 2 * h / std::hypot(h, x0); }
 };
 
-/// Means over independent gathers: cells are jittered, so one gather scatters.
+/// Means over independent gathers, because cells are jittered and one gather is noisy.
 struct Means {
   double irradiance = 0, dx = 0, dz = 0, tilt = 0;
 };
@@ -60,17 +60,17 @@ Means gather_many(HalfPlane& plane, int rays, int repeats) {
     means.irradiance += double(record.irradiance.g) / repeats;
     means.dx += double(record.translational[1].x) / repeats;
     means.dz += double(record.translational[1].z) / repeats;
-    // Normal tilted by a small angle towards +x: E(n) = E + (n_i x n) . g, n_i x n = (0,1,0) x (sin a, cos a, 0) = (0,
-    // 0, -sin a).
+    // A normal tilted by a small angle a towards +x: E(n) = E + (n_i x n) . g with n_i x n = (0,1,0) x (sin a, cos a,
+    // 0) = (0, 0, -sin a).
     means.tilt += double(-record.rotational[1].z) / repeats;
   }
   return means;
 }
 
-/// A square of radiance 1 and half-width a straight above at height 1, in the dark: about one of 50 cells. From its
-/// quarters, E = 4 a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)). Its border gets further rays; were cells to call for
-/// them by what their own first ray brought, more than half of the light would be lost. One gather scatters by half:
-/// 0.35 % in the mean of 20000.
+/// A square of radiance 1 and half-width a at height 1 straight above, in the dark: it fills about one of 50 cells.
+/// Summed over its quarters, E = 4 a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)). Cells at its border get further rays. If
+/// a cell's own first ray decided on its further rays, more than half of the light would be lost. One gather has a
+/// standard deviation of a half: 0.35 % in the mean of 20000.
 TEST(FinalGather, FurtherRaysKeepTheMean) {
   constexpr float a = 0.15f;
   HandMadeScene scene;
@@ -97,13 +97,13 @@ TEST(FinalGather, FurtherRaysKeepTheMean) {
   }
   const double side = double(a) / std::hypot(1.0, double(a));
   EXPECT_NEAR(mean / (4 * side * std::atan(side)), 1, 0.012);
-  EXPECT_GT(double(counts.rays), 1.1 * 50 * kGathers);  // there were some
+  EXPECT_GT(double(counts.rays), 1.1 * 50 * kGathers);  // there were further rays
 }
 
-/// Below a ceiling at height h, much wider than high, rays of cosine c are h / c long; c drawn by the cosine has the
-/// mean 2/3, so R = 1.5 h. Its variance is 1/18: 64 rays leave 1 / sqrt(18) / 8 = 3 % of h / R or less, as they are
-/// stratified. Above nothing is met. A patch of which one ray in 100 knows is met by more than half of all records, as
-/// rays go on up to 512: R is the distance there, 1 to 1.005 h.
+/// Below a ceiling at height h that is much wider than high, a ray of cosine c has the length h / c. The mean of a
+/// cosine-distributed c is 2/3, so R = 1.5 h. Its variance is 1/18: 64 rays leave an error of 1 / sqrt(18) / 8 = 3 % of
+/// h / R, or less because they are stratified. Upwards nothing is met. A patch that one ray in 100 meets is found by
+/// more than half of all records, because up to 512 rays are sent: R is then its distance, 1 to 1.005 h.
 TEST(FinalGather, DistanceIsTheHarmonicMeanOfWhatIsMet) {
   const auto distance_below = [](float half, Vec3 normal, std::uint64_t seed) {
     HandMadeScene scene;
@@ -130,9 +130,9 @@ TEST(FinalGather, DistanceIsTheHarmonicMeanOfWhatIsMet) {
   EXPECT_GT(met, 8);
 }
 
-/// A coated floor under a small bright patch seen at the angle of cosine c: the coat reflects of light from there what
-/// it does, so that arrival_weight(c) of what a matte floor would gather counts. Both follow the same rays: what is
-/// left is how the weight changes over the patch, 4 degrees wide: below 2 %.
+/// A coated floor under a small bright patch that is seen at the cosine c. The coat reflects a part of the light, so
+/// the irradiance is arrival_weight(c) times that of a matte floor. Both use the same rays; the difference is the
+/// change of the weight over the patch, which is 4 degrees wide: below 2 %.
 TEST(FinalGather, LightCountsByWhatTheCoatLetsIn) {
   Material coated = matte(Rgb(0.5f));
   coated.specular = 1;
@@ -171,7 +171,7 @@ TEST(FinalGather, LightCountsByWhatTheCoatLetsIn) {
 
 class HalfPlaneTest : public testing::TestWithParam<std::pair<double, double>> {};
 
-/// M = 16 rings (800 rays): within 2 % of the closed form, signs included; 400 gathers leave noise of 0.3 %.
+/// M = 16 rings (800 rays): within 2 % of the closed form, with the right signs; 400 gathers leave a noise of 0.3 %.
 TEST_P(HalfPlaneTest, IrradianceAndBothGradients) {
   HalfPlane plane(GetParam().first, GetParam().second);
   const Means means = gather_many(plane, 804, 400);
@@ -183,14 +183,15 @@ TEST_P(HalfPlaneTest, IrradianceAndBothGradients) {
 
 INSTANTIATE_TEST_SUITE_P(Places, HalfPlaneTest, testing::Values(std::pair{0.5, 0.2}, std::pair{1.0, -0.6}));
 
-/// A room whose points all say E: irradiance at any wall is rho E, gradients vanish in the mean.
+/// A room whose points all hold E: the irradiance at any wall is rho E, and the mean of the gradients vanishes.
 TEST(FinalGather, UniformRoomIsUniform) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   const SceneFrame& frame = scene.frame();
   std::vector<IrradiancePoint> points;
   for (Vec3 n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
-    for (const float aside : {-0.5f, 0.0f, 0.5f}) {  // three on a wall: one alone would not be believed
+    // Three points on each wall, because a single one would not count.
+    for (const float aside : {-0.5f, 0.0f, 0.5f}) {
       IrradiancePoint point;
       point.position = Vec3{n.y, n.z, n.x} * aside - n;
       point.normal = n;
@@ -208,11 +209,12 @@ TEST(FinalGather, UniformRoomIsUniform) {
   from.offset = 1e-6f;
   GatherCounts counts;
   const IrradianceRecord record = gather.gather(from, {0, 1, 0}, counts);
-  EXPECT_NEAR(record.irradiance.r, 1.0f, 1e-5f);  // 0.5 x (1 + 1), exactly: every ray reads the same
+  EXPECT_NEAR(record.irradiance.r, 1.0f, 1e-5f);  // 0.5 x (1 + 1), exact because every ray reads the same value
   EXPECT_NEAR(length(record.translational[0]), 0, 1e-5f);
   EXPECT_NEAR(length(record.rotational[0]), 0, 1e-4f);
   EXPECT_EQ(counts.unanswered, 0u);
-  // Harmonic mean distance in a cube seen from its floor is between the nearest and the farthest wall.
+  // The harmonic mean distance in a cube, seen from its floor, lies between the distances of the nearest and the
+  // farthest wall.
   EXPECT_GT(record.radius_unclamped, 0.7f);
   EXPECT_LT(record.radius_unclamped, 2.2f);
 }
@@ -235,12 +237,13 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   EXPECT_EQ(record.radius_unclamped, INFINITY);
 }
 
-/// A plate of half-width 0.5, 0.25 above a wide floor, under a light so far off that it is a sun of irradiance 1: what
-/// its underside sees of the floor is in its own shadow but for a rim. From the middle the share of the hemisphere in a
-/// square floor of half-width w straight below is 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)), X = w / h: of
-/// the lit rim 0.998 - 0.831. The points of the floor, 0.25 apart, are lit from 0.01 outside of the shadow: read as
-/// they stand, they would bring light from 0.12 inside of it, half as much again at least. 4 gathers of 4000 rays, one
-/// shadow ray each in the shadow's edge: 0.5 %; the light's height moves the shadow's edge by 0.01 %.
+/// A plate of half-width 0.5 at 0.25 above a wide floor, under a light so far away that it is a sun of irradiance 1.
+/// The plate's underside sees a floor in shadow, with a lit rim. Seen from the middle, a square floor of half-width w
+/// straight below fills the share 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)) of the hemisphere, X = w / h,
+/// so the lit rim has 0.998 - 0.831. Points of the floor are 0.25 apart and are lit from 0.01 outside the shadow. If
+/// hits read them without a test, they would bring light from up to 0.12 inside the shadow: too much by half or more. 4
+/// gathers of 4000 rays with one shadow ray each at the shadow's edge: 0.5 %. The light's height shifts the edge by
+/// 0.01 %.
 TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   constexpr float h = 0.25f, half = 0.5f, wide = 5, step = 0.25f, distance = 2000, rho = 0.5f;
   HandMadeScene scene;
@@ -284,12 +287,12 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   EXPECT_NEAR(mean / exact, 1, 0.02);
 }
 
-/// A black plate of half-width 0.5, 0.01 above a wide floor. The points of the floor, 0.25 apart, say that indirect
-/// light of 1 arrives under the plate and none elsewhere, as a lamp does that hangs close below a ceiling. From 1 above
-/// one sees only floor on which none arrives: 0. Were points read where they change, light would come from 0.12 around
-/// the plate, of a share share(0.62) - share(0.5) = 0.10 of the hemisphere. From between plate and floor all that is
-/// seen is lit: rho, exactly, but for 0.04 % of the rays that come out beyond 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or near
-/// there are traced on.
+/// A black plate of half-width 0.5 at 0.01 above a wide floor. The points of the floor, 0.25 apart, hold an indirect
+/// light of 1 under the plate and 0 elsewhere, as below a lamp that hangs close to a ceiling. A place 1 above sees only
+/// dark floor: 0. If points were read where their light changes, light would come from 0.12 around the plate, from the
+/// share share(0.62) - share(0.5) = 0.10 of the hemisphere. A place between plate and floor sees only lit floor:
+/// exactly rho, except for 0.04 % of the rays, which leave the gap at 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or are traced on
+/// close to there.
 TEST(FinalGather, LightInAGapStaysThere) {
   constexpr float gap = 0.01f, half = 0.5f, wide = 5, step = 0.25f, rho = 0.5f;
   HandMadeScene scene;
@@ -305,7 +308,7 @@ TEST(FinalGather, LightInAGapStaysThere) {
         point.normal = {0, 1, 0};
         point.object = frame.surfaces[1].object;
         const bool lit = x < half && z < half;
-        point.radius = lit ? 1e-4f : 1e-3f;  // none of many photons
+        point.radius = lit ? 1e-4f : 1e-3f;  // a point whose estimate found none of many photons
         point.indirect = Rgb(lit ? 1.0f : 0.0f);
         points.push_back(point);
       }

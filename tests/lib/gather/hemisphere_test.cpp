@@ -1,4 +1,4 @@
-// What one hemisphere of radiance and distances tells, against closed forms.
+// Irradiance and gradients from one hemisphere of radiance and distances, against closed forms.
 #include "lib/gather/hemisphere.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,9 @@ TEST(Hemisphere, UniformLight) {
   EXPECT_NEAR(record.irradiance.g, 0.7 * M_PI, 1e-5);
 }
 
-/// Light in every cell to the right of a meridian: further rays along its border alone. Beside it three of eight
-/// neighbours are dark, the mean of all cells is a half: sqrt(15/64) / (1/2) = 0.97, one further ray; none elsewhere.
+/// All cells on one side of a meridian are lit: only cells along the border get further rays. Next to the border three
+/// of eight neighbours are dark, and the mean of all cells is a half: sqrt(15/64) / (1/2) = 0.97, one further ray.
+/// Other cells get none.
 TEST(Hemisphere, FurtherRaysFallWhereLightIsUneven) {
   constexpr int kRings = 10, kSectors = 30;
   Hemisphere sky;
@@ -40,7 +41,7 @@ TEST(Hemisphere, FurtherRaysFallWhereLightIsUneven) {
   for (const int count : counts) EXPECT_EQ(count, 0);
 }
 
-/// Whatever a cell's own ray brought, its number of further rays is the same; and others' do count.
+/// The number of a cell's further rays does not depend on its own ray, but it depends on others' rays.
 TEST(Hemisphere, ACellsOwnRayHasNoSayInItsFurtherOnes) {
   Hemisphere sky;
   sky.reset(5, 16);

@@ -1,4 +1,4 @@
-// Irradiance points against answers known on paper: closed boxes, thin walls, boxes on floors, curved meshes.
+// Irradiance points against closed forms: closed boxes, thin walls, boxes on floors, curved meshes.
 #include "lib/gather/irradiance_points.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ using test::HandMadeScene;
 using test::matte;
 using test::Shape;
 
-/// Photons of a uniform light on every surface (both sides): flux = irradiance 1 x 2 area / count each, at
-/// uniform random places. What a furnace sends, without its noise of directions.
+/// Photons of a uniform light on both sides of every surface, at uniform random places: the flux of each is irradiance
+/// 1 x 2 area / count. They are the photons of a furnace, without the noise of its directions.
 std::vector<formats::Photon> uniform_photons(const SceneFrame& frame, std::uint32_t count, std::uint64_t seed) {
   const test::AreaSampler area(frame);
   const PathRandom random(seed, 9);
@@ -63,7 +63,7 @@ struct Mean {
   double value() const { return sum / count; }
 };
 
-/// One scene ready for estimates.
+/// A scene with all objects that an estimate needs.
 struct Stage {
   const SceneFrame& frame;
   EmissionTable table;
@@ -89,10 +89,10 @@ PointOptions few(std::uint32_t count, std::uint64_t seed) {
 
 class ClosedBoxPoints : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
-/// Mean of direct + indirect over the inside = F / (S (1 - rho)). Four seeds of 20k paths, which leave about
-/// n = 20k rho/(1-rho) photons: sigma of the indirect part 1/sqrt(4 * 20k) sqrt((1+rho)/(rho)) < 1 %, of long
-/// paths (rho = 0.99: 100 bounces, path lengths vary by 100 %) 0.4 %; direct light by 4 samples at 4 x 6000
-/// points: exact to 0.2 %.
+/// The mean of direct + indirect light over the inside is F / (S (1 - rho)). Four seeds of 20k paths leave about n =
+/// 20k rho/(1-rho) photons: sigma of the indirect part is 1/sqrt(4 * 20k) sqrt((1+rho)/(rho)) < 1 %; for long paths
+/// (rho = 0.99: 100 bounces, lengths vary by 100 %) 0.4 %. Direct light from 4 samples at 4 x 6000 points is exact to
+/// 0.2 %.
 TEST_P(ClosedBoxPoints, MeanIrradianceIsTheGeometricSeries) {
   const auto [shape, rho] = GetParam();
   test::ClosedBox box(shape, rho);
@@ -114,10 +114,10 @@ INSTANTIATE_TEST_SUITE_P(Boxes, ClosedBoxPoints,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.0f, 0.5f, 0.8f, 0.99f)));
 
-/// Uniform light in a room: 40k photons on both sides of 24 m^2, k = 50, so the disc's radius is 0.14 m, a
-/// seventh of a half wall: a third of all discs are cut. An estimate has sigma 14 %; neighbouring ones share
-/// photons: over 4 seeds 80k photons on the inside determine the mean to 0.35 %, the strip's (10 % of a wall)
-/// to 1.1 %, a wall's to 0.9 %. The same with every other triangle's front turned outwards.
+/// Uniform light in a room: 40k photons on both sides of 24 m^2 and k = 50 give a radius of 0.14 m, a seventh of half a
+/// wall, so a third of all discs are cut. An estimate has a sigma of 14 %, and neighbouring estimates share photons.
+/// Over 4 seeds, 80k photons on the inside determine the mean to 0.35 %, that of the strip (10 % of a wall) to 1.1 %
+/// and that of a wall to 0.9 %. Repeated with every other triangle's front turned outwards.
 class RoomPoints : public testing::TestWithParam<bool> {};
 
 TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
@@ -143,15 +143,15 @@ TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
       if (near == 2) corner.add(e);
     }
   EXPECT_NEAR(all.value(), 1, 0.012);
-  EXPECT_NEAR(strip.value(), 1, 0.02);   // a point on an edge itself loses half of its disc
+  EXPECT_NEAR(strip.value(), 1, 0.02);   // a point on an edge loses half of its disc
   EXPECT_NEAR(corner.value(), 1, 0.05);  // 1 % of the area: 800 photons
   for (const auto& [number, mean] : wall) EXPECT_NEAR(mean.value(), 1, 0.027) << number;
 }
 
 INSTANTIATE_TEST_SUITE_P(Windings, RoomPoints, testing::Bool());
 
-/// A wall between a bright and a dark half of a room, as one sheet and 1 mm thick: the dark side gets nothing
-/// at all, the bright side loses nothing, neither on the wall nor on the floor beside it.
+/// A wall between a bright and a dark half of a room, as a single sheet and 1 mm thick. The dark side gets no light at
+/// all. The bright side loses none, neither on the wall nor on the floor next to it.
 class ThinWall : public testing::TestWithParam<float> {};
 
 TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
@@ -167,7 +167,7 @@ TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
   double dark = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     std::vector<formats::Photon> photons = uniform_photons(stage.frame, 60000, seed);
-    std::erase_if(photons, [](const formats::Photon& photon) {  // keep what arrives in the bright half
+    std::erase_if(photons, [](const formats::Photon& photon) {  // keep photons in the bright half
       const auto n = formats::decode_normal(photon.normal);
       const Vec3 p{photon.position[0], photon.position[1], photon.position[2]};
       const Vec3 just_above = p + Vec3{n[0], n[1], n[2]} * 1e-4f;
@@ -191,7 +191,7 @@ TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Thicknesses, ThinWall, testing::Values(0.0f, 0.001f));
 
-/// A closed box that stands on a floor: the floor under it gets nothing, the floor around it loses nothing.
+/// A closed box on a floor: the floor under the box gets no light, and the floor around it loses none.
 TEST(IrradiancePoints, ABoxOnAFloorShadesOnlyWhatItCovers) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.5f)));
@@ -227,8 +227,7 @@ TEST(IrradiancePoints, ABoxOnAFloorShadesOnlyWhatItCovers) {
   EXPECT_NEAR(beside.value(), 1, 0.04);  // 0.28 of 3.64 m^2: 4 x 1400 photons, 1.3 %
 }
 
-/// A lamp flush in a ceiling that stores no photons (a mirror): discs that reach over its border lose
-/// nothing.
+/// A lamp in a ceiling that stores no photons (a mirror): discs across its border lose no light.
 TEST(IrradiancePoints, WhatStoresNoPhotonsIsNoArea) {
   HandMadeScene scene;
   Material mirror;
@@ -251,8 +250,8 @@ TEST(IrradiancePoints, WhatStoresNoPhotonsIsNoArea) {
   EXPECT_NEAR(mean.value(), 1, 0.015);  // 80k photons; free edges all around
 }
 
-/// Spheres of 128 to 968 flat triangles and a torus, inside and outside: uniform light comes out uniform; the
-/// lowest and highest tenth of all estimates say whether there are rings along the edges of the triangles.
+/// Spheres of 128 to 968 flat triangles and a torus, inside and outside: uniform light gives uniform estimates. The
+/// lowest and highest tenth of the estimates show whether there are rings along the edges of the triangles.
 class Curved : public testing::TestWithParam<int> {};
 
 TEST_P(Curved, UniformLightStaysUniform) {
@@ -288,14 +287,14 @@ TEST_P(Curved, UniformLightStaysUniform) {
       }
       const bool outside = dot(p.normal, middle) > 0;
       (outside ? out : in).add(double(p.indirect.g));
-      // The triangle's plane is nearest to the centre in its middle: height over it orders places from middle
-      // to edge.
+      // The triangle's plane is closest to the centre in the triangle's middle, so the height above it orders places
+      // from the middle to the edge.
       const float plane = std::abs(dot(p.position, p.normal)),
                   off = std::sqrt(std::max(0.0f, length2(p.position) - plane * plane));
       if (n > 0) bands[outside][std::min(4, int(off / (0.75f * 1.6f / float(n)) * 5))].add(double(p.indirect.g));
     }
   }
-  // 4 x 50k photons a side, 0.23 %, and what is left of the area's noise.
+  // 4 x 50k photons per side, 0.23 %, plus the remaining noise of the area.
   EXPECT_NEAR(in.value(), 1, 0.01);
   EXPECT_NEAR(out.value(), 1, 0.01);
   for (int side = 0; side < 2 && n > 0; ++side)
@@ -323,8 +322,8 @@ TEST(IrradiancePoints, AStepLosesNothing) {
   EXPECT_NEAR(high.value(), 1, 0.035);
 }
 
-/// A folded sheet, 60 degrees from face to face. Within 3 cm of a fold a tenth of a disc's light comes from
-/// the other face, whose true area is twice its shadow on the point's plane.
+/// A folded sheet with 60 degrees between its faces. Within 3 cm of a fold a tenth of a disc's light comes from the
+/// other face, whose true area is twice its projection onto the point's plane.
 TEST(IrradiancePoints, FoldsLoseNothing) {
   HandMadeScene scene;
   constexpr int kFolds = 10;
@@ -352,7 +351,7 @@ TEST(IrradiancePoints, FoldsLoseNothing) {
   EXPECT_NEAR(mean.value(), 1, 0.015);  // a fifth of 240k photons: 0.45 %
 }
 
-/// A closed shell as thin as an ear: photons outside, none inside. Nothing may leak in, at any angle.
+/// A closed shell as thin as an ear, with photons outside and none inside. No light may leak in, at any angle.
 TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
   HandMadeScene scene;
   HandMadeScene ball;
@@ -378,8 +377,8 @@ TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
   EXPECT_NEAR(outside.value(), 1, 0.02);
 }
 
-/// Direct light of 1 W/sr at a coated floor, d away at the angle of cosine c: c / d^2 arrival_weight(c), as its photons
-/// are stored; without a coat c / d^2.
+/// Direct light of 1 W/sr at a coated floor at distance d and cosine c: c / d^2 arrival_weight(c), as photons are
+/// stored; without a coat c / d^2.
 TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
   Material coated = matte(Rgb(0.5f));
   coated.specular = 1;
@@ -404,9 +403,10 @@ TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
   }
 }
 
-/// Direct light counts by the shading normal, as photons and eyes count it: a floor whose normals lean 30 degrees to
-/// the right, lamps of 1 W/sr 100 m away (of 1/10^4 W/m^2 upright): at the zenith cos 30, at 30 degrees on the right 1,
-/// and from 65 degrees on the left, behind that normal, nothing. Their directions change by 0.02 over the floor.
+/// Direct light is weighted by the shading normal, as photons and camera paths do. The floor's normals lean 30 degrees
+/// to the right, and lamps of 1 W/sr are 100 m away (1/10^4 W/m^2 at normal incidence). A lamp at the zenith gives cos
+/// 30, one at 30 degrees on the right 1, and one at 65 degrees on the left, behind the normal, 0. Directions change by
+/// 0.02 over the floor.
 TEST(IrradiancePoints, DirectLightCountsByTheShadingNormal) {
   const auto direction = [](float degrees) {
     return Vec3{std::sin(degrees * kPi / 180), std::cos(degrees * kPi / 180), 0};
@@ -442,8 +442,8 @@ TEST(IrradiancePoints, AnyNumberOfThreadsGivesTheSameBytes) {
   }
 }
 
-/// Points per area are equal on all surfaces, up to the rounding up of each surface's number; both sides
-/// alike.
+/// The number of points per area is equal on all surfaces, up to the rounding up of each surface's number, and equal on
+/// both sides.
 TEST(IrradiancePoints, AreUniformByArea) {
   HandMadeScene scene;
   scene.add_quad({0, 0, 1}, {3, 0, 1}, {3, 0, 0}, {0, 0, 0}, matte(Rgb(0.5f)));
@@ -458,7 +458,7 @@ TEST(IrradiancePoints, AreUniformByArea) {
   }
   EXPECT_NEAR(count[0], 6000, 2);
   EXPECT_NEAR(count[1], 2000, 2);
-  EXPECT_EQ(count[2], 2);  // one on each side at least
+  EXPECT_EQ(count[2], 2);  // at least one on each side
   EXPECT_EQ(2 * up, int(points.size()));
   EXPECT_NEAR(spacing, std::sqrt(4.0f / 4000), 1e-5f);
 }

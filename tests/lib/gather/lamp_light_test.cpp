@@ -1,5 +1,4 @@
-// Light that lamps throw on surfaces beside them: photons found, the division between rays and explicit samples, its
-// noise.
+// Light of lamps on close surfaces: the photons found, the division between rays and explicit samples, its noise.
 #include "lib/gather/lamp_light.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +20,8 @@ using test::place_at;
 
 constexpr float kReflectance = 0.5f, kSpacing = 0.5f;
 
-/// A ceiling of 40 m at the height 1 m, a point lamp of 1 W/sr a distance d below it, points every half metre around,
-/// none of them above the lamp.
+/// A ceiling of 40 m at height 1 m, with a point lamp of 1 W/sr at a distance d below it. Points lie half a metre apart
+/// around the place above the lamp, and none lies directly above the lamp.
 struct Ceiling {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -41,8 +40,8 @@ struct Ceiling {
         points.push_back(point);
       }
   }
-  /// Irradiance at (x, 0, 0), normal up: over the directions (phi from the ceiling's normal, psi) in which the lamp
-  /// shines, sin phi dphi dpsi of flux each, reflectance / pi cos cos / l^2.
+  /// Irradiance at (x, 0, 0), normal up: the integral over the lamp's directions (phi from the ceiling's normal, psi),
+  /// with a flux of sin phi dphi dpsi each, of reflectance / pi cos cos / l^2.
   double exact(double x) const {
     constexpr int n = 400;
     double sum = 0;
@@ -56,8 +55,8 @@ struct Ceiling {
   }
 };
 
-/// Of the lamp's 4 pi W those between straight up and the angle whose distance is the reach 2 s: 2 pi (1 - d / 2 s).
-/// Sobol's points of 2^15 know a share of the sphere to 1e-3.
+/// The flux of those directions, of the lamp's 4 pi W, between straight up and the angle at which the distance is 2 s:
+/// 2 pi (1 - d / 2 s). 2^15 Sobol points resolve a share of the sphere to 1e-3.
 TEST(LampLight, PhotonsBesideALamp) {
   for (const double d : {0.01, 0.3, 0.9}) {
     Ceiling ceiling(d);
@@ -76,7 +75,7 @@ TEST(LampLight, PhotonsBesideALamp) {
     const Vec3 far{2.75f, 1, 2.75f};
     EXPECT_FALSE(lookup.find(far, {0, -1, 0})->beside_lamp);
   }
-  Ceiling away(1.01);  // farther than two spacings: nothing to do
+  Ceiling away(1.01);  // farther than two spacings: no photons
   const SceneFrame& frame = away.scene.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
@@ -84,11 +83,11 @@ TEST(LampLight, PhotonsBesideALamp) {
       photons_beside_lamps(tracer, lights, PointLookup(away.points, kSpacing, point_clearance(tracer))).empty());
 }
 
-/// A floor under it, by 500 rays and 100 explicit samples: the mean of 60 gathers within 1 % of the integral; one
-/// gather errs by less than 6 % (RMS): most by what rays meet of the spot nearer than 6 d, which some 20 of them do.
-/// The spot of a lamp at 1 cm fills 1e-4 of the hemisphere: one ray of 500 meets it in one gather of 20, and would be
-/// all of its light. Seen to fail: rays that bring all of the light (2.05 and 2.03 at 1 cm), points read in place of
-/// samples (.97 to .85).
+/// A floor below the lamp, with 500 rays and 100 explicit samples: the mean of 60 gathers is within 1 % of the
+/// integral. One gather has an RMS error below 6 %, most of it from the some 20 rays that meet the spot closer than 6
+/// d. The spot of a lamp at 1 cm fills 1e-4 of the hemisphere: one ray of 500 would meet it in one gather of 20, and
+/// bring all of its light. Seen to fail: rays that contribute all of the light (2.05 and 2.03 at 1 cm), points in place
+/// of samples (.97 to .85).
 TEST(LampLight, FloorUnderALampBesideACeiling) {
   for (const double d : {0.01, 0.03, 0.1, 0.3})
     for (const double x : {0.0, 0.8}) {
@@ -115,10 +114,10 @@ TEST(LampLight, FloorUnderALampBesideACeiling) {
     }
 }
 
-/// A room with a point lamp 12 cm from a wall, a small lamp that shines at the ceiling 8 cm above it, and a block near
-/// both: corners, near hits, fittings too small for points. With explicit samples the mean is what rays alone bring
-/// that sample direct light at the same hits: within 5 standard errors of the difference of 400 gathers each,
-/// themselves below 1.5 %.
+/// A room with a point lamp 12 cm from a wall, a small lamp that shines at the ceiling 8 cm above it, and a block close
+/// to both: corners, close hits, and fittings too small for points. With explicit samples the mean is that of rays
+/// alone which sample direct light at the same hits, within 5 standard errors of the difference of 400 gathers each.
+/// These standard errors are below 1.5 %.
 TEST(LampLight, PartsAddUpToTheWhole) {
   HandMadeScene scene;
   scene.add_room({-1, 0, -1}, {1, 2, 1}, matte(Rgb(0.5f)));

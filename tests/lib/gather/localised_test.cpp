@@ -23,7 +23,7 @@ struct Floor {
     scene.add_quad({0, 0, 0}, {0, 0, 4}, {4, 0, 4}, {4, 0, 0}, test::matte(Rgb(0.5f)));
     scene.frame();
   }
-  /// `count` photons spread evenly, of this flux in the green channel.
+  /// `count` photons at uniform random places, with this flux in the green channel.
   void spread(int count, float flux, std::uint64_t seed) {
     const PathRandom random(seed, 0);
     for (int i = 0; i < count; ++i) {
@@ -51,7 +51,8 @@ TEST(SignedDensity, WhatComesAndGoesCancelsInIrradianceAndNotInInfluence) {
   floor.spread(4000, -1, 2);
   const auto change = floor.density().at(kMiddle, kUp, 0.5f, PathRandom(1, 1));
   ASSERT_TRUE(change);
-  // 250 photons per m^2 and sign; pi / 4 m^2 hold 196 of each, which scatter by 14: of a difference sqrt(2) of that.
+  // 250 photons per m^2 and sign; pi / 4 m^2 hold 196 of each, with a standard deviation of 14; their difference has
+  // sqrt(2) times that.
   const double area = double(kPi) / 4;
   EXPECT_NEAR(change->irradiance.g, 0, 4 * std::sqrt(2 * 196.0) / area);
   EXPECT_NEAR(change->influence, 500, 4 * std::sqrt(2 * 196.0) / area);
@@ -70,12 +71,13 @@ TEST(SignedDensity, InfluenceDoesNotKnowSigns) {
 }
 
 TEST(SignedDensity, AtAnEdgeTheAreaThatIsThereCounts) {
-  // On the floor's rim half of the disc is floor: the density is that of the middle, not half of it.
+  // On the rim of the floor half of the disc is floor: the density must be that of the middle, not half of it.
   Floor floor;
   floor.spread(40000, 1, 1);
   const auto change = floor.density().at({2, 0, 0.001f}, kUp, 0.5f, PathRandom(1, 1));
   ASSERT_TRUE(change);
-  // 982 photons: 3.2 %; area by 32 probes that arrive of about 64: 1 / sqrt(64) of the mean; 4 of both together.
+  // 982 photons: 3.2 %; the area from 32 probes that arrive of about 64: 1 / sqrt(64) of the mean; 4 standard errors of
+  // both.
   EXPECT_NEAR(change->irradiance.g, 2500, 2500 * 0.55);
   EXPECT_GT(change->irradiance.g, 2500 * 0.6);
 }
@@ -116,7 +118,7 @@ TEST(Influence, FieldIsRelativeUnlessAskedOtherwise) {
   EXPECT_NEAR(relative.at(kMiddle, kUp), 0.1f, 1e-6f);
   EXPECT_NEAR(absolute.at(kMiddle, kUp), 0.5f, 1e-6f);
   EXPECT_EQ(relative.at({0.2f, 0, 0.2f}, kUp), 0);
-  EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));  // nothing is known there
+  EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));  // no record is valid there
   EXPECT_EQ(relative.gathered_share({0.2f, 0, 0.2f}, kUp), 0);
 }
 

@@ -1,5 +1,5 @@
-// Light textures: even light stays even to the last element of a wall, walls do not mix, flux is kept, sums have no
-// order.
+// Light textures: uniform light stays uniform to the last element of a wall, walls do not mix, flux is kept, and sums
+// do not depend on the order of photons.
 #include "lib/gather/mesh_elements.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +11,19 @@
 
 namespace tempolux {
 namespace {
+
+/// The elements that receive light through the filter, in the order of the file.
+std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
+                                                const MeshFilter& filter) {
+  std::vector<formats::MeshElement> elements = all_elements(frame, sums.cuts());
+  put_sums(sums, elements);
+  std::vector<Rgbd> flux;
+  for (const formats::MeshElement& e : elements)
+    flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * sums.unit());
+  smooth_elements(frame, flux, filter, {}, elements);
+  leave_out_dark(elements);
+  return elements;
+}
 
 /// A room of 2 m, and photons in it: one in the middle of each element of the inner sides, worth `irradiance(position)`
 /// over its area.

@@ -16,7 +16,7 @@ using test::HandMadeScene;
 using test::matte;
 using test::pixel_by_pixel;
 
-/// A room of 2 m with a box in it, seen by a pinhole from a corner; every irradiance point says 1 or 3 W/m^2.
+/// A room of 2 m with a box in it, seen by a pinhole from a corner; every irradiance point holds 1 or 3 W/m^2.
 struct Room {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -87,11 +87,11 @@ TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
   EXPECT_EQ(room.place(96, 64, store, counts), 0u);
 }
 
-/// Below a small bright patch of radiance 1 one of 300 gather rays meets it, aside one of 3000. Were radii what each
-/// record's own hits tell, records that missed the patch would reach farthest: the floor came out half dark. Its mean
-/// irradiance, against 4 a^2 h^2 / (h^2 + d^2)^2 (exact to a^2 = 0.3 %): interpolation leaves -2.5 %. One or two of a
-/// record's 500 rays meet the patch, so that it errs by 80 %; the dozen records of each of 400 runs err by 1.2 %
-/// together.
+/// A small bright patch of radiance 1: directly below one of 300 gather rays meets it, farther away one of 3000. If the
+/// rays that estimate light also decided on the radius, records that miss the patch would reach farthest, and the floor
+/// would be half dark. The mean irradiance of the floor against 4 a^2 h^2 / (h^2 + d^2)^2 (exact to a^2 = 0.3 %):
+/// interpolation has a bias of -2.5 %. One or two of a record's 500 rays meet the patch, an error of 80 %; the dozen
+/// records of each of 400 runs have 1.2 % together.
 TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
   constexpr float a = 0.05f, kHalf = 1.5f;
   constexpr int kSize = 48, kRuns = 400;
@@ -150,7 +150,7 @@ TEST(PlaceRecords, TheSameRecordsForAnyNumberOfThreads) {
   }
 }
 
-/// A pixel bigger than the room still gets its record; a picture of nothing gets none.
+/// A pixel that is larger than the room still gets its record. A picture that shows nothing gets none.
 TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
   const Room room;
   RecordStore store;
@@ -161,7 +161,8 @@ TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
   EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, {}, none, counts), 0u);
 }
 
-/// What is seen through a choice (glass) is looked at within pixels too, with random numbers to draw it.
+/// Pixels that see by a choice (glass) are also tested at positions within the pixel, with random numbers for the
+/// choice.
 TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   const Room room;
   RecordStore store;
@@ -178,8 +179,8 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   EXPECT_EQ(drawn, 4 * 64);
 }
 
-/// Of the coarsest lattice's points, 625 here, the first 256 are gathered side by side, before there is any record;
-/// each of those covers all of this small patch, so that the batches after gather nothing.
+/// Of the 625 points of the coarsest lattice, the first 256 are gathered in parallel before there is any record. Each
+/// of their records covers all of this small patch, so later batches gather nothing.
 TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
   const Room room;
   RecordStore store;
@@ -194,8 +195,8 @@ TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
   EXPECT_EQ(place_records(*room.gather, patch, 400, 400, {}, store, counts), 256u);
 }
 
-/// A step between two parallel planes of one object is an edge, whose pixels are looked at within; a plane seen aslant,
-/// from pixel to pixel farther off by more than the step, is none.
+/// A step between two parallel planes of one object is an edge, whose pixels are tested within. A plane seen at a
+/// grazing angle is no edge, although the distance changes from pixel to pixel by more than the step.
 TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
   const Room room;
   constexpr int kSize = 12;
@@ -216,8 +217,9 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
     place_records(*room.gather, view, kSize, kSize, {}, store, counts);
     return within;
   };
-  EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);  // the columns beside the step
-  EXPECT_EQ(looked_within(0.01f, {1, 0, 0}), 0);              // a footprint: the surface is rough, or seen aslant
+  EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);  // the columns next to the step
+  // a step of one footprint: the surface is rough or seen at a grazing angle
+  EXPECT_EQ(looked_within(0.01f, {1, 0, 0}), 0);
   EXPECT_EQ(looked_within(0, {8, 0, 0}), 0);
 }
 
@@ -232,21 +234,22 @@ IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic) {
 
 TEST(RadiusOf, EachLimitDecidesWhereItIsTheSmallest) {
   const PlacementOptions options{.error_bound = 0.2f, .min_radius_px = 4, .unseen_radius_px = 500};
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);         // bound x harmonic mean
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY), 1e-3f, options), 0.5f);  // nothing seen
-  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);    // smallest: 4 pixels
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1), 1e-3f, options), 0.2f);         // error_bound x harmonic mean
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, INFINITY), 1e-3f, options), 0.5f);  // all rays miss
+  EXPECT_FLOAT_EQ(radius_of(gathered(1, {}, 1e-5f), 1e-3f, options), 4e-3f);    // the least radius: 4 pixels
   IrradianceRecord near =
-      gathered(1, {1, 0, 0}, 5e-3f);  // bound x R = 1 mm, widened fourfold: the gradient shrinks as much
+      gathered(1, {1, 0, 0}, 5e-3f);  // error_bound x R = 1 mm, widened fourfold: the gradient is divided by 4
   limit_radius(near, 1e-3f, options);
   EXPECT_FLOAT_EQ(near.translational[0].x, 0.25f);
   EXPECT_FLOAT_EQ(near.radius_unclamped, 1e-3f);
   IrradianceRecord steep =
-      gathered(1, {10, 0, 0}, 1);  // 3 channels of 1 W/m^2, 10 W/m^3 over 0.2 m: twice what there is
+      gathered(1, {10, 0, 0}, 1);  // 3 channels of 1 W/m^2, 10 W/m^3 over 0.2 m: twice the irradiance
   limit_radius(steep, 1e-3f, options);
   EXPECT_FLOAT_EQ(steep.translational[0].x, 5);
 }
 
-/// Light times a power of two: the same radii, gradients times the power, though their squares are beyond floats.
+/// Light times a power of two gives the same radii and gradients times that power, even if squares exceed the range of
+/// floats.
 TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
   const PlacementOptions options{.unseen_radius_px = 500};
   for (float slope : {1.0f, 4.0f, 100.0f})
@@ -262,7 +265,7 @@ TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
     }
 }
 
-/// algorithms of the literature divide 0 by 0 in these; ours say the largest or smallest radius.
+/// Formulas of the literature divide 0 by 0 in these cases; here the result is the largest or smallest radius.
 TEST(LimitRadius, DegenerateGathers) {
   const PlacementOptions options{.unseen_radius_px = 500};
   IrradianceRecord misses = gathered(0, {}, INFINITY);

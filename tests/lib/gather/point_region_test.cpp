@@ -1,4 +1,5 @@
-// Points where cameras look: large triangles are cut to the spheres, small ones taken whole, all by area.
+// Points where cameras look: large triangles are cut along the spheres, small ones are taken as a whole, and points are
+// uniform by area.
 #include "lib/gather/point_region.h"
 
 #include <gtest/gtest.h>
@@ -31,10 +32,10 @@ double area_of(const std::vector<TrianglePiece>& pieces) {
   return sum;
 }
 
-/// A sphere of 2 m around a place of the ground covers 4 pi m^2. Right-angled pieces whose longest side is at most half
-/// a metre are counted by their middles: the outline is off by less than their middles are from their corners (.37 m)
-/// to either side and by much less in the mean. A piece is not smaller than half of that, 1/32 m^2, so there are at
-/// most (2.4 m)^2 pi / (1/32 m^2) = 580.
+/// A sphere of 2 m around a place of the ground covers 4 pi m^2. A right-angled piece with a longest side of at most
+/// half a metre counts if its middle lies in the sphere. The outline deviates by less than the distance between a
+/// piece's middle and its corners (.37 m), and by much less in the mean. A piece is at least half of the largest one,
+/// 1/32 m^2, so there are at most (2.4 m)^2 pi / (1/32 m^2) = 580 pieces.
 TEST(PointRegion, TheOutlineFollowsTheSphere) {
   Plain plain;
   const AimSphere sphere{{300, 0, -200}, 2, 1};
@@ -45,7 +46,7 @@ TEST(PointRegion, TheOutlineFollowsTheSphere) {
   EXPECT_TRUE(pieces_in(plain.scene.frame().surfaces[1], {&sphere, 1}).empty());
 }
 
-/// What lies in a sphere as a whole is not cut, and each piece knows all spheres that hold its middle.
+/// A triangle inside a sphere is not cut, and each piece knows all spheres that hold its middle.
 TEST(PointRegion, WhatASphereHoldsStaysWhole) {
   Plain plain;
   const AimSphere spheres[] = {{{0, 3, 0}, 1, 1}, {{50, 3, 0}, 1, 1}, {{0, 2, 0}, 4, 1}};
@@ -59,7 +60,8 @@ TEST(PointRegion, WhatASphereHoldsStaysWhole) {
   EXPECT_NEAR(area_of(pieces), 0.04, 1e-6);
 }
 
-/// The densest first, until they hold 95 of 100; what has no surface counts for nothing.
+/// The spheres with the most weight per area come first, until they hold 95 of 100. A sphere without surface does not
+/// count.
 TEST(PointRegion, TheDensestSpheresAreTaken) {
   const AimSphere spheres[] = {{{}, 8, 4}, {{}, 1, 10}, {{}, 2, 86}, {{}, 3, 1000}};
   const double areas[] = {100, 1, 10, 0};
@@ -69,8 +71,8 @@ TEST(PointRegion, TheDensestSpheresAreTaken) {
   EXPECT_EQ(taken[1].weight, 86);  // 8.6 / m^2: 96 of 100 together
 }
 
-/// 4000 points per side in the spheres instead of on 4 km^2: they are sqrt(area / 4000) apart, 6 cm instead of 32 m.
-/// The wide sphere holds less than 5 % of the weight and most of the area: none lie there.
+/// 4000 points per side in the spheres instead of on 4 km^2 have a spacing of sqrt(area / 4000), 6 cm instead of 32 m.
+/// The wide sphere holds less than 5 % of the weight and most of the area: it gets no points.
 TEST(PointRegion, PointsLieWhereCamerasLook) {
   Plain plain;
   PointOptions options;
@@ -92,8 +94,8 @@ TEST(PointRegion, PointsLieWhereCamerasLook) {
   EXPECT_NEAR(small, 8000 * 0.04 / area, 3);
 }
 
-/// Every place of a piece is drawn: the mean of the points is the middle of the disc, to 3 standard errors of 4000
-/// places over a disc of 2 m (1 m / sqrt(4000) in each coordinate; Sobol's are closer), and no two are the same.
+/// Points cover their pieces: their mean is the middle of the disc, within 3 standard errors of 4000 random places on a
+/// disc of 2 m (1 m / sqrt(4000) in each coordinate; Sobol points are closer), and no two coincide.
 TEST(PointRegion, PointsFillTheirPieces) {
   Plain plain;
   PointOptions options;
@@ -110,7 +112,7 @@ TEST(PointRegion, PointsFillTheirPieces) {
   }
   EXPECT_NEAR(sum.x / count, 300, 3 / std::sqrt(4000.0));
   EXPECT_NEAR(sum.z / count, -200, 3 / std::sqrt(4000.0));
-  EXPECT_GT(int(places.size()), count - 10);  // floats of 300 m: 3e-5 m apart, a pair in 4000 of them now and then
+  EXPECT_GT(int(places.size()), count - 10);  // floats at 300 m have steps of 3e-5 m: a pair of 4000 may coincide
 }
 
 }  // namespace

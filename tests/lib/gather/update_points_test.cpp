@@ -1,4 +1,4 @@
-// Points that are updated against points made afresh: direct light to the bit, indirect light within its noise.
+// Updated points against points estimated anew: direct light equal to the bit, indirect light within its noise.
 #include "lib/gather/update_points.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using formats::Photon;
 
-/// A room of 4 x 3 x 4 m with a lamp under its ceiling and a box of .6 m that moves; what is needed to update its
+/// A room of 4 x 3 x 4 m with a lamp under its ceiling and a moving box of .6 m, and the inputs of an update of its
 /// points.
 struct Room {
   test::HandMadeScene scene;
@@ -104,7 +104,7 @@ TEST(UpdatePoints, DirectLightIsThatOfFreshPointsToTheBit) {
   const auto fresh = room.fresh_points();
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(points[i].direct, fresh[i].direct) << i;
   EXPECT_GT(counts.direct, 0u);
-  EXPECT_LT(counts.direct, points.size() / 4);  // most see the lamp past the box
+  EXPECT_LT(counts.direct, points.size() / 4);  // the box does not hide the lamp from most points
 }
 
 TEST(UpdatePoints, IndirectLightIsThatOfFreshPointsWithinNoise) {
@@ -112,8 +112,9 @@ TEST(UpdatePoints, IndirectLightIsThatOfFreshPointsWithinNoise) {
   std::vector<IrradiancePoint> points = room.standing_points();
   const PointUpdateCounts counts = room.update(points);
   const auto fresh = room.fresh_points();
-  // One estimate has a relative standard error of 1 / sqrt(50) and those of one photon map differ by less: 4 of sqrt(2)
-  // of these each; in the mean 2 % of the fresh ones' scatter over thousands of points, .3 %.
+  // One estimate has a relative standard error of 1 / sqrt(50), and estimates from one photon map differ by less: 4
+  // times sqrt(2) of this for each point. The mean over thousands of points has .3 %, 2 % of the scatter of points
+  // estimated anew.
   double sum = 0, fresh_sum = 0;
   std::size_t beyond = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -142,10 +143,11 @@ TEST(UpdatePoints, WithoutDynamicPhotonsAndMoversNothingChanges) {
 }
 
 TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
-  // Static light 1 everywhere and dynamic photons that take away all of it: noise about 0, never below.
+  // Static light of 1 everywhere and dynamic photons that remove all of it: noise around 0, never negative.
   const Room room({1.5f, 0, 1.5f}, true);
   std::vector<IrradiancePoint> points = room.standing_points();
-  for (const IrradiancePoint& point : points) ASSERT_EQ(point.indirect, Rgb(0.0f));  // the lamp moves: nothing stands
+  // The lamp moves, so no static light remains.
+  for (const IrradiancePoint& point : points) ASSERT_EQ(point.indirect, Rgb(0.0f));
   room.update(points);
   const auto fresh = room.fresh_points();
   double sum = 0, fresh_sum = 0;
@@ -154,12 +156,12 @@ TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
     ASSERT_EQ(points[i].direct, fresh[i].direct);
     sum += double(points[i].indirect.g), fresh_sum += double(fresh[i].indirect.g);
   }
-  // One radius for all where fresh points have their own: blurrer, and at the walls' edges clipped alike.
+  // All updated points have one radius and points estimated anew have their own: the former are blurrer, and at the
+  // edges of walls both are clipped alike.
   EXPECT_NEAR(sum / fresh_sum, 1, 0.02);
 }
 
-/// Directions stay with their photons: of what stands two photons, of which the change takes away the first and brings
-/// a third.
+/// Directions stay with their photons: of two static photons the dynamic map removes the first and adds a third.
 TEST(WholePhotons, DirectionsStayWithTheirPhotons) {
   const auto photon = [](float x, float flux) {
     return Photon{{x, 0, 0}, {flux, flux, flux}, {}, 1, formats::PathKind::caustic, 1};

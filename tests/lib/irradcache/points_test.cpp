@@ -8,6 +8,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -107,7 +108,7 @@ TEST(PointLookup, SidesAreNeverMixedUp) {
 TEST(PointLookup, EveryDirectionFindsAPointThatFacesIt) {
   const PathRandom random(4, 4);
   for (std::uint32_t i = 0; i < 5000; ++i) {
-    const Vec3 n = sample_sphere(random.get2(i, Purpose::test));
+    const Vec3 n = test::sample_sphere(random.get2(i, Purpose::test));
     const std::vector<IrradiancePoint> points{point_at({0, 0, 0}, n, 0, 1)};
     const PointLookup lookup(points, 1);
     ASSERT_NE(lookup.find({0.1f, 0, 0}, n), nullptr) << n.x << " " << n.y << " " << n.z;

@@ -8,6 +8,7 @@
 
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -55,7 +56,7 @@ void expect_brute_force(Vec3 centre, float far) {
     const Vec3 position = centre + Vec3{uniform(), uniform(), uniform()};
     const Vec2 u{uniform(), uniform()};
     const float radius = i % 50 == 0 ? 2 + 100 * uniform() : std::exp(std::log(1e-4f) + uniform() * std::log(1e4f));
-    IrradianceRecord r = record_at(position, sample_sphere(u), radius, Rgb(uniform(), uniform(), uniform()));
+    IrradianceRecord r = record_at(position, test::sample_sphere(u), radius, Rgb(uniform(), uniform(), uniform()));
     for (std::size_t c = 0; c < 3; ++c) {
       r.rotational[c] = Vec3{uniform(), uniform(), uniform()} - Vec3{0.5f, 0.5f, 0.5f};
       r.translational[c] = (Vec3{uniform(), uniform(), uniform()} - Vec3{0.5f, 0.5f, 0.5f}) / radius;
@@ -68,9 +69,9 @@ void expect_brute_force(Vec3 centre, float far) {
   int covered = 0;
   for (int i = 0; i < 20000; ++i) {
     const IrradianceRecord& r = store.records()[std::size_t(i) % 600];
-    const Vec3 offset = sample_sphere({uniform(), uniform()}) * (r.radius * 1.1f * uniform());
+    const Vec3 offset = test::sample_sphere({uniform(), uniform()}) * (r.radius * 1.1f * uniform());
     const Vec3 position = r.position + offset;
-    const Vec3 normal = normalize(r.normal + sample_sphere({uniform(), uniform()}) * (0.4f * uniform()));
+    const Vec3 normal = normalize(r.normal + test::sample_sphere({uniform(), uniform()}) * (0.4f * uniform()));
     const auto found = store.interpolate(position, normal), wanted = by_brute_force(store, position, normal);
     covered += wanted.weight > 0;
     // A store that is only read lists the same records in the same order: not a bit differs.

@@ -10,6 +10,7 @@
 #include "lib/light/light_tree.h"
 #include "lib/light/triangle_light.h"
 #include "tests/lib/light/light_scene.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -163,7 +164,7 @@ LightScene crowd(int count, bool suns) {
   LightScene scene;
   const PathRandom random(9, 1);
   for (std::uint32_t i = 0; i < std::uint32_t(count); ++i) {
-    const Vec3 n = sample_sphere(random.get2(i, Purpose::test, 0));
+    const Vec3 n = test::sample_sphere(random.get2(i, Purpose::test, 0));
     const Vec2 place = random.get2(i, Purpose::test, 1), size = random.get2(i, Purpose::test, 2);
     const Vec3 at = Vec3{place.x, place.y, size.x} * 6.0f - Vec3{3, 3, 3};
     const Rgb emission = Rgb(0.1f + place.x, 0.2f, size.y);
@@ -192,7 +193,7 @@ TEST(Lights, PdfIsThatOfTheSample) {
         (Vec3{random.get1(i, Purpose::place, 0), random.get1(i, Purpose::place, 1), random.get1(i, Purpose::place, 2)} -
          Vec3{0.5f, 0.5f, 0.5f}) *
         8.0f;
-    const Vec3 normal = i % 3 ? sample_sphere(random.get2(i, Purpose::test)) : Vec3{};
+    const Vec3 normal = i % 3 ? test::sample_sphere(random.get2(i, Purpose::test)) : Vec3{};
     LightSample s;
     if (!lights.sample(point, normal, random.get1(i, Purpose::light_choice), random.get2(i, Purpose::light_point), s))
       continue;
@@ -245,7 +246,7 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
     const Vec3 at{place.x * 4, place.y * 4, random.get1(i, Purpose::test, 2)};
     b.box.add(at);
     b.box.add(at + Vec3{0.1f, 0.05f, 0.2f});
-    b.axis = sample_sphere(random.get2(i, Purpose::test, 3));
+    b.axis = test::sample_sphere(random.get2(i, Purpose::test, 3));
     b.weight = 0.01 + double(random.get1(i, Purpose::test, 4));
     b.two_sided = i % 3 == 0;
     bounds.push_back(b);
@@ -256,7 +257,7 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
         Vec3{random.get1(k, Purpose::place, 0), random.get1(k, Purpose::place, 1), random.get1(k, Purpose::place, 2)} *
             8.0f -
         Vec3{2, 2, 3};
-    const Vec3 normal = k % 2 ? sample_sphere(random.get2(k, Purpose::test, 9)) : Vec3{};
+    const Vec3 normal = k % 2 ? test::sample_sphere(random.get2(k, Purpose::test, 9)) : Vec3{};
     std::vector<double> count(bounds.size(), 0);
     double lost = 0, sum = 0;
     constexpr int kSteps = 1 << 16;
@@ -292,7 +293,7 @@ TEST(Lights, SurviveExtremeNumbers) {
   const PathRandom random(6, 6);
   for (std::uint32_t i = 0; i < 20000; ++i) {
     const float scale = std::pow(10.0f, float(i % 12) - 8);
-    const Vec3 point = Vec3{0, float(i % 2), 1} + sample_sphere(random.get2(i, Purpose::place)) * scale;
+    const Vec3 point = Vec3{0, float(i % 2), 1} + test::sample_sphere(random.get2(i, Purpose::place)) * scale;
     LightSample s;
     if (lights.sample(point, i % 2 ? kUp : Vec3{}, random.get1(i, Purpose::light_choice),
                       random.get2(i, Purpose::light_point), s)) {

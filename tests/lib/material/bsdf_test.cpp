@@ -1,4 +1,4 @@
-// Scattering at a surface: what comes back, from where, and whether samples say the same as the formulas.
+// Scattering at a surface: energy, directions, and agreement of samples with the formulas.
 #include "lib/material/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -105,9 +105,9 @@ TEST(Mirror, ReflectsTheWholeDirectionAndOnlyThat) {
   EXPECT_EQ(bsdf.pdf_specular(s.wi, wo), 0);
 }
 
-// D: rho (1 - A), to the table's 1e-4. S: quadrature of f against the mean of the weights; lobe and direction
-// are independent sequences of 2^16 points, so at worst as good as random: sigma 0.5 / 256 for weights up to
-// 1; 2 sigma.
+// D: rho (1 - A), to the table's 1e-4. S: quadrature of f against the mean of the weights. Lobe and direction are
+// independent sequences of 2^16 points, so at worst as noisy as random numbers: sigma 0.5 / 256 for weights up to 1; 2
+// sigma.
 TEST(Bsdf, SamplesWeighWhatTheFormulasIntegrateTo) {
   for (const Material& m :
        {dielectric({0.8f, 0.5f, 0.2f}, 0.6f), metal({0.9f, 0.6f, 0.2f}, 0.8f), dielectric(Rgb(1.0f), 1.0f)}) {
@@ -139,9 +139,9 @@ TEST(Bsdf, CouplingAveragesToWhatItsNormalisationSays) {
   }
 }
 
-// Uniform light 1 comes back as 1 at most: rho = 1 and any F0, all angles. S: the albedo by the table, put
-// right by what the table lacks of the integrals (that sample() and eval agree with it is tested above and
-// below), D: from the table as it is. Kulla and Conty's term makes a rough white metal exactly white.
+// Of uniform light 1 at most 1 is reflected: rho = 1 and any F0, all angles. S: the albedo from the table, corrected by
+// the table's error against the integrals (other tests show that sample() and eval agree). D: from the table itself.
+// With the term of Kulla and Conty a rough white metal reflects exactly all light.
 TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
   const reference::GaussLegendre rule(96);
   for (float roughness : {0.021f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f}) {
@@ -183,9 +183,9 @@ TEST(Bsdf, IsReciprocal) {
   }
 }
 
-// Directions by sample() counted in 12 x 16 cells of equal cos and phi, against the densities integrated over
-// the cells (24 x 24 points each; the table counts samples lost below the horizon as one more cell).
-// Chi-square with k cells has mean k - 1 and variance 2 (k - 1): a limit of mean + 5 sigma.
+// Directions of sample(), counted in 12 x 16 cells of equal cos and phi, against the pdf integrated over the cells (24
+// x 24 points each; samples below the horizon count as one more cell). Chi-square with k cells has the mean k - 1 and
+// the variance 2 (k - 1): the limit is mean + 5 sigma.
 void check_distribution(const Material& m, float cos_o) {
   const Bsdf bsdf(m);
   const Vec3 wo = direction(cos_o, 0.7f);
@@ -244,8 +244,8 @@ TEST(Bsdf, SamplesFallWhereThePdfSays) {
   check_distribution(metal(Rgb(0.8f), 0.6f), 0.01f);
 }
 
-// At the narrow end a grid cannot follow: the mean weight is the albedo, which fails if sample() and pdf
-// disagree. 2^14 Sobol points; the weight is G2/G1 F, one branch almost always: error below 3e-3.
+// A grid cannot resolve very narrow lobes: there the mean weight is compared with the albedo, which fails if sample()
+// and pdf disagree. 2^14 Sobol points; the weight is G2/G1 F, almost always of one branch: error below 3e-3.
 TEST(Bsdf, NarrowLobesKeepTheirLight) {
   for (float roughness : {0.021f, 0.05f, 0.15f, 0.3f})
     for (float c : {1e-6f, 1e-3f, 0.05f, 0.5f, 1.0f}) {

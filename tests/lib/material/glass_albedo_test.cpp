@@ -1,4 +1,4 @@
-// The table of what rough glass loses against the integrals it stands for; and the generator of the table.
+// The table of rough glass's loss against the integrals that it stores, and the generator of the table.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -49,7 +49,7 @@ TEST(GlassLossTable, HoldsTheIntegrals) {
   }
 }
 
-// Off the nodes. What a furnace is off by: the bound in the header; measured 2.1e-3.
+// Between the nodes. The largest error in a furnace is the bound in the header; measured 2.1e-3.
 TEST(GlassLossTable, InterpolatesWithinItsBound) {
   double worst = 0;
   for (int k = 0; k < 600; ++k) {
@@ -64,7 +64,8 @@ TEST(GlassLossTable, InterpolatesWithinItsBound) {
   RecordProperty("worst", std::to_string(worst));
 }
 
-// The mean is its own table: it must be the mean of what at() returns, or the spread light does not add up.
+// The mean has its own table: it must be the mean of the values of at(), otherwise the distributed light does not add
+// up.
 TEST(GlassLossTable, MeanIsTheMeanOfTheValues) {
   const reference::GaussLegendre rule(200);
   for (double index : {1.1, 1.5, 2.2})

@@ -1,4 +1,4 @@
-// Rough glass: all light comes back, both ways are one, samples fall where the densities say.
+// Rough glass: no light is lost, scattering is reciprocal, and samples are distributed by the pdf.
 #include "lib/material/rough_glass.h"
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ class RoughGlassTest : public testing::TestWithParam<std::tuple<float, bool, boo
   bool front() const { return std::get<2>(GetParam()); }
 };
 
-// Energy in = energy out within 0.5 %: the mean weight over 2^15 samples, for radiance and, the same number, for
-// photons. Weights are below 3 with a deviation below 0.3: 4 sigma = 0.006 for random points; Sobol's leave less
+// Energy is conserved within 0.5 %: the mean weight over 2^15 samples, for radiance and, with the same value, for
+// photons. Weights are below 3 with a deviation below 0.3: 4 sigma = 0.006 for random points; Sobol points leave less
 // than a quarter. The table's own bound is 0.003.
 TEST_P(RoughGlassTest, ReturnsAllLight) {
   for (float index : {1.2f, 1.5f, 2.0f}) {
@@ -54,7 +54,7 @@ TEST_P(RoughGlassTest, ReturnsAllLight) {
 // Directions counted in 16 x 12 cells of equal cos and phi over the sphere, and the mean of the weights there against
 // the integral of f cos. Chi-square: mean k - 1, variance 2 (k - 1); limit 5 sigma.
 TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
-  if (roughness() < 0.35f) return;  // narrower than a cell: the mean weights above check those
+  if (roughness() < 0.35f) return;  // narrower than a cell: the test of the mean weights covers these
   const Bsdf bsdf(glass(roughness(), thin()), front());
   for (float cos_o : {0.95f, 0.5f, 0.1f}) {
     const Vec3 wo = direction(cos_o, 0.7f);
@@ -124,8 +124,8 @@ TEST(RoughGlass, IsReciprocalForRadianceOverTheIndexSquared) {
       }
 }
 
-// A rough solid that gets smoother becomes the smooth one: the share let through straight on is 1 - F, and
-// all of it within a few alpha of Snell's direction.
+// A rough solid that gets smoother approaches the smooth one: the share transmitted at normal incidence is 1 - F, and
+// all of it lies within a few alpha of Snell's direction.
 TEST(RoughGlass, NarrowsToTheSmoothBoundary) {
   const Bsdf bsdf(glass(0.03f, false), true);
   const Vec3 wo = direction(0.6f, 0);

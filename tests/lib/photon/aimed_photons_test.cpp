@@ -1,5 +1,4 @@
-// In a hut on a wide ground, lit by sun and sky through its door, aimed photons bring the light that uniform ones
-// bring.
+// Aimed photons bring the same light as uniform ones into a hut on wide ground, lit by sun and sky through its door.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -92,7 +91,7 @@ Inside inside(const Hut& hut, const EmissionTable& table, std::uint64_t count) {
   return sum;
 }
 
-// Batches of one group are pieces of one sequence and not quite independent; strata only make their sum better.
+// Batches of one group are parts of one sequence and not quite independent; stratification only makes their sum better.
 TEST(AimedPhotons, BringTheLightOfUniformOnes) {
   const Hut hut;
   EmissionTable aimed = hut.table;
@@ -108,12 +107,12 @@ TEST(AimedPhotons, BringTheLightOfUniformOnes) {
   EXPECT_EQ(uniform.seen, 0u);
 }
 
-/// A wall of 2 x 2 m on a ground of 600 x 600 m under a sun overhead, in a sphere: it gets rho E / 2 (1 - 4 d / pi) of
-/// light that the ground reflects, d = 1 / 300 its mean height over the ground's reach. Bounces outside of the sphere
-/// are aimed at it, so no photon on the wall carries much. The heaviest starts on the innermost of the eight discs
-/// around, of 3 m: 9 pi / (kAround / 8 x 100 000) = .009 W, and is multiplied by less than 1, as the sphere covers 2 sr
-/// and less from there. Unaimed bounces bring single photons of .1 W, and without the division by both densities the
-/// wall is far too bright.
+/// A wall of 2 x 2 m on a ground of 600 x 600 m under a sun overhead, inside a sphere: of the light that the ground
+/// reflects it receives rho E / 2 (1 - 4 d / pi), d = 1 / 300 its mean height over the ground's reach. Bounces outside
+/// the sphere are aimed at it, so no photon on the wall carries much flux. The heaviest starts on the innermost of the
+/// eight discs around the sphere, of 3 m: 9 pi / (kAround / 8 x 100 000) = .009 W, multiplied by less than 1, because
+/// the sphere covers 2 sr and less from there. Without aiming, single photons would bring .1 W, and without the
+/// division by both densities the wall would be far too bright.
 TEST(AimedPhotons, LightOfFarGroundComesInSmallParts) {
   test::HandMadeScene scene;
   scene.add_quad({-300, 0, 300}, {300, 0, 300}, {300, 0, -300}, {-300, 0, -300}, test::matte(Rgb(0.5f)));

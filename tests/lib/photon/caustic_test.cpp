@@ -1,4 +1,4 @@
-// Photons through glass: what a lens lets through, what a solid absorbs, and that the path tracer sees the same light.
+// Photons through glass: the transmittance of a lens, the absorption of a solid, and agreement with the path tracer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,9 +77,9 @@ Stored trace(HandMadeScene& scene, std::uint64_t count, std::uint32_t object) {
   return sum;
 }
 
-/// A black ceiling lamp shines down on a window of glass in a closed frame; below it a black floor. Light that arrives
-/// is what comes to the slab times its transmittance: integral of T(theta) over the lamp's light, here a point
-/// lamp 1 m above a slab so wide that all its light downwards within 60 degrees meets it.
+/// A black ceiling lamp shines down on a window of glass in a closed frame, above a black floor. The light that arrives
+/// is the light that reaches the slab times its transmittance: the integral of T(theta) over the light of a point lamp
+/// 1 m above a slab so wide that all light within 60 degrees of straight down meets it.
 TEST(Caustics, SlabPassesWhatFresnelSays) {
   for (float color : {1.0f, 0.4f}) {
     HandMadeScene scene;
@@ -105,8 +105,8 @@ TEST(Caustics, SlabPassesWhatFresnelSays) {
   }
 }
 
-/// A glowing furnace wall and a cube of rough glass: whatever the roughness, the walls get what they give. Walls of
-/// area 6 x 16 m^2 emit pi W/m^2 and absorb all: flux stored = emitted, times 1 for any glass.
+/// A furnace wall and a cube of rough glass: for any roughness, the walls receive the flux that they emit. Walls of
+/// area 6 x 16 m^2 emit pi W/m^2 and absorb all light: stored flux = emitted flux.
 TEST(Caustics, RoughGlassLosesNoPhotons) {
   for (float roughness : {0.0f, 0.2f, 0.6f, 1.0f}) {
     HandMadeScene closed;
@@ -121,9 +121,9 @@ TEST(Caustics, RoughGlassLosesNoPhotons) {
 }
 
 /// Flux through a glass ball of radius 1 onto the screen of radius 2.5 at y = -3, by quadrature over the light of a
-/// lamp of 1 W/sr at (0, d, 0). All angles within a sphere are one: of what enters, (1 - F) F^(p-1) (1 - F) leaves
-/// after p - 1 reflections inside, p = 0 is F. In its plane the path turns by 2 (i - r) and by pi - 2 r at each
-/// reflection.
+/// lamp of 1 W/sr at (0, d, 0). All angles inside a sphere are equal: of the incoming light, (1 - F) F^(p-1) (1 - F)
+/// leaves after p - 1 internal reflections, and F is reflected outside (p = 0). In its plane the path turns by 2 (i -
+/// r), and by pi - 2 r at each reflection.
 double ball_onto_screen(double d) {
   constexpr int kSteps = 100000;
   const double least = std::sqrt(1 - 1 / (d * d));  // mu of the grazing ray
@@ -148,8 +148,8 @@ double ball_onto_screen(double d) {
   return sum;
 }
 
-/// A lamp 1.5 m from a ball of 32768 triangles: its beam comes out about parallel. 13 % of 400000 photons meet the
-/// ball: sigma 0.2 % (and triangles inscribed are 0.02 % less); asked 1 %.
+/// A lamp 1.5 m from a ball of 32768 triangles: its beam leaves the ball about parallel. 13 % of 400000 photons meet
+/// the ball: sigma 0.2 % (inscribed triangles lose 0.02 %); required 1 %.
 TEST(Caustics, BallPassesWhatFresnelSays) {
   HandMadeScene scene;
   scene.add_sphere({0, 0, 0}, 1, 64, glass(0), false, false);
@@ -169,12 +169,12 @@ TEST(Caustics, BallPassesWhatFresnelSays) {
   EXPECT_NEAR(screen / ball_onto_screen(1.5), 1, 0.01);
 }
 
-/// A mirror whose shading normals n lean 40 degrees towards a lamp at 60 degrees on the same side. An eye that n looks
-/// at sees the lamp by n, 20 degrees from the upright, one that n looks away from by the upright itself (SeenSide), 60
-/// degrees on the other side: light must go both ways. Of each, the flux that an eye sees of 1 W/sr: radiance times the
-/// eye's cosine to the triangle, so cos(wo) / cos(wi) of what arrives in the first case, all of it in the second; the
-/// integral over the mirror of cos / d^2 by 100 x 100 places. Of 2 million photons 8800 hit it, half of which go either
-/// way: 1.5 % of noise.
+/// A mirror whose shading normals n lean 40 degrees towards a lamp at 60 degrees on the same side. A camera that n
+/// faces sees the lamp by n, 20 degrees from the upright. A camera from which n faces away sees it by the upright
+/// normal (SeenSide), 60 degrees on the other side. Light must go both ways. The flux that a camera sees of 1 W/sr is
+/// the radiance times the cosine of the camera's direction to the triangle: cos(wo) / cos(wi) of the arriving flux in
+/// the first case, all of it in the second. The integral of cos / d^2 over the mirror is taken at 100 x 100 places. Of
+/// 2 million photons 8800 hit the mirror, and half of them go either way: 1.5 % of noise.
 TEST(Caustics, BentNormalsSendLightAllWaysTheyAreSeenFrom) {
   Material mirror;
   mirror.base_color = Rgb(1.0f);

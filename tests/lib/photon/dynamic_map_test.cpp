@@ -15,6 +15,7 @@
 #include "lib/photon/photon_map.h"
 #include "tests/support/photons.h"
 #include "tests/support/scenes.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -262,7 +263,7 @@ TEST(MoverWatch, PiecesOfABallAreMetWhereItIsAndHardlyElsewhere) {
   int met = 0, touched = 0, near_box = 0;
   for (std::uint32_t i = 0; i < 60000; ++i) {
     // Uniform lines: a direction, and a place on the disc across it that holds the box.
-    const Vec3 direction = sample_sphere(random.get2(i, Purpose::test));
+    const Vec3 direction = test::sample_sphere(random.get2(i, Purpose::test));
     const Vec2 u = random.get2(i, Purpose::test, 1);
     const Frame across(direction);
     const float r = 1.8f * radius * std::sqrt(u.x), turn = float(2 * M_PI) * u.y, far = std::pow(10.0f, float(i % 5));

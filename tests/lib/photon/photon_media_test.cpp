@@ -1,4 +1,4 @@
-// Photons in media: what is recorded stands for the fluence, books balance, nothing depends on how the work is cut.
+// Photons in media: records represent the fluence, flux is balanced, and results do not depend on the division of work.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,10 +13,10 @@ namespace tempolux {
 namespace {
 
 struct Sums {
-  double surfaces = 0;  ///< W stored at surfaces
+  double surfaces = 0;  ///< W, stored at surfaces
   double collided = 0;  ///< W: records times extinction
-  double fluence = 0;   ///< W m: records
-  double direct = 0;    ///< of them, straight from the lamp
+  double fluence = 0;   ///< W m: sum of the records
+  double direct = 0;    ///< W m: the part straight from the lamp
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
   std::size_t tentative = 0;
 };
@@ -46,7 +46,8 @@ Sums trace_all(const SceneFrame& frame, const EmissionTable& table, const Photon
   return sums;
 }
 
-/// In a black room with a black medium all that does not reach the walls has collided. Thin and dense: the same books.
+/// In a black room with a black medium, all flux that does not reach the walls has collided, for thin and for dense
+/// media.
 TEST(PhotonMedia, RecordsTimesExtinctionAreWhatCollides) {
   for (const float sigma : {0.01f, 1.0f, 30.0f}) {
     test::ClosedBox box(test::Shape::cube, 0);
@@ -65,7 +66,7 @@ TEST(PhotonMedia, RecordsTimesExtinctionAreWhatCollides) {
   }
 }
 
-/// Where nothing is absorbed, walls nor medium, ... but walls are black here: the lamp's light all ends at the walls.
+/// A medium without absorption in a black room: all light of the lamp ends at the walls.
 TEST(PhotonMedia, WhatScattersOnlyArrives) {
   test::ClosedBox box(test::Shape::cube, 0);
   box.scene.set_media(test::cube_of_medium({0, 0.1, 0}, 1.2, {.sigma_t = 5, .albedo = Rgb(1.0f), .g = 0.5f}));

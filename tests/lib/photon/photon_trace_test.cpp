@@ -1,4 +1,4 @@
-// Photons: energy by closed form, books that balance, independence of everything that must not matter.
+// Photons: flux by closed form, balance of flux, and independence of batches, groups and threads.
 #include "lib/photon/photon_trace.h"
 
 #include <gtest/gtest.h>
@@ -61,8 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Rooms, ClosedBoxPhotons,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.0f, 0.5f, 0.9f, 0.99f)));
 
-/// A point light in a floor's plane: the cosine is 0, the floor gets nothing, though every other photon starts into it.
-/// A light a millionth before the floor gives it half of its flux.
+/// A point light in the plane of a floor: the cosine is 0 and the floor gets no light, although every other photon
+/// starts towards it. A light a millionth of a metre above the floor gives it half of its flux.
 TEST(PhotonTracer, AFloorGetsNothingFromALightInItsPlane) {
   for (const auto& [a, b] :
        {std::pair{Vec3{1, 0, 0}, Vec3{0, 0, 1}}, std::pair{Vec3{1, 0.5f, 0.2f}, Vec3{-0.4f, 0.3f, 1}}})

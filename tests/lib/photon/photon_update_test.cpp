@@ -1,5 +1,5 @@
-// Selective photon tracing: an update of all groups is a fresh map, one of none is the old one, and overlays say the
-// same as whole files.
+// Selective photon tracing: an update of all groups equals a new map, an update of none equals the old one, and
+// overlays equal whole files.
 #include "lib/photon/photon_update.h"
 
 #include <gtest/gtest.h>
@@ -92,8 +92,8 @@ TEST_F(PhotonUpdate, OfAllGroupsIsAFreshMapOfNoneTheOld) {
   EXPECT_LT(std::filesystem::file_size(path("still.photons")), 1000u);
 }
 
-/// A third of the groups at each of three frames: each group once, so that the third map is a fresh one; the first is
-/// an overlay, the second differs in more than half of its groups and is whole.
+/// Three frames update a third of the groups each, so that each group is updated once and the third map equals a new
+/// one. The first is an overlay; the second differs in more than half of its groups and is whole.
 TEST_F(PhotonUpdate, OldestFirstGoesRoundOnce) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);
@@ -133,8 +133,8 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   EXPECT_EQ(whole, two);
 }
 
-/// A map kept in memory from frame to frame makes the files that one read anew in each frame makes, priorities
-/// included: overlays upon overlays, until more than half of the groups differ and a whole map is written, which has to
+/// A map kept in memory from frame to frame produces the same files as a map that is read in each frame, priorities
+/// included: overlays on overlays until more than half of the groups differ; then a whole map is written, which has to
 /// be read again.
 TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
   const Room thin(0.5f, options_), thick(2, options_);
@@ -196,8 +196,8 @@ TEST_F(PhotonUpdate, CensusSeesChangeAndOnlyThat) {
     }());
 }
 
-/// Pilots are paths of the map: their signatures cost it nothing, and walked again through the same smoke they are the
-/// same.
+/// Pilots are paths of the map: their signatures do not change the map, and traced again through the same smoke they
+/// have equal signatures.
 TEST_F(PhotonUpdate, PilotsTellWhatHasChanged) {
   PhotonOptions plain = options_;
   options_.pilots = 7;
@@ -211,8 +211,8 @@ TEST_F(PhotonUpdate, PilotsTellWhatHasChanged) {
   };
   for (const auto strategy : {UpdateStrategy::fde, UpdateStrategy::dip, UpdateStrategy::hybrid, UpdateStrategy::path})
     for (const double c : change(same, strategy)) EXPECT_EQ(c, 0);
-  // Of smoke that has changed everywhere each pilot that looks at any sees it; some scatter elsewhere; what is
-  // scattered elsewhere was looked at; and where surfaces stand, paths differ only by smoke.
+  // If smoke has changed everywhere, each pilot that passes smoke detects it, and some pilots scatter at other places;
+  // a pilot that scatters elsewhere has passed smoke. With static surfaces, paths differ only by smoke.
   const auto fde = change(thick, UpdateStrategy::fde), dip = change(thick, UpdateStrategy::dip),
              way = change(thick, UpdateStrategy::path);
   double looked = 0, moved = 0;
@@ -251,7 +251,7 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
   EXPECT_NEAR(difference / wanted, 1, 0.1);
 }
 
-/// Photons of flux -1 through the old smoke take away just what there was; through other smoke they would not.
+/// Photons of flux -1 through the old smoke cancel exactly the stored ones; through other smoke they would not.
 TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);
@@ -283,8 +283,8 @@ TEST(SpreadPaths, AddsUpAndGoesWhereVarianceFallsMost) {
             (std::vector<std::uint64_t>{6, 6, 5}));
 }
 
-/// Many further paths in some groups change no mean: emitted flux stays to the last digits, and the light in the smoke
-/// within its noise.
+/// Many further paths in some groups change no mean: the emitted flux stays to the last digits, and the light in the
+/// smoke within its noise.
 TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
   const Room thick(2, options_);
   fresh("0.photons", thick, 0);
@@ -312,9 +312,8 @@ TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
   EXPECT_NEAR(after.second, before.second, 0.06 * before.second);
 }
 
-/// On paper: 6 groups are boxes 3 x 2 of base 3 (where) and base 2; group g is that of digits g mod 3 and g mod 2, each
-/// permuted. The values are put so that a group's own is 1000 and those beside it are known: all others 1 give 1,
-/// whoever they are.
+/// Six groups are 3 x 2 boxes of base 3 (where) and base 2; group g has the digits g mod 3 and g mod 2, each permuted.
+/// A group's own value is 1000 and all others are 1: the mean of its neighbours is 1, whichever groups they are.
 TEST(BesideGroups, LeavesOutOnesOwn) {
   for (const std::uint64_t seed : {0u, 1u, 7u})
     for (std::size_t g = 0; g < 6; ++g) {
@@ -322,8 +321,8 @@ TEST(BesideGroups, LeavesOutOnesOwn) {
       values[g] = 1000;
       const std::vector<double> beside = neighbour_means(values, seed);
       EXPECT_EQ(beside[g], 1);
-      // In 3 x 2 boxes a corner has two neighbours, a middle one three, and each of those sees the 1000 among its own
-      // two or three.
+      // In 3 x 2 boxes a corner has two neighbours and a middle box three, and each of these sees the 1000 among its
+      // own two or three.
       int seen = 0;
       for (std::size_t o = 0; o < 6; ++o) seen += beside[o] > 1;
       EXPECT_TRUE(seen == 2 || seen == 3) << seen;
@@ -334,9 +333,10 @@ TEST(BesideGroups, LeavesOutOnesOwn) {
 }
 
 /// Refined maps have the light of plain ones in the mean: 63 groups of 4 paths, of which a twentieth of the tentative
-/// photons is recorded, get five times as many more, over 300 seeds. Paths given to groups by what these found
-/// themselves lose 17 % of the light: the lucky are corrected, the unlucky are not. The plain maps have 38 000 records
-/// that count alike but for a factor of 2: .6 % by chance, and paths have more than one; 3 % is four deviations.
+/// photons is recorded, get five times as many more paths, over 300 seeds. If a group's own paths decided on its
+/// further paths, 17 % of the light would be lost: lucky groups would be corrected and unlucky ones not. The plain maps
+/// have 38 000 records of equal weight up to a factor of 2: .6 % at random, and paths have more than one record; 3 % is
+/// four deviations.
 TEST_F(PhotonUpdate, RefiningLosesNoLight) {
   const Room thick(2, options_);
   double before = 0, after = 0;

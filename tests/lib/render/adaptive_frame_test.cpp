@@ -1,4 +1,4 @@
-// Samples of pixels by what their neighbours saw: where they go, how many, and that they bring no bias.
+// Samples of pixels by the noise of their neighbours: where they go, how many, and that they cause no bias.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,10 +21,10 @@ struct Mean {
   double sigma() const { return std::sqrt(std::max(0.0, square - sum * mean()) / (count - 1) / count); }
 };
 
-/// Extra samples go where neighbours are uncertain; a pixel's own luck must not decide. Direct light of the pixels
-/// that scatter most between 80 seeds, penumbrae and edges, one or two first samples each, against 1024 samples
-/// everywhere: 4 sigma of the mean of their errors. (Deciding by a pixel's own two samples comes out 0.8 % too
-/// dark, six sigma.)
+/// Further samples go where neighbours are noisy; a pixel's own samples must not decide. Direct light of the pixels
+/// with the largest deviation between 80 seeds (penumbrae and edges), with one or two first samples each, against 1024
+/// samples everywhere: 4 sigma of the mean of their errors. (If a pixel's own two samples decided, the mean would be
+/// 0.8 % too dark, six sigma.)
 TEST(AdaptiveFrame, SamplesWhereTheyAreNeededBringNoBias) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -65,9 +65,10 @@ TEST(AdaptiveFrame, SamplesWhereTheyAreNeededBringNoBias) {
   }
 }
 
-/// One first sample is enough to ask for more: with a limit that no pixel reaches, n ~ error^(-7/8), 2^(7/8) = 1.83
-/// times as many for half of it. Rounding down takes half a sample of some tens, and pixels that see nothing but black
-/// stay at one: 5 %. Not only edges ask: the lamp is wide, light on the walls scatters by its cosines alone.
+/// One first sample is enough to ask for more. With a limit that no pixel reaches, n ~ error^(-7/8), so half the error
+/// needs 2^(7/8) = 1.83 times as many samples. Rounding down removes half a sample of some tens, and pixels that see
+/// only black stay at one: 5 %. Not only edges get samples: the lamp is wide, and light on the walls varies by its
+/// cosines alone.
 TEST(AdaptiveFrame, OneFirstSampleIsEnoughToRefine) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -90,8 +91,8 @@ TEST(AdaptiveFrame, OneFirstSampleIsEnoughToRefine) {
   EXPECT_NEAR(more / some, std::pow(2.0, 0.875), 0.05 * std::pow(2.0, 0.875));
 }
 
-/// For a filter light in mirrors alone asks for more samples: a matte room takes none, and is that of fixed samples but
-/// for rounding: parts are summed one by one, in float.
+/// For a filter only light in mirrors gets further samples. A matte room gets none and equals a frame with fixed
+/// samples, except for rounding: parts are summed one by one, in float.
 TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -111,9 +112,9 @@ TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
     }
 }
 
-/// A bright sheet and a black one that meet in the middle of a column of pixels: of four samples, stratified, two are
-/// on either. Asked for more than it may have, a pixel that has an edge or is beside one takes all: that column and one
-/// on either side. Where they meet between two columns no pixel's samples differ, but those of its neighbours do: both
+/// A bright and a black sheet meet in the middle of a column of pixels: two of four stratified samples lie on either.
+/// If a pixel asks for more than the limit, a pixel that has an edge or lies next to one takes all: this column and one
+/// on either side. If the sheets meet between two columns, no pixel's samples differ, but its neighbours' do: both
 /// columns take all.
 TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   for (const auto& [column, taken] : {std::pair{20.5f, 3.0}, std::pair{20.0f, 2.0}}) {
@@ -133,10 +134,10 @@ TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   }
 }
 
-/// The border of the shadow that a sheet cut across throws of a square lamp: of the lamp's area (1 - s)^2 / 2 are
-/// covered where x + y = (0.6 s - 0.5) / 0.4, none from s = 1 on; looked at is s from 0.82 to 0.99, p < 1.6 %. Of four
-/// samples one misses it in 4 p of the pixels, which then are 25 % dark. The mean over that part and all seeds is right
-/// within 4 sigma: were further samples given to just those, it would be .26 % too bright.
+/// The border of the shadow of a sheet in front of a square lamp. The covered share of the lamp is p = (1 - s)^2 / 2
+/// where x + y = (0.6 s - 0.5) / 0.4, and 0 from s = 1 on; the test looks at s from 0.82 to 0.99, p < 1.6 %. In 4 p of
+/// the pixels one of four samples misses the lamp, and the pixel is 25 % dark. The mean over this part and all seeds is
+/// right within 4 sigma. If further samples went to just these pixels, it would be .26 % too bright.
 TEST(AdaptiveFrame, BordersOfShadowsKeepTheirMean) {
   HandMadeScene made;
   made.add_quad({-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}, test::matte(Rgb(0.5f)));
@@ -174,10 +175,10 @@ TEST(AdaptiveFrame, BordersOfShadowsKeepTheirMean) {
   EXPECT_LT(means.sigma(), 4e-4);
 }
 
-/// Lamps of a 25th of a pixel in a mirror, which else shows .2: of a lamp's pixels 16 % meet it with one of their four
-/// samples. Their neighbours take further samples, they themselves do not, and the mean over the picture is right
-/// within 4 sigma of 32 seeds. Were pixels that met a lamp to take more for their own sake, 84 % of the lamps' light
-/// were missing, 9.6 % of all.
+/// Lamps of a 25th of a pixel in a mirror that shows .2 elsewhere: 16 % of the pixels with a lamp meet it with one of
+/// their four samples. Their neighbours take further samples, they themselves do not, and the mean over the picture is
+/// right within 4 sigma of 32 seeds. If pixels that met a lamp took more samples, 84 % of the lamps' light would be
+/// lost, 9.6 % of all.
 TEST(AdaptiveFrame, LampsSmallerThanPixelsKeepTheirLight) {
   Material mirror = test::matte(Rgb(1.0f));
   mirror.metallic = 1;

@@ -1,5 +1,4 @@
-// Photons seen by the camera against light known on paper; their standard error; biases that are there and
-// such that are not.
+// Photons seen by the camera against closed forms; their standard error; biases that exist and biases that do not.
 #include "lib/render/audit.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +17,8 @@ using test::matte;
 constexpr int kWidth = 64, kHeight = 36;
 constexpr std::size_t kPixels = kWidth * kHeight;
 
-/// Looks along -z from `eye`, 90 degrees high: pixels at the border are far from the axis, where powers of
-/// the cosine tell.
+/// Looks along -z from `eye`, 90 degrees high: pixels at the border are far from the axis, where a wrong power of the
+/// cosine shows.
 CameraView wide_view(Vec3d eye) {
   PlacedCamera camera;
   camera.camera.kind = Camera::Kind::perspective;
@@ -28,7 +27,7 @@ CameraView wide_view(Vec3d eye) {
   return CameraView(camera, {}, kWidth, kHeight);
 }
 
-/// A frame of one layer that is the same everywhere.
+/// A frame with one layer of uniform radiance.
 RenderedFrame even_frame(Layer layer, float radiance) {
   RenderedFrame frame;
   frame.mean.width = kWidth;
@@ -58,10 +57,10 @@ const AuditEntry* find(const std::vector<AuditEntry>& entries, Layer layer, cons
   return nullptr;
 }
 
-/// A plane of 45 degrees, z = y - 2, under a lamp of 3 W/sr at (0, 1, 0), seen from the origin: radiance rho
-/// I cos / (pi d^2) at each place. By the middles of pixels, whose
-/// mean errs by less than .1 % here. A power of the cosine to the axis too many or too few is 20 to 40 % at
-/// the sides; a distance in place of the depth likewise.
+/// A plane of 45 degrees, z = y - 2, under a lamp of 3 W/sr at (0, 1, 0), seen from the origin: radiance rho I cos /
+/// (pi d^2) at each place. The expected value is taken at the middles of pixels, with an error below .1 % of the mean.
+/// A wrong power of the cosine to the axis makes a difference of 20 to 40 % at the sides; so does a distance in place
+/// of the depth.
 TEST(PhotonSplats, ObliquePlaneUnderALamp) {
   HandMadeScene made;
   made.add_quad({-60, -30, -32}, {60, -30, -32}, {60, 1.9f, -0.1f}, {-60, 1.9f, -0.1f}, matte(Rgb(0.6f)));
@@ -91,17 +90,17 @@ TEST(PhotonSplats, ObliquePlaneUnderALamp) {
     }
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(found[i] / column[i], 1, 4 * std::sqrt(error[i]) / column[i] + 0.01)
-        << i;  // tiles of fewer than 32 photons are left out: far away, below .5 %
+        // Tiles with fewer than 32 photons are not reported: they are far away and hold below .5 % of the light.
+        << i;
     EXPECT_LT(std::sqrt(error[i]) / column[i], 0.02);
   }
 }
 
-/// In a sphere light that was reflected once or more is the same everywhere: E = F rho / (S (1 - rho)), seen
-/// as rho E / pi. A polyhedron of 1152 faces is smaller by .6 % in S. Over 24 seeds the
-/// standard errors are right: (splats - exact) / error is Student's t with 31 degrees of freedom, as the error is that
-/// of 32 maps, so its square has the mean 31 / 29 and the deviation 1.6. Over 384 values, 16 tiles of 24 seeds, 4 sigma
-/// are .33. Were the parts of one map taken for samples the mean would be below .1: each holds starting paths of one
-/// kind.
+/// In a sphere, light that was reflected once or more is uniform: E = F rho / (S (1 - rho)), seen as rho E / pi. A
+/// polyhedron of 1152 faces has .6 % less area S. Over 24 seeds the standard errors are right: (splats - exact) / error
+/// is Student's t with 31 degrees of freedom, because the error is that of 32 maps. Its square has the mean 31 / 29 and
+/// the deviation 1.6; over 384 values, 16 tiles of 24 seeds, 4 sigma are .33. If parts of one map counted as samples,
+/// the mean would be below .1, because each part holds starts of one kind.
 TEST(PhotonSplats, SphereIsLitEvenlyAndTheErrorIsKnown) {
   test::ClosedBox box(test::Shape::sphere, 0.5f, Rgb(1.0f));
   const SceneFrame& frame = box.scene.frame();
@@ -134,7 +133,7 @@ TEST(PhotonSplats, SphereIsLitEvenlyAndTheErrorIsKnown) {
   EXPECT_LE(far, 8);
 }
 
-/// Light on the back of a sheet is not seen from its front.
+/// The camera in front of a sheet does not see light on its back.
 TEST(PhotonSplats, TheOtherSideOfAThinWallIsDark) {
   HandMadeScene made;
   made.add_quad({-50, -50, -1}, {50, -50, -1}, {50, 50, -1}, {-50, 50, -1}, matte(Rgb(0.6f)));
@@ -143,8 +142,8 @@ TEST(PhotonSplats, TheOtherSideOfAThinWallIsDark) {
       audit(Lit(made.frame()), wide_view({}), even_frame(Layer::emission, 1), 20'000).empty());  // no photon is in view
 }
 
-/// A frame whose indirect light is a tenth too dark is found out, one that is right is not; the share is of
-/// the picture's light.
+/// The audit finds a frame whose indirect light is a tenth too dark and does not report a correct one. The share refers
+/// to the light of the picture.
 TEST(FrameAudit, FindsALayerThatIsTooDark) {
   test::ClosedBox box(test::Shape::sphere, 0.5f, Rgb(1.0f));
   const SceneFrame& frame = box.scene.frame();
@@ -162,8 +161,8 @@ TEST(FrameAudit, FindsALayerThatIsTooDark) {
       *find(audit(lit, view, even_frame(Layer::indirect, float(exact)), 300'000), Layer::indirect, "picture")));
 }
 
-/// A way of finding light that says there is no indirect light errs by all of it: paths say so, within 4 of
-/// their standard errors, against a picture of 64 samples.
+/// If known light says that indirect light is 0, the bias is all of the indirect light: paths find it within 4 of their
+/// standard errors, against a picture of 64 samples.
 TEST(FrameAudit, PathsSayWhatIsMissing) {
   const test::Cornell c;
   const test::NoLight none(c.tracer);
@@ -186,7 +185,7 @@ TEST(FrameAudit, PathsSayWhatIsMissing) {
   EXPECT_NEAR(missing->bias.value, -indirect, 4 * missing->bias.error + 0.005 * indirect);
   EXPECT_LT(missing->bias.error, 0.03 * indirect);
   EXPECT_TRUE(is_biased(*missing));
-  // Direct light is sampled by the same random numbers both ways: that they agree says nothing of it.
+  // With the same random numbers both ways sample the same direct light: their agreement is no measurement.
   EXPECT_FALSE(find(entries, Layer::direct, "picture"));
 }
 

@@ -1,4 +1,4 @@
-// Caustic light by density on things smaller than the density's disc.
+// Caustic light by density estimation on objects smaller than the disc of the estimate.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,16 +27,17 @@ std::vector<formats::Photon> trace(const Tracer& tracer, const Lights& lights, s
   options.seed = seed;
   return test::photons_of(PhotonTracer(tracer, lights, options));
 }
-/// Of a thin wall: (1 - F) / (1 + F), both faces and all reflections between them.
+/// Transmittance of a thin wall: (1 - F) / (1 + F), with both faces and all reflections between them.
 double pane_transmittance(double mu) {
   const double c = std::sqrt(1 - (1 - mu * mu) / 2.25);
   const double rs = (mu - 1.5 * c) / (mu + 1.5 * c), rp = (1.5 * mu - c) / (1.5 * mu + c), f = (rs * rs + rp * rp) / 2;
   return (1 - f) / (1 + f);
 }
 
-/// A lamp 4 m above a black floor under a pane lights a black post 0.1 m wide and 1 m high, 2 m aside. On its lit face
-/// E = I T(mu) cos / d^2. Some 30 photons of a map lie on that face, 20 reach 0.3 m across: the disc is mostly air.
-/// 60 maps of 40000 photons: 2000 photons on the face, 2.5 % of noise; the plain disc finds less than half.
+/// A lamp 4 m above a black floor, under a pane, lights a black post 0.1 m wide and 1 m high at a distance of 2 m. On
+/// its lit face E = I T(mu) cos / d^2. Some 30 photons of a map lie on this face, and 20 photons need 0.3 m: the disc
+/// is mostly empty. 60 maps of 40000 photons have 2000 photons on the face, 2.5 % of noise; an uncorrected disc finds
+/// less than half of the light.
 TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
   HandMadeScene scene;
   scene.add_quad({-9, 3, 9}, {9, 3, 9}, {9, 3, -9}, {-9, 3, -9}, pane());
@@ -74,9 +75,9 @@ TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
   EXPECT_NEAR(found / expected, 1, 0.06);
 }
 
-/// Light of irradiance 1 straight down on the steps of a stair 0.1 m deep and 0.02 m high, 12 photons on each: what
-/// falls on a step stays on it and on those that can be reached, so that the mean over places of steps is 1. 200 maps,
-/// 40 places each; neighbouring places share photons: some 200 x 5 independent values of 25 % noise, 1 %.
+/// Light of irradiance 1 straight down on the steps of a stair 0.1 m deep and 0.02 m high, with 12 photons on each.
+/// Light that falls on a step stays on it and on reachable steps, so the mean over places on steps is 1. 200 maps with
+/// 40 places each; neighbouring places share photons: some 200 x 5 independent values with 25 % noise, 1 %.
 TEST(CausticLight, KeepsItsMeanOnAStair) {
   HandMadeScene scene;
   std::vector<Vec3> p;
@@ -115,10 +116,10 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
   EXPECT_NEAR(sum / all, 1, 0.02);
 }
 
-/// Irradiance 1 straight down on a floor, by photons that fall independently and by photons spread as evenly as
-/// Halton's sequence spreads them through a plane mirror: a density of the k nearest would be dark by 1 / (2 k) in the
-/// second case. 5000 places: some 20000 x 3/4 / 30 independent values of 21 % noise in the first case, 0.5 % in the
-/// mean of four maps, of which 3.5 are asked; evenly spread photons have a third of the noise.
+/// Irradiance 1 straight down on a floor, by independent photons and by photons as stratified as a plane mirror leaves
+/// Halton's sequence. A density of the k nearest would be too dark by 1 / (2 k) in the second case. 5000 places: some
+/// 20000 x 3/4 / 30 independent values with 21 % noise in the first case, 0.5 % in the mean of four maps; the limit is
+/// 3.5 of these. Stratified photons have a third of the noise.
 TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
   HandMadeScene scene;
   scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));
@@ -161,11 +162,12 @@ void add_spot(float radius, float flux, std::vector<formats::Photon>& photons) {
   }
 }
 
-/// Spots keep their light: 1000 photons of 1 W in all on a disc of radius 1 m on a floor, free, and with a thin wall
-/// through its middle. E summed over a grid of 0.02 m, a fraction of the least radius (0.16 m; the sum of a paraboloid
-/// of that width is right to 1e-3), is 1 W, and with the wall that of the photons on either side: the wall shades
-/// nothing here, it parts. With the wall the areas of footprints at it are drawn: some 400 photons' noise of 20 %, 1 %,
-/// of which 2.5 are asked. The 25 nearest photons of each place give 1.08 to 1.12 (see FootprintDensity).
+/// Spots keep their light: 1000 photons with 1 W in all on a disc of radius 1 m on a floor, once free and once with a
+/// thin wall through its middle. The sum of E over a grid of 0.02 m, a fraction of the least radius (0.16 m; the sum of
+/// a paraboloid of this width is right to 1e-3), is 1 W, and with the wall the flux of the photons on either side,
+/// because the wall only separates. Areas of footprints at the wall are estimated: a noise of 20 % for some 400
+/// photons, 1 %; the limit is 2.5 of these. The 25 nearest photons of each place would give 1.08 to 1.12 (see
+/// FootprintDensity).
 TEST(CausticLight, SpotsKeepTheirLight) {
   for (const bool wall : {false, true}) {
     HandMadeScene scene;
@@ -194,9 +196,9 @@ TEST(CausticLight, SpotsKeepTheirLight) {
   }
 }
 
-/// Stray photons around a spot of 1000 photons, 0.01 m across: light is smooth over the largest radius, 1 m, where no
-/// place of the spot is within the margin of 0.1 m, and not where nothing arrives, so that no answer from beside the
-/// spot counts in it.
+/// Stray photons around a spot of 1000 photons, 0.01 m across. Light is smooth over the largest radius, 1 m, where no
+/// place of the spot lies within the margin of 0.1 m, but not where no light arrives. So no estimate next to the spot
+/// counts for the spot.
 TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   HandMadeScene scene;
   scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
@@ -216,8 +218,8 @@ TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   EXPECT_EQ(smooth, 0) << "nothing is there";
 }
 
-/// Photons nearer to each other than positions can tell heights of, in a scene of kilometres: each is a disc all the
-/// same, and no wider than its neighbours are. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
+/// Photons closer together than float positions resolve heights, in a scene of kilometres: each is a whole disc, no
+/// wider than its neighbours are far. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
 TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   HandMadeScene scene;
   scene.add_quad({-4000, 0, 4000}, {4000, 0, 4000}, {4000, 0, -4000}, {-4000, 0, -4000}, matte(Rgb(0.0f)));
@@ -267,10 +269,10 @@ struct CutFootprints {
   }
 };
 
-/// Four of some 25 photons asked, drawn by what they give: the mean over 80000 places within 5 cm of the wall is that
-/// of all asked. A place's channel deviates by about .7 of itself, as each of the four has one of three colours: .7 /
-/// sqrt(80000) = .25 %, four of them. Away from the wall nothing is asked. Seen to fail: light of those drawn counted
-/// as if all were drawn alike (1.66 to 1.70).
+/// Four of some 25 photons are tested, drawn by their contribution: the mean over 80000 places within 5 cm of the wall
+/// equals that of testing all. A place's channel deviates by about .7 of itself, because each of the four has one of
+/// three colours: .7 / sqrt(80000) = .25 %; the limit is four of these. Away from the wall no photon is tested. Seen to
+/// fail: drawn light counted as if drawn uniformly (1.66 to 1.70).
 TEST(CausticLight, AFewPhotonsAskedHaveTheMeanOfAll) {
   CutFootprints made;
   const Tracer tracer(made.scene.frame());
@@ -289,8 +291,8 @@ TEST(CausticLight, AFewPhotonsAskedHaveTheMeanOfAll) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum_few[c] / sum_all[c], 1, 0.01) << c;
 }
 
-/// A dense spot among sparse photons: where light is said to be alike up to a distance, no footprint narrower than four
-/// times that comes as near, by all photons' distances to their 6th neighbours.
+/// A dense spot among sparse photons: within the reported distance, no footprint is narrower than four times that
+/// distance, checked with all photons' distances to their 6th neighbours.
 TEST(CausticLight, IsAlikeOnlyAwayFromNarrowFootprints) {
   HandMadeScene scene;
   scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
@@ -331,8 +333,8 @@ TEST(CausticLight, IsAlikeOnlyAwayFromNarrowFootprints) {
   EXPECT_GT(said, 2000);
 }
 
-/// While a memory lives a place has the light of one beside it, of its own half alone; a place far away, one that faces
-/// elsewhere, and all without a memory have their own.
+/// While a memory lives, a place has the light of a close remembered place, of its own half only. A place far away, a
+/// place with another orientation, and all places without a memory have their own light.
 TEST(CausticLight, APixelRemembersItsPlace) {
   CutFootprints made;
   const Tracer tracer(made.scene.frame());

@@ -1,4 +1,4 @@
-// What way to light costs least, by rough frames that are made up.
+// The cheapest way to light for made-up rough frames.
 #include "lib/render/choose_light.h"
 
 #include <gtest/gtest.h>
@@ -8,10 +8,11 @@
 namespace tempolux {
 namespace {
 
-/// Samples that leave .1 of a variance.
+/// Samples that reduce a variance to .1.
 double samples(double variance) { return variance / 0.1; }
 
-/// 10^6 pixels; a path takes 10 shadow rays and errs by 2, one half of it indirect light; the wish leaves .1.
+/// 10^6 pixels; a path costs 10 shadow rays and has a squared error of 2, half of it from indirect light; the wish
+/// allows .1.
 RoughFrame example() {
   RoughFrame rough;
   rough.places = 2048;
@@ -36,7 +37,7 @@ Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
 }
 
 /// Paths: 10^6 x n(2) x 10. Gathering: n(1.5) of 8, and the points. Records: n(1) of 6, W in all with the points, and
-/// 10^5 a ray: with k rays the score is (W + 1e5 k) (.1 + 1 / k), least at k = sqrt(W / (1e5 x .1)).
+/// 10^5 per ray. With k rays the score is (W + 1e5 k) (.1 + 1 / k), least at k = sqrt(W / (1e5 x .1)).
 TEST(WaysToLight, CostAndErrAsDerived) {
   const std::vector<Way> ways = ways_to_light(example(), kOrder, false);
   ASSERT_EQ(ways.size(), 3u);
@@ -50,8 +51,8 @@ TEST(WaysToLight, CostAndErrAsDerived) {
   EXPECT_EQ(ways.front().method, IndirectMethod::records);
 }
 
-/// Samples n ~ (sigma / e)^(7/8) leave variance^(1 - 7/16) e^(7/8) of noise: twice the variance is left at as much for
-/// e times 2^-(9/14). Records leave samples no indirect light, so their frames keep the wish's error.
+/// Samples n ~ (sigma / e)^(7/8) leave variance^(1 - 7/16) e^(7/8) of noise: twice the variance gives equal noise if e
+/// is multiplied by 2^-(9/14). Records leave no indirect light to the samples, so their frames keep the wish's error.
 TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   RoughFrame rough = example();
   rough.wanted_of = 1;
@@ -60,7 +61,7 @@ TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   EXPECT_EQ(way(ways, IndirectMethod::records).pixel_error, 1);
 }
 
-/// What was not measured is said to be the least.
+/// Ways that were not measured are reported as lower bounds ("at least").
 TEST(WaysToLight, SayWhatWasNotMeasured) {
   RoughFrame rough = example();
   rough.recorded = false;
@@ -83,8 +84,8 @@ TEST(WaysToLight, RecordsHaveTheBestNumberOfRays) {
   }
 }
 
-/// Without indirect light nothing pays that is to find it. Where it is most of the noise records pay, and in a small
-/// picture they do not.
+/// Without indirect light no way to find it pays. Where indirect light is most of the noise records pay, but not in a
+/// small picture.
 TEST(WaysToLight, FollowTheIndirectLight) {
   RoughFrame rough = example();
   rough.path = {10, 1, 1, 1, 1};
@@ -99,8 +100,8 @@ TEST(WaysToLight, FollowTheIndirectLight) {
       << "10^4 pixels do not pay for points";
 }
 
-/// A map costs its photons and look-ups and takes the caustics' noise away; its own error stays. Caustics that paths do
-/// not meet stay wrong without it.
+/// A map costs its photons and look-ups and removes the caustics' noise; its own error remains. Without a map, caustics
+/// that paths do not find remain missing.
 TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   RoughFrame rough = example();
   rough.path = {10, 20, 2, 19, 1};
@@ -116,7 +117,8 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
 }
 
-/// Light of photons alone: paths leave it out, so records; though nothing that paths have found calls for them.
+/// If only photons find some light, paths miss it and records win, although the light that paths found does not ask for
+/// records.
 TEST(WaysToLight, RecordsFindWhatPathsMiss) {
   RoughFrame rough = example();
   rough.path = {10, 1, 1, 1, 1};
@@ -131,8 +133,8 @@ TEST(WaysToLight, WhereNothingIsMatteArePaths) {
   for (const Way& one : ways) EXPECT_EQ(one.method, IndirectMethod::paths);
 }
 
-/// Of two frames the way with the least work x error of both: in one paths are a hundredth better, in the other ten
-/// times worse.
+/// For two frames the way with the least product of summed work and summed error is taken: in one frame paths are a
+/// hundredth better, in the other ten times worse.
 TEST(WaysToLight, JoinedByTheSums) {
   const Way paths{IndirectMethod::paths, false, 0, 1, 0.99}, records{IndirectMethod::records, false, 80, 1, 1},
       slow{IndirectMethod::paths, false, 0, 10, 1};

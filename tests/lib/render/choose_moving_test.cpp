@@ -1,4 +1,4 @@
-// Whether light follows from what stands: shares that are known, and the choice by them.
+// Decisions to reuse static light: known shares, and the choice that follows from them.
 #include "lib/render/choose_moving.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,9 @@ TEST(MovingPilot, UnderTheLampItMattersMoreTheLargerItIs) {
   EXPECT_LT(small.touched_share, 0.05);
   EXPECT_LT(small.gathered_share, 0.5);
   EXPECT_GT(large.touched_share,
-            0.28);  // the lamp shines both ways, and 2 x 2 m at .9 m below it take .60 of one, by the form factor
+            // The lamp shines to both sides, and an area of 2 x 2 m at .9 m below receives .60 of one side, by the form
+            // factor.
+            0.28);
   EXPECT_GT(large.gathered_share, 0.9);
 }
 
@@ -60,10 +62,10 @@ TEST(ChooseMoving, WhateverIsCheaper) {
   EXPECT_EQ(choose_moving({0.07, 0.99}, 24, once).method, MovingMethod::light);  // records: 1/24 + .1 + .99
   EXPECT_EQ(choose_moving({0.07, 0.2}, 24, once).method, MovingMethod::records);
   EXPECT_EQ(choose_moving({0.07, 0.2}, 24, 0.71).method,
-            MovingMethod::light);  // each camera sees other things: .71 + .1 + .2
+            MovingMethod::light);  // each camera sees other places: .71 + .1 + .2
   EXPECT_EQ(choose_moving({0.3, 0.99}, 24, once).method, MovingMethod::anew);
   EXPECT_EQ(choose_moving({1, 0}, 24, once).method, MovingMethod::anew);
-  // What stands is computed once: for one state it would be light computed twice.
+  // The static scene is computed once: for one state its light would be computed twice.
   EXPECT_EQ(choose_moving({0.03, 0.2}, 1, 1).method, MovingMethod::anew);
 }
 

@@ -1,5 +1,4 @@
-// Whether bright points are divided: a room with a lamp under its ceiling, and with one that shines at a wall from near
-// by.
+// Decisions for bright points: a room with a lamp under its ceiling, and a room with a lamp close to a surface.
 #include "lib/render/choose_split.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// A closed room of 4 m, seen along -z; a lamp of `size` [m] that faces down, `above` the floor, its back dark.
+/// A closed room of 4 m, seen along -z, with a lamp of `size` [m] that faces down at height `above`; its back is dark.
 SplitPilot pilot_of(float size, float above) {
   test::HandMadeScene scene;
   scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
@@ -27,7 +26,7 @@ SplitPilot pilot_of(float size, float above) {
   return pilot_split(frame, table, CameraView(camera, {}, 64, 36), 0);
 }
 
-/// Under the ceiling light falls on all of the floor: at most 4 times the mean.
+/// A lamp under the ceiling lights all of the floor: at most 4 times the mean.
 TEST(SplitPilot, NoBrightSpotUnderAWideLamp) {
   const SplitPilot pilot = pilot_of(1, 3.9f);
   EXPECT_LT(pilot.high_share, 0.02);
@@ -35,8 +34,7 @@ TEST(SplitPilot, NoBrightSpotUnderAWideLamp) {
   EXPECT_FALSE(choose_split(pilot).split);
 }
 
-/// 0.1 m above the floor a lamp of 0.3 m lights some 0.2 of 96 m^2: half of the light that is reflected comes from
-/// there.
+/// At 0.1 m above the floor, a lamp of 0.3 m lights some 0.2 of 96 m^2: half of the reflected light comes from there.
 TEST(SplitPilot, ALampNearASurface) {
   const SplitPilot pilot = pilot_of(0.3f, 0.1f);
   EXPECT_GT(pilot.high_share, 0.3);

@@ -1,4 +1,4 @@
-// Which neighbours' surfaces a pixel sees too: an edge at known places in pixels.
+// Which neighbours' surfaces a pixel sees: an edge at known positions in pixels.
 #include "lib/render/coverage_channel.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-/// A sheet at z = 0 left of x = `edge` (in pixels of from_above()) and below another at z = -1.
+/// A sheet at z = 0 left of x = `edge` (in pixels of from_above()), and another below it at z = -1.
 Image frame_of_step(float edge, float bottom = 100) {
   test::HandMadeScene made;
   const float x = edge / 32 - 1, y = 0.5625f - bottom / 32;
@@ -29,11 +29,14 @@ std::uint32_t coverage_at(const Image& image, int x, int y) {
   return image.find("coverage")->ids[std::size_t(y * 64 + x)];
 }
 
-/// Sixteen stratified points have one in each sixteenth of the pixel's width: a quarter is four of them.
+/// Sixteen stratified points put one point in each sixteenth of the pixel's width: a quarter is four of them.
 TEST(Coverage, OfAStraightEdgeIsItsShare) {
   const Image right =
-      frame_of_step(32.25f);  // the centre of column 32 sees what lies below; a quarter the sheet, seen at its left
-  const Image left = frame_of_step(32.75f);  // now it sees the sheet, and a quarter what column 33 sees
+      // The centre of column 32 sees the lower sheet; a quarter of the pixel shows the upper one, which its left
+      // neighbour sees.
+      frame_of_step(32.25f);
+  // Now the centre sees the upper sheet, and a quarter shows the sheet that column 33 sees.
+  const Image left = frame_of_step(32.75f);
   for (int y = 1; y < 35; ++y) {
     EXPECT_EQ(coverage_at(right, 32, y), 4u << 12);
     EXPECT_EQ(coverage_at(left, 32, y), 4u << 16);
@@ -42,7 +45,7 @@ TEST(Coverage, OfAStraightEdgeIsItsShare) {
 }
 
 /// The sheet's corner covers a quarter of pixel (32, 20), whose centre misses it: only the upper left neighbours see
-/// it. Points are stratified in quarters of the pixel too.
+/// the sheet. Points are stratified in quarters of the pixel, too.
 TEST(Coverage, OfACornerGoesToTheNearestPixelThatSeesIt) {
   const Image image = frame_of_step(32.5f - 1 / 64.0f, 20.5f - 1 / 64.0f);
   const std::uint32_t packed = coverage_at(image, 32, 20);
@@ -50,12 +53,13 @@ TEST(Coverage, OfACornerGoesToTheNearestPixelThatSeesIt) {
   for (int n = 0; n < 8; ++n) sum += packed >> (4 * n) & 15;
   EXPECT_GE(sum, 3u);
   EXPECT_LE(sum, 4u);
-  EXPECT_EQ(packed & 0xfff00000u, 0u);  // nobody to the lower left, below or to the lower right; nor to the right
+  // No rays for the neighbours at the lower left, below, at the lower right and at the right.
+  EXPECT_EQ(packed & 0xfff00000u, 0u);
   EXPECT_EQ(packed >> 16 & 15, 0u);
 }
 
-/// A strip of half a pixel's width, between pixel centres: nobody shows it. Its half of the pixels beside counts as
-/// other.
+/// A strip with half a pixel's width lies between pixel centres: no centre sees it. Its half of both neighbouring
+/// pixels counts as other.
 TEST(Coverage, WhatNoCentreSeesIsOther) {
   test::HandMadeScene made;
   const float left = 0.75f / 32, right = 1.25f / 32;
@@ -72,12 +76,12 @@ TEST(Coverage, WhatNoCentreSeesIsOther) {
   const Lights lights(frame, build_emission_table({&frame, 1}));
   Image image{64, 36, {}, {}, {}, {}};
   add_coverage_channel({tracer, lights}, test::from_above(), {"coverage"}, image);
-  // At the third sheet's edge rays are cast: a quarter of pixel (32, 10) sees the strip.
+  // Rays are sent at the edge of the third sheet: a quarter of pixel (32, 10) sees the strip.
   EXPECT_EQ(image.find("coverage.other")->ids[10 * 64 + 32], 4u);
   EXPECT_EQ(image.find("coverage.other")->ids[10 * 64 + 40], 0u);
 }
 
-/// Two materials in one plane are two surfaces: the pixel between them is put together from both.
+/// Two materials in one plane are two surfaces: the pixel between them is composed of both.
 TEST(Coverage, MaterialsOfOneMeshAreToldApart) {
   test::HandMadeScene made;
   const float x = 0.25f / 32;

@@ -1,4 +1,4 @@
-// Environments against answers known on paper: furnaces, open planes, layers, photons that arrive and escape.
+// Environments against closed forms: furnaces, open planes, layers, photons that arrive and escape.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,8 +54,8 @@ HandMadeScene plane(const Material& material) {
   return scene;
 }
 
-// rho L, and all of it direct. Light sampling and scattering joined: a sample's deviation is below 1, so 4096 of a
-// scrambled Sobol sequence leave far less than 0.3 %.
+// The radiance is rho L, and all of it is direct. Light sampling and scattering are joined: a sample's deviation is
+// below 1, so 4096 samples of a scrambled Sobol sequence leave far less than 0.3 %.
 TEST(Environment, APlaneUnderAUniformSkyShowsRhoTimesL) {
   const Lit scene(plane(matte(Rgb(0.5f))), uniform(3));
   double sum = 0, direct = 0;
@@ -68,9 +68,9 @@ TEST(Environment, APlaneUnderAUniformSkyShowsRhoTimesL) {
   EXPECT_EQ(sum, direct);
 }
 
-// Under a sky of 3 and a sun of 30 W/m^2 at 60 degrees: rho (3 + 15 / pi), all of it direct, whether each light has a
-// ray of its own or one of the two is drawn. That choice is nearly all the noise: of one ray each the deviation is less
-// than a quarter.
+// Under a sky of 3 and a sun of 30 W/m^2 at 60 degrees the radiance is rho (3 + 15 / pi), all of it direct, whether
+// each light has its own ray or one of the two is drawn. The draw is nearly all of the noise: with one ray for each the
+// deviation is less than a quarter.
 TEST(Environment, ASunWithARayOfItsOwnGivesTheSameLightWithLessNoise) {
   HandMadeScene made = plane(matte(Rgb(0.5f)));
   SceneFrame frame = Lit::with(made.frame(), uniform(3));
@@ -101,8 +101,8 @@ TEST(Environment, ASunWithARayOfItsOwnGivesTheSameLightWithLessNoise) {
   EXPECT_LT(deviation[1], deviation[0] / 4);
 }
 
-// An open box of reflectance 1 under a sky of 1: 1 everywhere, through any number of bounces. Roulette leaves 0.2 %
-// of the paths at each bounce; of the bounces that stay in the box 4 are enough for nearly all.
+// An open box of reflectance 1 under a sky of 1 shows 1 everywhere, after any number of bounces. Russian roulette ends
+// 0.2 % of the paths at each bounce; 4 bounces are enough for nearly all paths that stay in the box.
 TEST(Environment, AWhiteBowlUnderAUniformSkyIsAFurnace) {
   HandMadeScene scene;
   const Material white = matte(Rgb(1.0f));
@@ -140,8 +140,9 @@ TEST(Environment, SeenDirectlyIsEmissionWithoutCoverage) {
   EXPECT_EQ(seen.coverage, 1);
 }
 
-// On the open plane photons of kind direct carry pi L A to either side; what is not absorbed escapes. 2^17 Halton
-// points into a disc of pi R^2 = 2 pi m^2 of which the plane of 4 m^2 takes 2 / (2 pi) of the directions' mean.
+// On the open plane photons of kind direct carry pi L A to either side; light that is not absorbed escapes. 2^17 Halton
+// points start in a disc of pi R^2 = 2 pi m^2, of which the plane of 4 m^2 covers 2 / (2 pi) in the mean over
+// directions.
 TEST(Environment, PhotonsOnAnOpenPlaneHaveTheDensityOfTheSky) {
   const Lit scene(plane(matte(Rgb(0.5f))), uniform(3));
   PhotonOptions options;

@@ -1,4 +1,4 @@
-// The noise that a frame says it has against that between seeds; --seen-error's loop.
+// The noise that a frame reports against the noise between seeds; the loop of --seen-error.
 #include "lib/render/frame_noise.h"
 
 #include <gtest/gtest.h>
@@ -35,10 +35,10 @@ TEST(FrameNoise, ExposureIsByTheMedian) {
   EXPECT_EQ(exposure_of(std::vector<Layers>(4), {}), 1);
 }
 
-/// Mean squares over 12 seeds of what frames say, against the variance between the seeds' pictures, by
-/// samples fixed and adaptive. 84 pixels are looked at in each frame, so a frame's variance is known
-/// within 15 to 30 % and the mean of the seeds within 10; band 25 %. Halves of the pixels' own samples would
-/// say 1.9 times as much of direct light.
+/// Mean squares that frames report over 12 seeds, against the variance between the seeds' pictures, with fixed and
+/// adaptive samples. Each frame renders 84 pixels twice, so a frame's variance is known within 15 to 30 % and the mean
+/// over seeds within 10 %; the band is 25 %. Halves of the pixels' own samples would report 1.9 times the variance of
+/// direct light.
 TEST(FrameNoise, IsThatBetweenSeeds) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -72,8 +72,8 @@ TEST(FrameNoise, IsThatBetweenSeeds) {
   }
 }
 
-/// Asked for 2 codes and for half of that, frames of paths have, between two seeds, at most 15 % more and at
-/// least half of it; what --pixel-limit does not allow is not reached and said.
+/// If 2 codes or half of that are requested, the difference of two seeds' frames of paths is at most 15 % larger and at
+/// least half as large. A goal that --pixel-limit prevents is not reached, and the frame reports this.
 TEST(FrameNoise, SeenErrorIsReachedOrNot) {
   const Cornell c;
   FrameOptions options;

@@ -1,4 +1,4 @@
-// Whole frames: layers add up, threads change nothing, halves are independent, data channels are where they say.
+// Whole frames: layers add up, the number of threads has no effect, halves are independent, data channels are correct.
 #include "lib/render/frame_renderer.h"
 
 #include <gtest/gtest.h>
@@ -62,9 +62,9 @@ double squared_difference(const LayerImage& a, const LayerImage& b) {
   return sum;
 }
 
-/// A frame and either half of a reference of the same seed and samples are as far apart as the halves are: variances
-/// add up. Of equal random numbers the difference would be 0. Heavy tails: such sums scatter by 10 % (below), so two of
-/// them agree within 30 %.
+/// The difference between a frame and either half of a reference with the same seed and samples is as large as the
+/// difference of the halves: variances add up. With equal random numbers it would be 0. The distributions have heavy
+/// tails: such sums scatter by 10 % (below), so two of them agree within 30 %.
 TEST(FrameRenderer, HalvesAreIndependentOfFramesOfTheSameSeed) {
   const Cornell c;
   FrameOptions options;
@@ -84,8 +84,8 @@ TEST(FrameRenderer, HalvesAreIndependentOfFramesOfTheSameSeed) {
   }
 }
 
-/// The estimate that the halves give of their mean's error agrees with the true one: the difference of two
-/// independent means is its square root of two times.
+/// The error of the mean that the halves report agrees with the true error, which is the difference of two independent
+/// means over the square root of two.
 TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   const Cornell c;
   FrameOptions options;
@@ -105,8 +105,9 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   EXPECT_NEAR(one.own_rmse / rmse, 1, 0.3);
 }
 
-/// What a pixel needs is told by those around it and by the picture's mean, masked or not: single pixels, a row and a
-/// block come out with the bytes they have in the whole frame. (By the masked pixels alone every sixth differed.)
+/// The number of a pixel's samples depends on the pixels around it and on the picture's mean, with and without a mask:
+/// single pixels, a row and a block have the same bytes as in the whole frame. (If masked pixels alone decided, every
+/// sixth would differ.)
 TEST(FrameRenderer, MaskedPixelsAreThoseOfTheWholeFrame) {
   const Cornell c;
   FrameOptions options;
@@ -160,7 +161,7 @@ TEST(FrameRenderer, ABaseWithoutNoiseIsKnown) {
   base.add("direct.R").values = {3, 4};
   for (const char* name : {"albedo.R", "direct.R", "direct.noise.R"}) image.add(name).values = {1, 2};
   keep_base_pixels({0, 1}, base, 1, image);
-  EXPECT_EQ(image.find("albedo.R")->values, (std::vector<float>{1, 2}));  // holds for every pixel
+  EXPECT_EQ(image.find("albedo.R")->values, (std::vector<float>{1, 2}));  // valid for every pixel
   EXPECT_EQ(image.find("direct.R")->values, (std::vector<float>{3, 2}));
   EXPECT_EQ(image.find("direct.noise.R")->values, (std::vector<float>{0, 2}));
 }
@@ -181,9 +182,9 @@ TEST(FrameRenderer, TargetErrorIsReached) {
   EXPECT_NEAR(again.mean_radiance, frame.mean_radiance, 1e-6 * frame.mean_radiance);
 }
 
-/// Layers of the photon renderer against those of the path tracer, as image means: emission and direct are the
-/// same samples (the ray that goes on joins light sampling in both); indirect carries the density estimate's bias,
-/// darker at edges within the estimate's radius (3 cm of a 4 m room with 300 k photons: below 3 %).
+/// Image means of the photon renderer's layers against those of the path tracer. Emission and direct light come from
+/// the same samples (the continued ray is joined with light sampling in both). Indirect light has the bias of the
+/// density estimate, which is darker at edges within its radius (3 cm in a 4 m room with 300 k photons: below 3 %).
 TEST(FrameRenderer, PhotonLayersAgreeWithPathLayers) {
   const Cornell c;
   FrameOptions options;

@@ -1,4 +1,4 @@
-// Photons, points, gathered records and interpolation together, against answers known on paper and path tracing.
+// Photons, points, gathered records and interpolation together, against closed forms and path tracing.
 #include "lib/render/known_light.h"
 
 #include <gtest/gtest.h>
@@ -20,10 +20,11 @@ using test::Shape;
 
 class ClosedBoxCache : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
-/// Mean indirect irradiance F rho / (S (1 - rho)). What n paths leave behind scatters by sqrt(rho / n) about that
-/// series (photon_trace_test checks it): divided out, for what is gathered is rho (F + stored) / S with those photons.
-/// 2048 places spread evenly leave less than 0.3 % of the field's variation; 4 shadow rays at 2 x 5000 points,
-/// the gather of 300 rays a record and the points' own 50 neighbours each less than 0.2 %: 1 % is 3 sigma or more.
+/// The mean indirect irradiance is F rho / (S (1 - rho)). The flux stored by n paths scatters by sqrt(rho / n) around
+/// this series (photon_trace_test checks it). This scatter is divided out, because records gather rho (F + stored) / S
+/// from these photons. 2048 uniform places leave less than 0.3 % of the field's variation. 4 shadow rays at 2 x 5000
+/// points, the gather of 300 rays per record and the points' 50 neighbours each leave less than 0.2 %: 1 % is 3 sigma
+/// or more.
 TEST_P(ClosedBoxCache, MeanIndirectIrradiance) {
   const auto [shape, rho] = GetParam();
   test::ClosedBox box(shape, rho);
@@ -61,9 +62,9 @@ INSTANTIATE_TEST_SUITE_P(Rooms, ClosedBoxCache,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.0f, 0.5f, 0.9f, 0.99f)));
 
-/// A furnace: every wall emits 1 and reflects rho, E = pi/(1 - rho) in all, pi rho/(1 - rho) of it indirect.
-/// Light from walls beside a point varies by far more than its mean between places on them: 16 shadow rays (with 4 a
-/// seed is 0.7 % off now and then).
+/// A furnace: every wall emits 1 and reflects rho, so E = pi/(1 - rho), and pi rho/(1 - rho) of it is indirect. Light
+/// from walls close to a point varies by far more than its mean between places on them: 16 shadow rays (with 4, a seed
+/// is sometimes off by 0.7 %).
 TEST(FurnaceCache, IndirectIrradianceIsUniform) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f), Rgb(1.0f)));
@@ -84,7 +85,8 @@ TEST(FurnaceCache, IndirectIrradianceIsUniform) {
   EXPECT_NEAR(sum / 512 / M_PI, 1, 0.005);
 }
 
-/// Indirect irradiance at a point by path tracing: what cosine-distributed rays bring, seen light left out.
+/// Indirect irradiance at a point by path tracing: the light of cosine-distributed rays, without the emission that they
+/// meet first.
 double path_traced(const Chain& chain, const SurfacePoint& from, Vec3 normal, int paths) {
   const RenderScene scene{chain.tracer, chain.lights};
   const Frame frame(normal);
@@ -99,10 +101,10 @@ double path_traced(const Chain& chain, const SurfacePoint& from, Vec3 normal, in
   return M_PI * sum / paths;
 }
 
-/// A partition 1 cm thick on the floor of a room, open above; the lamp stands low on one side, 1 m from it. At the
-/// foot of the dark side 1 to 8 cm from the partition nothing of the bright side's light may come through, nor in
-/// the strip as near on the bright side be lost: both within 3 % of path tracing (16 places x 4096 paths: 0.7 %;
-/// photons and points of one seed: 1 %).
+/// A partition 1 cm thick stands on the floor of a room, open above; the lamp stands low on one side, 1 m from it. On
+/// the dark side, 1 to 8 cm from the partition, no light of the bright side may come through, and the same strip on the
+/// bright side may lose none: both within 3 % of path tracing (16 places x 4096 paths: 0.7 %; photons and points of one
+/// seed: 1 %).
 TEST(CacheLeaks, ThinPartitionOnAFloor) {
   HandMadeScene scene;
   const Material grey = matte(Rgb(0.6f));
@@ -138,9 +140,9 @@ TEST(CacheLeaks, ThinPartitionOnAFloor) {
   }
 }
 
-/// Where no record counts there is no answer, however near one ends: a path finds the light. A record of the lit side
-/// of a board, which ended 19 cm before it and was open all around, lit the dark floor beside the board when its radius
-/// was taken four times as large.
+/// Where no record is valid there is no answer, however close a record ends: a path then finds the light. A record on
+/// the lit side of a board, which ended 19 cm before it and was open all around, lit the dark floor on the other side
+/// when its radius was taken four times as large.
 TEST(KnownLight, RecordsThatEndShortSayNothing) {
   test::ClosedBox box(Shape::cube, 0.5f);
   const Tracer tracer(box.scene.frame());
@@ -160,7 +162,8 @@ TEST(KnownLight, RecordsThatEndShortSayNothing) {
   }
 }
 
-/// Points speak for what is not too near: at 0.5 and 1.5 of kNear radii the limit's ends, between them by u.
+/// Points are read for hits that are not too close: at 0.5 and 1.5 times kNear radii lie the ends of the limit, and u
+/// decides in between.
 TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   test::ClosedBox box(Shape::cube, 0.5f);
   Chain chain(box.scene, 20000, 500, 4);
@@ -180,8 +183,8 @@ TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   }
 }
 
-/// A floor half in the light: beside the border points tell all but direct light, elsewhere all. Rows of points 0.1 m
-/// apart; the border is compared within 1.5 of that.
+/// A floor that is half in the light: close to the border points give all but direct light, elsewhere all light. Rows
+/// of points are 0.1 m apart; places within 1.5 of that count as close to the border.
 TEST(KnownLight, DirectLightIsNotReadWhereAShadowEnds) {
   std::vector<IrradiancePoint> points;
   for (int i = -10; i < 10; ++i)

@@ -1,4 +1,5 @@
-// Eye paths that end where light is known: nothing lost, nothing counted twice, whatever of it is there.
+// Camera paths that end where light is known: no light is lost and none counts twice, for any combination of known
+// light.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,7 +34,7 @@ double total(const Layers& layers) {
   return sum;
 }
 
-/// What eyes just before places spread evenly over all surfaces see, straight down.
+/// Camera paths from just above uniform places on all surfaces, straight down.
 template <class Take>
 RayCounts look_everywhere(const Chain& chain, const KnownLight& known, std::uint32_t count, const Take& take) {
   const test::AreaSampler area(chain.frame);
@@ -49,10 +50,10 @@ RayCounts look_everywhere(const Chain& chain, const KnownLight& known, std::uint
 
 class GatherInPixels : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
-/// Points without records: one ray of the hemisphere from each sample, and what it meets is read. The mean indirect
-/// irradiance of a closed box is F rho / (S (1 - rho)), pi / rho times what is seen of layer indirect. 4 sigma of the
-/// samples, 4 sqrt(rho / N) that N photons leave of the series, and 0.5 % for the points: 4 shadow rays at 5000 of
-/// them, and their neighbourhoods.
+/// Points without records: each sample sends one gather ray and reads its hit. The mean indirect irradiance of a closed
+/// box is F rho / (S (1 - rho)), pi / rho times the radiance of layer indirect. Tolerance: 4 sigma of the samples, 4
+/// sqrt(rho / N) for the series of N photons, and 0.5 % for the points with 4 shadow rays at 5000 of them and their
+/// neighbourhoods.
 TEST_P(GatherInPixels, MeanIrradianceIsTheGeometricSeries) {
   const auto [shape, rho] = GetParam();
   constexpr std::uint64_t kPhotons = 100000;
@@ -78,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(Rooms, GatherInPixels,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.5f, 0.8f)));
 
-/// Every wall emits 1 and reflects one half: 2 everywhere. Rays from matte surfaces meet light that shadow rays look
-/// for, too: without weights it would be 2.5. Points know light from walls beside them by shadow rays: 16 (see
+/// Every wall emits 1 and reflects one half: 2 everywhere. Gather rays meet lights that shadow rays sample, too:
+/// without MIS weights the result would be 2.5. Points estimate light of close walls with 16 shadow rays (see
 /// FurnaceCache).
 TEST(GatherInPixels, AFurnaceIsUniform) {
   HandMadeScene scene;
@@ -93,10 +94,10 @@ TEST(GatherInPixels, AFurnaceIsUniform) {
   EXPECT_LT(radiance.sigma(), 0.003);
 }
 
-/// What gloss shows is read, too, where its rays spread wider than the points' blur. A white metal plate in the furnace
-/// (2 everywhere) reflects all, so it shows 2, rough or smooth. Of 2000 rays from a rough one most end at the wall they
-/// meet: 0.02 m to 2 m away, a few radii of 0.1 m. A mirror shows the wall's own shadows and folds: from there a ray of
-/// the hemisphere goes on, at least one more to each.
+/// Glossy reflections read points, too, where their rays spread wider than the points' blur. A white metal plate in the
+/// furnace (2 everywhere) reflects all light, so it shows 2, rough or smooth. Most of 2000 rays from a rough plate end
+/// at the wall that they meet: 0.02 m to 2 m away, a few radii of 0.1 m. A mirror shows the wall's own shadows and
+/// folds: there a gather ray continues, at least one more for each.
 TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
   for (const float roughness : {1.0f, 0.0f}) {
     HandMadeScene made;
@@ -117,8 +118,8 @@ TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
       EXPECT_EQ(total(seen), double(seen[Layer::specular].g));
       radiance.add(total(seen));
     }
-    // Light of the walls themselves is 1 by rays and shadow rays; what they reflect is 1, by points that err by 1 %
-    // (AFurnaceIsUniform).
+    // The light of the walls themselves is 1 by rays and shadow rays; the reflected light is 1, by points with an error
+    // of 1 % (AFurnaceIsUniform).
     EXPECT_NEAR(radiance.mean(), 2, 4 * radiance.sigma() + 0.01) << roughness;
     if (roughness > 0) {
       EXPECT_LT(counts.bounce, kCount * 3 / 2);
@@ -129,8 +130,8 @@ TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
   }
 }
 
-/// A cache that has no record here takes nothing away and adds nothing: with no points the one ray of the hemisphere
-/// goes on as a path, and every layer is that of the path tracer to the bit.
+/// A cache without a valid record changes nothing: without points the gather ray continues as a path, and every layer
+/// equals that of the path tracer to the bit.
 TEST(MissingRecords, LeaveThePathAsItIs) {
   const test::Cornell c;
   const RecordStore none;
@@ -149,8 +150,8 @@ TEST(MissingRecords, LeaveThePathAsItIs) {
   EXPECT_LE(counts.gathered, 64u * 36);
 }
 
-/// One record, of irradiance 7, stands on the floor, none on the ceiling. On the floor it tells the light, and the path
-/// goes no farther than to what its next ray meets; on the ceiling that ray ends at points.
+/// One record of irradiance 7 lies on the floor, none on the ceiling. On the floor it gives the light, and the path
+/// ends at the first hit of its next ray. On the ceiling this ray ends at points.
 TEST(MissingRecords, TakeOneRayEach) {
   test::ClosedBox box(Shape::cube, 0.5f);
   const Chain chain(box.scene, 20000, 5000, 4);
@@ -185,9 +186,9 @@ TEST(MissingRecords, TakeOneRayEach) {
   EXPECT_LT(ceiling.bounce, kCount * 3 / 2) << "most end at the first";
 }
 
-/// A plane under a uniform sky of 3, all else known to be nothing: rho L by light sampling and the ray that goes on,
-/// each with its weight. 4096 of a scrambled Sobol sequence leave far less than 0.3 % (environment_render_test); one of
-/// them alone is off by tens of per cent.
+/// A plane under a uniform sky of 3, all other light known to be 0: rho L by light sampling and the continued ray, each
+/// with its weight. 4096 samples of a scrambled Sobol sequence leave far less than 0.3 % (environment_render_test); one
+/// of the two alone is off by tens of per cent.
 TEST(MatteEnds, JoinLightSamplingUnderASky) {
   HandMadeScene made;
   made.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.5f)));
@@ -209,8 +210,8 @@ TEST(MatteEnds, JoinLightSamplingUnderASky) {
   EXPECT_NEAR(sum, 1.5, 0.003 * 1.5);
 }
 
-/// A grey room 4 m wide, a lamp under its ceiling that shines down, a sheet of polished metal that stands in it, throws
-/// light on the floor and shows the room. From the eye all five layers are to be seen.
+/// A grey room 4 m wide with a lamp under its ceiling that shines down. A sheet of polished metal in the room throws
+/// light on the floor and shows the room. The camera sees all five layers.
 struct RoomWithMirror {
   HandMadeScene made;
   RoomWithMirror() {
@@ -243,13 +244,13 @@ std::array<double, kLayerCount> means(const RenderScene& scene, const CameraView
   return sum;
 }
 
-/// Layer by layer against path tracing: points alone, records and points, each without a photon map, when paths find
-/// the caustic light, and with one. What is counted twice or lost would be a whole kind of light.
+/// Layer by layer against path tracing: points alone, and records and points, each without a photon map, when paths
+/// find the caustic light, and with one. Light that is lost or counted twice would be a whole kind of light.
 ///
-/// Emission, direct light and caustic light without photons are of the very samples of the path tracer: equal but for
-/// the order of sums. Else the path tracer's own noise of 2304 x 256 samples is 0.1 % of indirect, 1.5 % of specular
-/// and 2.5 % of caustic light (between seeds); points and the photons of one seed err by 1 %, records that are valid
-/// four pixels around them, 0.2 m here, by 2 %.
+/// Emission, direct light and caustic light without photons come from the path tracer's own samples: equal except for
+/// the order of sums. Otherwise the noise of the path tracer's 2304 x 256 samples is 0.1 % of indirect, 1.5 % of
+/// specular and 2.5 % of caustic light (between seeds). Points and photons of one seed have an error of 1 %, records
+/// that are valid for four pixels around, 0.2 m here, 2 %.
 TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   RoomWithMirror room;
   Chain chain(room.made, 400000, 8000, 500);
@@ -283,9 +284,9 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
     }
 }
 
-/// A room with a point lamp: from a place whose indirect and caustic light is known a ray could meet a light only where
-/// one can be met. Without that ray the same light to the bit, and no bounce but those of gloss, of which a matte room
-/// has none.
+/// A room with a point lamp: from a place with known indirect and caustic light a ray is only useful if it can meet a
+/// light. Without this ray the light is the same to the bit, and only glossy bounces remain, of which a matte room has
+/// none.
 TEST(KnownPaths, NoRayGoesOnWhereNoLightCanBeMet) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));

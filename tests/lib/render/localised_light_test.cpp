@@ -1,5 +1,5 @@
-// Localised light: updated records where little changes, gathered ones where much does and on what moves, both in
-// between.
+// Localised light: updated records where light changes little, gathered ones where it changes much and on movers, both
+// in between.
 #include "lib/render/localised_light.h"
 
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ SurfacePoint place(Vec3 position, std::uint32_t object = 0) {
   return point;
 }
 
-/// Three records 10 m apart with static irradiance 10 and E_t = 8, of relative influence 0, .105 and 1; E_y = 4 beside
-/// the last two.
+/// Three records 10 m apart with static irradiance 10 and E_t = 8, of relative influence 0, .105 and 1; gathered
+/// records with E_y = 4 next to the last two.
 struct Records {
   std::vector<IrradianceRecord> standing{record({0, 0, 0}, 10), record({10, 0, 0}, 10), record({20, 0, 0}, 10)};
   std::vector<RecordChange> changes{{Rgb(8.0f), 0}, {Rgb(8.0f), 1.05f}, {Rgb(8.0f), 10}};
@@ -57,7 +57,8 @@ TEST(LocalisedLight, InfluenceDecidesWhichRecordsAreRead) {
 TEST(LocalisedLight, OnWhatMovesOnlyGatheredRecordsCount) {
   const LocalisedLight light = Records().light();
   EXPECT_EQ(at(light, place({10, 0, 0}, kMover)), 4);
-  EXPECT_EQ(at(light, place({0, 0, 0}, kMover)), -1);  // none gathered there: a ray of the hemisphere is to find it
+  // No record was gathered there: a gather ray must estimate the light.
+  EXPECT_EQ(at(light, place({0, 0, 0}, kMover)), -1);
 }
 
 TEST(LocalisedLight, WhatIsMissingIsNotMadeUp) {

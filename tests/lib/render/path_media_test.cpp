@@ -1,4 +1,4 @@
-// Paths in media: a furnace stays a furnace, layers are told apart, the camera may stand inside.
+// Paths in media: a furnace stays a furnace, layers are separated, the camera may stand inside.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,8 +49,8 @@ Material glowing(float rho, float radiance) {
   return material;
 }
 
-/// A closed room that sends the same radiance 1 / (1 - rho) everywhere; smoke without absorption cannot be seen in it,
-/// from outside nor from within, whatever its phase function.
+/// A closed room with the uniform radiance 1 / (1 - rho): smoke without absorption is invisible in it, from outside and
+/// from inside, for any phase function.
 TEST(PathMedia, WhiteSmokeIsNotSeenInAFurnace) {
   for (const float g : {0.0f, 0.9f, -0.5f}) {
     test::HandMadeScene scene;
@@ -65,9 +65,9 @@ TEST(PathMedia, WhiteSmokeIsNotSeenInAFurnace) {
   }
 }
 
-/// The same of optical depth 1000, where paths take thousands of collisions: roulette that ends them after some
-/// hundreds leaves a tenth of the light to paths of large weight that 1200 do not see. A path's deviation is 1.4, as
-/// walls add a geometric number of ones: .04 of the mean.
+/// The same with optical depth 1000, where paths have thousands of collisions. Russian roulette that ended them after
+/// some hundreds would leave a tenth of the light to paths of large weight that 1200 paths do not find. A path's
+/// deviation is 1.4, because walls add a geometric number of ones: .04 of the mean.
 TEST(PathMedia, ThickWhiteSmokeLosesNothing) {
   test::HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, glowing(0.5f, 1));
@@ -87,15 +87,15 @@ TEST(PathMedia, BlackSmokeDims) {
   EXPECT_EQ(mean.layers[Layer::volume].g, 0);
 }
 
-/// A thin medium, one scattering: radiance of sigma_s L E phase over the way. A point light of 1 W/sr at 1 m beside a
-/// way of 0.01 m through the smoke, far from it: j = sigma I / d^2 / 4 pi.
+/// A thin medium with single scattering: the radiance is the integral of sigma_s E phase along the ray. A point light
+/// of 1 W/sr at 1 m from a path of 0.01 m through the smoke: j = sigma I / d^2 / 4 pi.
 TEST(PathMedia, SingleScatteringByClosedForm) {
   test::HandMadeScene scene;
   scene.add_point_light({0, 1, 0}, Rgb(1.0f));
   scene.set_media(test::cube_of_medium({}, 0.02, {.sigma_t = 5, .albedo = Rgb(0.5f)}));
   const Mean mean = mean_of(scene.frame(), {{-0.9f, 0, 0}, {1, 0, 0}}, 40000);
-  // Depth 0.1 of which 1 - exp(-0.1) collides; before that light has lost 5 x 0.01 in the mean on its way in. Twice
-  // scattered: below 1 %.
+  // Depth 0.1, of which 1 - exp(-0.1) collides; before that, light has lost 5 x 0.01 in the mean on its way in. Light
+  // that scatters twice: below 1 %.
   const double exact = -std::expm1(-0.1) * 0.5 / (4 * M_PI) * std::exp(-0.05);
   EXPECT_NEAR(mean.value, exact, 4.5 * mean.deviation + 0.03 * exact);
   EXPECT_NEAR(double(mean.layers[Layer::volume].g), mean.value, 1e-6);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/closed_box.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -77,7 +78,7 @@ TEST(PathTracer, FurnaceIsUniform) {
   RayCounts counts;
   Estimate mean[3];
   for (int i = 0; i < 60000; ++i) {
-    const Vec3 travel = sample_sphere(PathRandom(1, std::uint64_t(i)).get2(0, Purpose::test));
+    const Vec3 travel = test::sample_sphere(PathRandom(1, std::uint64_t(i)).get2(0, Purpose::test));
     const Layers seen = trace_eye_path({tracer, lights}, {{0.3f, -0.2f, 0.1f}, travel, 0, INFINITY},
                                        PixelRandom(7, std::uint64_t(i), 0), nullptr, counts);
     for (int c = 0; c < 3; ++c) mean[c].add(total(seen, c));

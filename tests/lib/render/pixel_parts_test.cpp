@@ -1,4 +1,4 @@
-// Parts of a pixel's samples: that each has the number it was given, evenly, and that no number changes the mean.
+// Parts of a pixel's samples: each camera ray has its share, and no number of samples changes the mean.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,9 +12,9 @@ namespace {
 using test::Cornell;
 using test::HandMadeScene;
 
-/// Of 7 camera rays that share 3, 7, 10 or 28 samples each has floor or ceiling of its share, all together that number,
-/// and numbers of samples go on without a gap. Over 4000 pixels each ray has the same share, within 4 sigma of a number
-/// that is one or the other.
+/// Of 7 camera rays that share 3, 7, 10 or 28 samples, each has the floor or the ceiling of its share, all together
+/// have that number, and the indices of samples have no gap. Over 4000 pixels each ray has the same share, within 4
+/// sigma of a number that has two values.
 TEST(PixelParts, AreDealtOutEvenly) {
   for (const int count : {3, 7, 10, 28}) {
     constexpr int kPixels = 4000;
@@ -39,8 +39,8 @@ TEST(PixelParts, AreDealtOutEvenly) {
   }
 }
 
-/// Mean of a layer over a picture of 64 x 36, by parts of given numbers, each divided by its own; and its error by 16
-/// seeds.
+/// Mean of a layer over a picture of 64 x 36 with given numbers of each part, each divided by its own number; and the
+/// mean's error from 16 seeds.
 struct Told {
   double mean = 0, error = 0;
 };
@@ -65,9 +65,9 @@ Told tell(const RenderScene& scene, const CameraView& view, Layer layer, const P
   return {mean, std::sqrt(std::max(0.0, square / kSeeds - mean * mean) / (kSeeds - 1))};
 }
 
-/// A wide lamp near walls, whose light both parts find: were a part's number left out of its weight, or the two weights
-/// not made for one sample each, direct light would be 10 % off and more. Indirect light is the onward part's alone. 4
-/// sigma.
+/// A wide lamp close to walls, whose light both parts find: if a part's number were missing in its weight, or the two
+/// weights were not those of one sample each, direct light would be off by 10 % and more. Indirect light is in the
+/// onward part alone. 4 sigma.
 TEST(PixelParts, NoNumberChangesTheMean) {
   const Cornell c;
   for (const Layer layer : {Layer::direct, Layer::indirect}) {

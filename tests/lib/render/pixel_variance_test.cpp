@@ -1,4 +1,4 @@
-// The variance that a frame tells of its pixels: of independent samples, of stratified ones, of one sample.
+// The variance that a frame reports of its pixels: for independent samples, for stratified ones, for one sample.
 #include "lib/render/pixel_variance.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ Layers grey_light(float direct, float emission = 0) {
   return layers;
 }
 
-/// The mean of n samples of variance 1 has variance 1/n, for odd n too. 20 000 pixels; an estimate with one degree of
-/// freedom scatters by sqrt(2) of its value: 4 sigma of the mean are 4 %.
+/// The mean of n samples of variance 1 has the variance 1/n, for odd n, too. 20 000 pixels; an estimate with one degree
+/// of freedom scatters by sqrt(2) of its value: 4 sigma of the mean are 4 %.
 TEST(PixelVariance, IsThatOfTheMeanOfIndependentSamples) {
   std::mt19937 random(1);
   std::normal_distribution<float> normal(5, 1);
@@ -50,8 +50,8 @@ TEST(PixelVariance, EmissionCountsInTheImageAndNotInDiffuseLight) {
   EXPECT_EQ(halves.variance(kImageLayers), Rgb(4.0f));  // (1 - 5)^2 / 4
 }
 
-/// Each part is divided by its own number of samples: of 6 camera rays, 12 samples of light of variance 1 and 3 rays
-/// onward of variance 4 the mean has 1/12 + 4/3. 20 000 pixels as above.
+/// Each part is divided by its own number of samples: for 6 camera rays, 12 samples of light of variance 1 and 3 rays
+/// onward of variance 4 the mean has the variance 1/12 + 4/3. 20 000 pixels as above.
 TEST(PixelVariance, PartsAreDividedByTheirOwnNumbers) {
   std::mt19937 random(2);
   std::normal_distribution<float> normal(0, 1);
@@ -74,10 +74,10 @@ TEST(PixelVariance, PartsAreDividedByTheirOwnNumbers) {
   EXPECT_NEAR(sum / kPixels, 1.0 / 12 + 4.0 / 3, 0.04 * (1.0 / 12 + 4.0 / 3));
 }
 
-/// Of a frame, eight samples a pixel, its variance summed over pixels against that between 24 seeds. Halves of
+/// The variance of a frame with eight samples per pixel, summed over pixels, against that between 24 seeds. Halves of
 /// stratified samples are less well stratified than the whole: where the error's variance falls as n^-2, as at straight
-/// edges, that makes twice too much; 24 seeds know it within a fifth. (Samples of even and odd number, each half of
-/// them in one half of the pixel, come out nine times too large.)
+/// edges, the estimate is twice too large. 24 seeds measure it within a fifth. (If samples of even and odd number
+/// formed the halves, each in one half of the pixel, the estimate would be nine times too large.)
 TEST(PixelVariance, KnowsStratification) {
   const test::Cornell c;
   const test::NoLight none(c.tracer);
@@ -130,11 +130,11 @@ TEST(PixelVariance, EverySampleIsCounted) {
 }
 
 /// The channels' halves m + n and m - n are uncorrelated: the covariance of their errors over 48 seeds, averaged over
-/// pixels, is 0 beside their variance v. Each pixel's estimate of the covariance scatters by v / sqrt(47); over n
-/// pixels like these, of which few carry most (the sum of v^2 over the square of the sum of v, here 1 / 150), by v /
-/// sqrt(47 x 150) = .012 v. The share of a frame is known by its 84 pixels that are rendered twice, of which some 20
-/// count: by sqrt(3 / 20) = .4 of itself, over the seeds by .06. The band is .15. (Without the share the covariance is
-/// -.42 v.)
+/// pixels, is 0 compared with their variance v. Each pixel's estimate of the covariance scatters by v / sqrt(47). Over
+/// n pixels like these, of which few carry most (the sum of v^2 over the square of the sum of v, here 1 / 150), the
+/// mean scatters by v / sqrt(47 x 150) = .012 v. The share of a frame comes from its 84 pixels that are rendered twice,
+/// of which some 20 carry weight: an error of sqrt(3 / 20) = .4 of itself, over the seeds .06. The band is .15.
+/// (Without the share the covariance is -.42 v.)
 TEST(PixelVariance, ChannelHalvesAreUncorrelated) {
   const test::Cornell c;
   const test::NoLight none(c.tracer);
@@ -170,8 +170,8 @@ TEST(PixelVariance, ChannelHalvesAreUncorrelated) {
   }
 }
 
-/// Two samples, 1 and 5, in one half each: half their difference, -2, times the root of a share of a quarter. What was
-/// taken from the pixel, 1.5 of 3, is taken from it as well.
+/// Two samples, 1 and 5, in one half each: half their difference, -2, times the root of a share of a quarter. Light
+/// taken from the pixel, 1.5 of 3, is taken from the noise as well.
 TEST(PixelVariance, NoiseIsAShareOfTheHalvesDifference) {
   LayerImage layers;
   layers.width = 2, layers.height = 1;

@@ -1,4 +1,4 @@
-// What a rough frame measures of scenes that are known.
+// Measurements of a rough frame in known scenes.
 #include "lib/render/rough_frame.h"
 
 #include <gtest/gtest.h>
@@ -30,10 +30,10 @@ SceneFrame room(test::HandMadeScene& scene) {
   return scene.frame();
 }
 
-/// A closed room without gloss: every camera ray meets a wall, no ray leaves. A path takes two rays at least. One that
-/// ends at a point takes the camera ray, the ray onward and their light samples, and no more where points stand for
-/// hits: less than a path. The variance of all light is that of direct and of indirect light, which are drawn apart and
-/// are not opposed: at least the former's.
+/// A closed room without gloss: every camera ray meets a wall, and no ray leaves. A path takes at least two rays. A
+/// path that ends at a point takes the camera ray, the ray onward and their light samples, and no more if points
+/// represent the hits: fewer than a path. The variance of all light is that of direct plus that of indirect light,
+/// which are drawn independently: at least the former.
 TEST(RoughFrame, OfAClosedRoom) {
   test::HandMadeScene scene;
   const RoughFrame rough = rough_of(room(scene));
@@ -49,8 +49,8 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_EQ(rough.missed_caustic.square, 0);
 }
 
-/// Measuring ends when the answer is known: paths are measured all the same, and what is left out is at most what it is
-/// found to be.
+/// The measurement ends when the answer is known. Paths are still measured, and the reported work and error of the
+/// others are lower bounds of what a full measurement finds.
 TEST(RoughFrame, EndsWhenTheAnswerIsKnown) {
   test::HandMadeScene scene;
   const SceneFrame frame = room(scene);
@@ -69,17 +69,17 @@ TEST(RoughFrame, EndsWhenTheAnswerIsKnown) {
   EXPECT_LE(paths.gather.all, whole.gather.all);
 }
 
-/// Records do not get more when pixels do, as long as radii are not limited by pixels: 20 cm and more here, as what is
-/// seen is 1 m away and more, and a pixel of 64 is 5 cm wide: a record is then valid over 4 of them. Of 640 pixels it
-/// is valid over 40. Places differ between the two: a fifth.
+/// The number of records does not grow with the number of pixels as long as pixels do not limit radii. Here radii are
+/// 20 cm and more, because all surfaces are 1 m away and more. With 64 pixels a pixel is 5 cm wide and a record is
+/// valid over 4 of them; with 640 pixels over 40. The places differ between the two: a fifth.
 TEST(RoughFrame, CountsRecordsByWhatTheySee) {
   test::HandMadeScene scene;
   const SceneFrame frame = room(scene);
   EXPECT_NEAR(rough_of(frame, 640).records / rough_of(frame, 320).records, 1, 0.2);
 }
 
-/// Squared error of a record's light: twice as bright a lamp gives four times as much, and so does what a pixel may err
-/// by. So nothing changes, to rounding.
+/// The squared error of a record's light: a lamp twice as bright makes it four times as large, and the squared error
+/// that a pixel may have, too. So the ratio stays the same up to rounding.
 TEST(RoughFrame, DoesNotDependOnTheStrengthOfLight) {
   const auto lit_by = [](float radiance) {
     test::HandMadeScene scene;
@@ -94,8 +94,8 @@ TEST(RoughFrame, DoesNotDependOnTheStrengthOfLight) {
   EXPECT_NEAR(strong.samples / weak.samples, 1, 1e-3);
 }
 
-/// A board before nothing, lit by a lamp before it: no ray from it meets a surface that could send light back but the
-/// lamp, which is black.
+/// A board in empty space, lit by a lamp in front of it: no ray from it meets a surface that could reflect light except
+/// the lamp, which is black.
 TEST(RoughFrame, OfABoardAloneHasNoIndirectLight) {
   test::HandMadeScene scene;
   scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, test::matte(Rgb(0.5f)));

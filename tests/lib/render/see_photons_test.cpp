@@ -1,4 +1,4 @@
-// Light that photons show of a wall over a floor that mirrors or does not; and what paths find of it.
+// Light that photons show on a wall above a floor with or without a mirror, and the light that paths find there.
 #include "lib/render/see_photons.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct Pilots {
   RoughFrame rough;
   std::vector<Way> ways;
 };
-/// A wall 4 m wide, z = 0, seen whole by an orthographic camera of 3.2 x 1.8 m, and a floor before it.
+/// A wall 4 m wide at z = 0, seen whole by an orthographic camera of 3.2 x 1.8 m, and a floor in front of it.
 Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
   scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, test::matte(Rgb(0.5f)));
   scene.add_quad({-4, 0, 8}, {8, 0, 8}, {8, 0, 0}, {-4, 0, 0}, floor);
@@ -45,10 +45,10 @@ Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
           ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
 }
 
-/// A point lamp 2 m before the wall and as high, I = 1 W/sr, over a mirror: it lights the wall once more from 2 m below
-/// the floor. The mean of rho / pi I cos / d^2 over the picture, cos = 2 / d, is what photons tell: of 32768 paths one
-/// in 70 arrives in the picture, which is 5 % of noise if they were independent; evenly spread they are better. No path
-/// can find that light, so it is all of their error.
+/// A point lamp of I = 1 W/sr, 2 m before the wall at the camera's height, over a mirror: its mirror image lights the
+/// wall once more from 2 m below the floor. Photons estimate the mean of rho / pi I cos / d^2 over the picture, cos = 2
+/// / d. Of 32768 paths one in 70 arrives in the picture, a noise of 5 % if they were independent; stratified ones have
+/// less. No path finds this light, so all of it is missed.
 TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
   test::HandMadeScene scene;
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
@@ -68,8 +68,8 @@ TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
   EXPECT_EQ(ways.front().method, IndirectMethod::paths);
 }
 
-/// A ceiling that shines, over gloss: paths that leave the wall for the floor meet the ceiling by way of the floor.
-/// They find what photons find.
+/// A shining ceiling over a glossy floor: paths from the wall meet the ceiling after the floor. They find the same
+/// light as photons.
 TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
   test::HandMadeScene scene;
   scene.add_quad({-4, 6, 0}, {8, 6, 0}, {8, 6, 8}, {-4, 6, 8}, test::matte(Rgb(0.0f), Rgb(1.0f)));

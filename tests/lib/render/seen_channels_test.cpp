@@ -31,9 +31,9 @@ Image seen_of_mirror(bool asked) {
   return image;
 }
 
-/// The ray goes 1 m down and 3 m up: the ceiling's image lies 4 m below the camera. Beyond the ceiling's edge (x < -.5,
-/// column 16) nothing is seen; on the right the floor itself is, at 1 m, whose light in layer specular is none: its
-/// albedo is 1.
+/// The ray goes 1 m down and 3 m up: the ceiling's image lies 4 m below the camera. Outside the ceiling's edge (x <
+/// -.5, column 16) nothing is seen. On the right the floor itself is seen at 1 m; layer specular holds none of its
+/// light: its albedo is 1.
 TEST(SeenChannels, AMirrorShowsWhatIsAboveIt) {
   const Image image = seen_of_mirror(true);
   const auto at = [&](const char* name, int x) { return image.find(name)->values[std::size_t(18 * 64 + x)]; };

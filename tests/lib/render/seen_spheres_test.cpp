@@ -1,4 +1,5 @@
-// Spheres around what cameras see: few, tight, still when the camera moves a little, none where they gain nothing.
+// Spheres around what cameras see: few, tight, constant for small movements of the camera, and none where they gain
+// nothing.
 #include "lib/render/seen_spheres.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +13,8 @@
 namespace tempolux {
 namespace {
 
-/// `count` places on the walls of a cube of this size around `middle`, seen from its middle, and `far` more on a ground
-/// that reaches `reach` to each side.
+/// `count` places on the walls of a cube of this size around `middle`, seen from its middle, and `far` places on a
+/// ground that reaches `reach` to each side.
 std::vector<WeighedPlace> room(Vec3d middle, double size, int count, int far = 0, double reach = 0) {
   std::vector<WeighedPlace> places;
   for (int i = 0; i < count + far; ++i) {
@@ -51,7 +52,7 @@ TEST(SpheresAround, ARoomInAWideLandIsHeldByFewSmallOnes) {
   }
 }
 
-/// What is seen of the land beyond, a hundredth, does not spread the photons: the room keeps its small spheres.
+/// A view of a hundredth of distant land does not spread the photons: the room keeps its small spheres.
 TEST(SpheresAround, AGlanceOutDoesNotWidenThem) {
   const std::vector<formats::ViewSphere> spheres = spheres_around(room({5, 2, 5}, 4, 3000, 30, 500), 700);
   ASSERT_FALSE(spheres.empty());
@@ -73,7 +74,7 @@ TEST(SpheresAround, NothingSeenHasNone) {
   EXPECT_TRUE(spheres_around({WeighedPlace{{0, 0, 0}, 1, 1}}, 10).empty());
 }
 
-/// All places at one point: one cell, of finite size, however deep it could go.
+/// All places at one point: one cell of finite size, although it could be divided further.
 TEST(SpheresAround, OnePlaceIsOneCell) {
   const std::vector<formats::ViewSphere> spheres =
       spheres_around({WeighedPlace{{10, 1, 3}, 1, 2}, WeighedPlace{{10, 1, 3}, 1, 2}}, 1000);
@@ -117,7 +118,7 @@ class CamerasOfARoom : public testing::Test {
   std::optional<Tracer> tracer_;
 };
 
-/// Walls are seen from about 2 m, half of the picture is 1.1 m high there: cells are 1 m wide, with planes at 2/3 and
+/// Walls are seen from about 2 m, where half of the picture is 1.1 m high: cells are 1 m wide, with planes at 2/3 and
 /// 5/3 m. A step of directions is 19 degrees.
 TEST_F(CamerasOfARoom, OfACellSeeTheSame) {
   const SeenAround first = look(camera_at({0.2, 1.2, 1}, 0.02));
@@ -134,7 +135,7 @@ TEST_F(CamerasOfARoom, OfACellSeeTheSame) {
   EXPECT_EQ(twice.places.size(), first.places.size()) << "one cell";
 }
 
-/// In a corner most of the cell lies outside of the room: no eye is there.
+/// In a corner most of the cell lies outside the room: no camera is placed there.
 TEST_F(CamerasOfARoom, LookFromInsideAlone) {
   const SeenAround seen = look(camera_at({-1.9, 1.2, 1.9}, -0.7));
   ASSERT_FALSE(seen.places.empty());

@@ -15,12 +15,12 @@ using test::HandMadeScene;
 using test::matte;
 
 struct Light {
-  double walls = 0, ball = 0;  ///< mean irradiance after one scattering or more, green
+  double walls = 0, ball = 0;  ///< mean irradiance after at least one scattering, green
 };
 
 constexpr std::uint32_t kWalls = 0, kBall = 1;
 
-/// From what photons store (photon_trace.h: the flux by the shading normal), per area.
+/// From the photons' stored flux (photon_trace.h: by the shading normal), per area.
 Light by_photons(const Tracer& tracer, const Lights& lights, std::uint64_t count, double wall_area, double ball_area) {
   PhotonOptions options;
   options.photon_count = count;
@@ -32,7 +32,7 @@ Light by_photons(const Tracer& tracer, const Lights& lights, std::uint64_t count
   return {light.walls / wall_area, light.ball / ball_area};
 }
 
-/// From paths that start at uniform points into directions by the cosine to the shading normal.
+/// From paths that start at uniform points in directions that are cosine-distributed around the shading normal.
 Light by_paths(const Tracer& tracer, const Lights& lights, const test::AreaSampler& area, std::size_t triangles,
                Vec3 centre, int count) {
   RayCounts counts;
@@ -62,12 +62,12 @@ Light by_paths(const Tracer& tracer, const Lights& lights, const test::AreaSampl
 
 class SmoothBall : public testing::TestWithParam<std::tuple<int, int>> {};  // material, subdivisions
 
-/// A ball of 72 triangles, normals up to 13 degrees off, or of 32, fills a good part of a closed room. Photons: 800000
-/// paths leave 0.15 %. Paths: deviation 0.7 of the mean, 240000 places each: 0.15 %. 1.2 % is 3 sigma and the 0.5 % of
-/// the ball of 72 (below). Mirror and glass, of 8 triangles too, by 2.5 times as many: what they show of the lamp has
-/// more noise, 0.35 % then. Did photons not go where the eye falls back on the geometric normal (grazing), of a
-/// mirror 4.6, 1.9 and 1.2 % were missing. (For the interpolated normal on the ball its exact one is taken here: the
-/// same at the corners, 0.1 deg off between.)
+/// A ball of 72 triangles, with normals up to 13 degrees off, or of 32 triangles, fills a good part of a closed room.
+/// Photons: 800000 paths leave 0.15 %. Paths: a deviation of 0.7 of the mean and 240000 places each: 0.15 %. 1.2 % is 3
+/// sigma plus the 0.5 % of the ball of 72 (below). Mirror and glass, also with 8 triangles, use 2.5 times as many: the
+/// lamp that they show has more noise, 0.35 %. If photons did not scatter into directions where the camera uses the
+/// geometric normal (grazing), 4.6, 1.9 and 1.2 % of a mirror's light would be missing. (The test uses the exact normal
+/// of the ball in place of the interpolated one: they are equal at the vertices and differ by 0.1 degrees in between.)
 TEST_P(SmoothBall, PhotonsAndPathsAgree) {
   const auto [kind, subdivisions] = GetParam();
   const std::size_t triangles = std::size_t(8 * subdivisions * subdivisions);

@@ -1,4 +1,4 @@
-// Light that one sample alone claims: how much is taken, where it goes, what stays.
+// Light that a single sample found: how much is taken, where it goes, what stays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ Material smooth_metal(float reflectance) {
   return material;
 }
 
-/// A picture of four samples a pixel, part onward, all of indirect radiance 1.
+/// A picture with four samples per pixel of part onward, all of indirect radiance 1.
 struct Even {
   int width, height;
   std::vector<PathParts> parts;
@@ -66,9 +66,9 @@ double sum_of(const std::vector<Layers>& pixels, Layer layer, int channel) {
   return sum;
 }
 
-/// A sample of 1000 among ones: its pixel shows 250.75, of which it may keep the error .05 and the 1 around beside the
-/// .75 of its other samples. The other 248.95 go to so many pixels that none gets more than .05; the sum stays, by
-/// float rounding of 96000 pixels near 1: 6e-8 each.
+/// A sample of 1000 among ones: its pixel shows 250.75, of which it may keep the error .05 and the 1 of its
+/// surroundings in addition to the .75 of its other samples. The other 248.95 are spread over so many pixels that none
+/// gets more than .05. The sum stays, up to the float rounding of 96000 pixels close to 1: 6e-8 each.
 TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
   Even even(320, 300);
   const std::size_t middle = 150 * 320 + 160;
@@ -80,7 +80,7 @@ TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
     ASSERT_LE(now, left + kError + 1e-4f) << p;
   }
   EXPECT_GT(pixels[middle + 40][Layer::indirect].g,
-            1.005f);  // boxes of 65 pixels, as 33 would leave it 249 x .5625 / 33^2 = .13
+            1.005f);  // boxes of 65 pixels, because 33 would leave 249 x .5625 / 33^2 = .13
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
 }
 
@@ -112,7 +112,7 @@ TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
   }
 }
 
-/// Of a masked frame the pixels of the mask share among themselves; one alone keeps what it has.
+/// In a masked frame the pixels of the mask share light among themselves; a single pixel keeps its light.
 TEST(SpreadOutliers, MaskedPixelsShareAmongThemselves) {
   Even even(64, 48);
   even.mask.assign(even.parts.size(), 0);
@@ -131,8 +131,8 @@ TEST(SpreadOutliers, MaskedPixelsShareAmongThemselves) {
     if (!even.mask[p]) { EXPECT_EQ(pixels[p][Layer::indirect].g, 1) << p; }
 }
 
-/// Light that a pixel's samples agree on, that the pixels around show too, or that the camera itself sees is none that
-/// one sample alone claims.
+/// Light on which a pixel's samples agree, light that the pixels around show, too, and light that the camera sees
+/// itself are no outliers.
 TEST(SpreadOutliers, WhatOthersSeeTooStays) {
   Even agreed(64, 48), line(64, 48), lamp(64, 48);
   agreed.set(24 * 64 + 32, {Rgb(50.0f), Rgb(52.0f), Rgb(48.0f), Rgb(50.0f)});
@@ -146,8 +146,8 @@ TEST(SpreadOutliers, WhatOthersSeeTooStays) {
   }
 }
 
-/// A picture whose lattice of first samples was black says nothing of errors: all stays, and nothing is divided by 0.
-/// So does what is not finite.
+/// In a picture whose lattice of first samples was black no error is known: all light stays, and nothing is divided by
+/// 0. Values that are not finite stay, too.
 TEST(SpreadOutliers, WithoutAnErrorNothingMoves) {
   Even black(64, 48), wild(64, 48);
   black.error = [](double) { return 0.0; };
@@ -159,7 +159,7 @@ TEST(SpreadOutliers, WithoutAnErrorNothingMoves) {
     if (p != 77) { EXPECT_TRUE(std::isfinite(pixels[p][Layer::indirect].g)) << p; }
 }
 
-/// For a frame that a filter takes the light it filters is left alone.
+/// In a frame that will be filtered, light that the filter filters stays.
 TEST(SpreadOutliers, ForAFilterMirrorsAlone) {
   PathParts sample;
   sample.onward[Layer::indirect] = Rgb(9.0f);
@@ -175,8 +175,8 @@ TEST(SpreadOutliers, ForAFilterMirrorsAlone) {
   EXPECT_EQ(mirrors.onward.radiance.g, 0);
 }
 
-/// A room by paths, two samples a pixel, one onward: each layer's sum is that without spreading, to float rounding, and
-/// the squared error of indirect light against 256 samples is less.
+/// A room by paths, two samples per pixel, one onward: the sum of each layer is that without spreading, up to float
+/// rounding, and the squared error of indirect light against 256 samples is smaller.
 TEST(SpreadOutliers, AFrameKeepsItsLayersAndErrsLess) {
   const test::Cornell c;
   FrameOptions options;
@@ -205,9 +205,9 @@ TEST(SpreadOutliers, AFrameKeepsItsLayersAndErrsLess) {
   }
 }
 
-/// One of four samples brings 41, which four samples are too few to judge: twelve more are asked for, three of which
-/// bring it, too. Then it stays, to the bit. Of twelve that bring 1 it leaves: the pixel may keep the error and the 1
-/// around. A pixel of sixteen samples is not asked for more.
+/// One of four samples has the radiance 41, and four samples are too few to judge it. Twelve more are taken; if three
+/// of them find it, too, it stays, to the bit. If twelve find 1, it is spread: the pixel may keep the error and the 1
+/// of its surroundings. A pixel with sixteen samples gets no more.
 TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
   Even even(64, 48);
   const std::size_t claims = 20 * 64 + 30;
@@ -231,9 +231,9 @@ TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
   EXPECT_EQ(pixels_to_judge(samples, even.sums()), std::vector<std::size_t>{});
 }
 
-/// Sheets of a quarter of a pixel, 50 times as bright as the ground under a sky of radiance 1, twelve pixels apart:
-/// each of four stratified samples meets one of them once or twice, rightly. Spread or not, their pixels keep their
-/// light: the mean over all of them and eight seeds agrees within 5 %. Judged by the four samples alone they keep a
+/// Sheets of a quarter of a pixel, 50 times as bright as the ground under a sky of radiance 1, twelve pixels apart: one
+/// or two of four stratified samples meet a sheet, rightly. With or without spreading, their pixels keep their light:
+/// the mean over all of them and eight seeds agrees within 5 %. If the four samples alone decided, they would keep a
 /// third.
 TEST(SpreadOutliers, ThingsSmallerThanPixelsKeepTheirContrast) {
   test::HandMadeScene made;

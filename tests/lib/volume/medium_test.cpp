@@ -9,6 +9,7 @@
 #include "lib/core/random.h"
 #include "lib/volume/flight.h"
 #include "lib/volume/phase.h"
+#include "tests/support/sphere.h"
 
 namespace tempolux {
 namespace {
@@ -126,7 +127,7 @@ TEST(Majorants, NoPointExceedsThemAndPiecesJoin) {
   for (std::uint32_t i = 0; i < 300; ++i) {
     const Vec3 from{random.get1(i, Purpose::test, 0) * 8, random.get1(i, Purpose::test, 1) * 8 - 4,
                     random.get1(i, Purpose::test, 2) * 8 - 2};
-    const Vec3 direction = sample_sphere(random.get2(i, Purpose::test, 3));
+    const Vec3 direction = test::sample_sphere(random.get2(i, Purpose::test, 3));
     MajorantWalk walk(all.majorants(), from, direction, 7);
     float last = -1;
     for (MajorantWalk::Piece piece; walk.next(piece); last = piece.end) {

@@ -1,4 +1,4 @@
-#include "lib/filter/left_noise.h"
+#include "lib/filter/remaining_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +72,7 @@ struct Errors {
 };
 
 /// Adds the block whose first pixel is (left, top).
-void add_block(const LeftError& error, const Image& frame, int left, int top, double exposure, Errors& linear,
+void add_block(const RemainingError& error, const Image& frame, int left, int top, double exposure, Errors& linear,
                Errors& codes) {
   const auto picture = frame.rgb("");
   std::array<double, 3> sums{}, in_codes{};
@@ -97,23 +97,23 @@ void add_block(const LeftError& error, const Image& frame, int left, int top, do
 
 }  // namespace
 
-void LeftNoise::add(const Halves& raw, const Halves& filtered) {
+void RemainingNoise::add(const Halves& raw, const Halves& filtered) {
   for (std::size_t c = 0; c < 3; ++c) {
-    for (Colours* sums : {&raw_, &left_, &change_}) (*sums)[c].resize(raw.a[c].size());
+    for (Colours* sums : {&raw_, &filtered_, &change_}) (*sums)[c].resize(raw.a[c].size());
     for (std::size_t p = 0; p < raw.a[c].size(); ++p) {
       const float a = raw.a[c][p], b = raw.b[c][p], f = filtered.a[c][p], g = filtered.b[c][p];
       raw_[c][p] += (a - b) / 2;
-      left_[c][p] += (f - g) / 2;
+      filtered_[c][p] += (f - g) / 2;
       change_[c][p] += mean_of(f, g) - mean_of(a, b);
     }
   }
 }
 
-LeftError LeftNoise::error() const {
-  LeftError error{change_, left_, raw_};
+RemainingError RemainingNoise::error() const {
+  RemainingError error{change_, filtered_, raw_};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t p = 0; p < change_[c].size(); ++p) {
-      const float n = raw_[c][p], k = left_[c][p], off = change_[c][p];
+      const float n = raw_[c][p], k = filtered_[c][p], off = change_[c][p];
       error.whole[c][p] = off * off + n * (2 * k - n);
       error.noise[c][p] = k * k;
       error.known[c][p] = n * n;
@@ -121,7 +121,7 @@ LeftError LeftNoise::error() const {
   return error;
 }
 
-void tell_left_noise(const LeftError& error, Image& frame) {
+void write_remaining_noise(const RemainingError& error, Image& frame) {
   Errors linear("linear", frame), codes("codes", frame);
   std::erase_if(frame.numbers, [](const auto& number) { return number.first.starts_with(kNoise); });
   if (error.whole[0].empty() || !holds(frame, "R") || !holds(frame, "G") || !holds(frame, "B")) return;

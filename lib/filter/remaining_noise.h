@@ -1,4 +1,4 @@
-// lib/filter/left_noise.h -- estimates the error that remains in a filtered frame.
+// lib/filter/remaining_noise.h -- estimates the error that remains in a filtered frame.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace tempolux {
 
 /// Estimates of a filtered picture's squared error, by pixel and colour [(W/m^2/sr)^2]. The estimate of one pixel is
 /// very noisy; only means over many pixels are meaningful. Empty: nothing was filtered.
-struct LeftError {
+struct RemainingError {
   Colours whole;  ///< remaining noise and blur; may be negative
   Colours noise;  ///< remaining noise alone
   Colours known;  ///< variance of the raw picture, estimated from its halves
@@ -21,14 +21,14 @@ struct LeftError {
 /// halves, all of them sums over layers. An unbiased estimate of (G - truth)^2 is
 ///     (G - M)^2 - n^2 + 2 k n   [Stein: Estimation of the mean of a multivariate normal distribution, 1981],
 /// because n^2 estimates the variance of M and k n the covariance of G and M. k^2 estimates the variance of G.
-class LeftNoise {
+class RemainingNoise {
  public:
   /// Adds a layer: raw and filtered halves.
   void add(const Halves& raw, const Halves& filtered);
-  LeftError error() const;
+  RemainingError error() const;
 
  private:
-  Colours raw_, left_, change_;  ///< n, k and G - M
+  Colours raw_, filtered_, change_;  ///< n, k and G - M
 };
 
 /// Writes the root mean square of the remaining error over pixels and colours, in W/m^2/sr and in sRGB codes, to the
@@ -43,6 +43,6 @@ class LeftNoise {
 /// neighbouring pixels are correlated.
 ///
 /// If nothing was filtered or R, G and B are missing, the attributes are removed.
-void tell_left_noise(const LeftError& error, Image& frame);
+void write_remaining_noise(const RemainingError& error, Image& frame);
 
 }  // namespace tempolux

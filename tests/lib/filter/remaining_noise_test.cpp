@@ -1,5 +1,5 @@
-// The error that a filtered frame says against the one that it has.
-#include "lib/filter/left_noise.h"
+// The error that a filtered frame reports against its true error.
+#include "lib/filter/remaining_noise.h"
 
 #include <gtest/gtest.h>
 
@@ -16,15 +16,15 @@ using test::wall;
 
 constexpr int kWide = 160, kHigh = 128;
 
-/// Waves of light, in two layers of half of it each. Every pixel has noise of its own: halves LAYER + n and LAYER - n
-/// are uncorrelated if the layer's own noise and n are independent and of equal variance.
+/// Waves of light, half of it in each of two layers. Halves LAYER + n and LAYER - n are uncorrelated if the layer's
+/// noise and n are independent and have equal variance.
 float truth(int x, int y, float length) { return 1 + 0.2f * std::sin(float(x + y) / length); }
 Image waves(float length, float deviation) {
   Image frame = wall(kWide, kHigh);
   test::Noise noise(deviation / std::sqrt(2.0f));
   for (const char* layer : {"direct", "indirect"}) {
     grey(frame, layer, [&](int x, int y) { return truth(x, y, length) / 2 + noise(); });
-    test::tell_noise(frame, layer, [&](int, int) { return noise(); });
+    test::set_noise(frame, layer, [&](int, int) { return noise(); });
   }
   for (const char* c : {"R", "G", "B"}) {
     const auto part = [&](const char* layer, int x, int y) { return at(frame, std::string(layer) + "." + c, x, y); };
@@ -41,11 +41,11 @@ double error_of(const Image& frame, float length) {
   return std::sqrt(sum / (3 * kWide * kHigh));
 }
 
-/// Short waves: what is left is blur, or most of the noise. The error said is the square root of a mean of
-/// (G - M)^2 - n^2 + 2 k n; with noise s of M alone its terms differ by about 2 s^2 from pixel to pixel, so the mean of
-/// 20480 pixels in three colours errs by .008 s^2, where (.35 s)^2 is left by 4 % of the root. That what has the least
-/// estimate is taken makes it a few percent too small.
-TEST(LeftNoise, SaysTheErrorThatIsThere) {
+/// Short waves: the remaining error is blur, or most of the noise. The reported error is the square root of the mean of
+/// (G - M)^2 - n^2 + 2 k n. With noise s of M alone, its terms vary by about 2 s^2 between pixels, so the mean of 20480
+/// pixels in three colours has an error of .008 s^2; for a remaining error of .35 s this is 4 % of the root. Because
+/// the candidate with the least estimate is taken, the result is a few per cent too small.
+TEST(RemainingNoise, SaysTheErrorThatIsThere) {
   for (const float length : {3.0f, 1.2f}) {
     const Image out = test::filtered({waves(length, 0.1f)});
     const double said = out.numbers.at("tempolux:noise.linear"), is = error_of(out, length);
@@ -54,16 +54,16 @@ TEST(LeftNoise, SaysTheErrorThatIsThere) {
   }
 }
 
-/// One level of light: the exposure puts it at .18, where a code is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) of it.
-TEST(LeftNoise, CodesAreTheSlopeOfTheCurve) {
+/// Uniform light: the exposure brings it to .18, where a code is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) of it.
+TEST(RemainingNoise, CodesAreTheSlopeOfTheCurve) {
   Image frame = wall(8, 4);
   grey(frame, "", test::everywhere(3));
-  LeftError error;
+  RemainingError error;
   for (auto& plane : error.whole) plane.assign(frame.pixel_count(), 0.01f);
   for (auto& plane : error.noise) plane.assign(frame.pixel_count(), 0.005f);
   for (auto& plane : error.known) plane.assign(frame.pixel_count(), 0.04f);
-  frame.numbers["tempolux:noise.direct.codes"] = 7;  // of the raw frame
-  tell_left_noise(error, frame);
+  frame.numbers["tempolux:noise.direct.codes"] = 7;  // from the raw frame
+  write_remaining_noise(error, frame);
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), 0.1, 1e-6);
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.exposure"), 0.06, 1e-6);
   const double slope = 255 * 1.055 / 2.4 * std::pow(0.18, 1 / 2.4 - 1);
@@ -71,33 +71,33 @@ TEST(LeftNoise, CodesAreTheSlopeOfTheCurve) {
   EXPECT_FALSE(frame.numbers.contains("tempolux:noise.direct.codes"));
 }
 
-/// Long waves leave little but noise: less is never said than what the halves of the filtered frame differ by.
-TEST(LeftNoise, NoiseAloneIsSaid) {
+/// Long waves leave little but noise: the reported error is never below the difference of the filtered frame's halves.
+TEST(RemainingNoise, NoiseAloneIsSaid) {
   const Image out = test::filtered({waves(20, 0.1f)});
   const double said = out.numbers.at("tempolux:noise.linear"), is = error_of(out, 20);
   EXPECT_GT(said, is / 1.3);
   EXPECT_LT(said, is * 1.3);
 }
 
-/// The raw frame says .6 +- .1 of noise, its halves know .2: .5^2 - .2^2 is left whatever the filter does.
-TEST(LeftNoise, NoiseThatHalvesDoNotKnowStays) {
+/// The raw frame reports a noise of .6 +- .1, its halves show .2: .5^2 - .2^2 remains whatever the filter does.
+TEST(RemainingNoise, NoiseThatHalvesDoNotKnowStays) {
   Image frame = wall(8, 4);
   grey(frame, "", test::everywhere(3));
-  LeftError error;
+  RemainingError error;
   for (auto* colours : {&error.whole, &error.noise})
     for (auto& plane : *colours) plane.assign(frame.pixel_count(), 0.01f);
   for (auto& plane : error.known) plane.assign(frame.pixel_count(), 0.04f);
   frame.numbers["tempolux:noise.linear"] = 0.6;
   frame.numbers["tempolux:noise.linear_error"] = 0.1;
-  tell_left_noise(error, frame);
+  write_remaining_noise(error, frame);
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), std::sqrt(0.01 + 0.25 - 0.04), 1e-6);
 }
 
-TEST(LeftNoise, WhatIsNotFilteredSaysNothing) {
+TEST(RemainingNoise, WhatIsNotFilteredSaysNothing) {
   Image frame = wall(8, 4);
   grey(frame, "", test::everywhere(3));
   frame.numbers["tempolux:noise.codes"] = 7;
-  tell_left_noise({}, frame);
+  write_remaining_noise({}, frame);
   EXPECT_TRUE(frame.numbers.empty());
 }
 
