@@ -114,8 +114,8 @@ TEST(FrameErrorTest, OneReferenceKeepsItsNoise) {
   EXPECT_FALSE(error.reference_noise);
 }
 
-// A perfect frame against noisy halves: about half of all seeds come out negative, none is resolved, the root
-// is 0 or within noise. P(fewer than 3 or more than 21 of 24 negative) < 4e-5.
+// A perfect frame against noisy halves: about half of all seeds give a negative estimate, none is resolved, and the
+// root is 0 or within noise. P(fewer than 3 or more than 21 of 24 negative) < 4e-5.
 TEST(FrameErrorTest, BelowTheReferencesNoiseTheRootIsZeroAndUnresolved) {
   int negative = 0, resolved = 0;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
@@ -150,8 +150,8 @@ TEST(FrameErrorTest, StandardErrorAllowsForNeighboursThatErrTogether) {
   EXPECT_NEAR(std::sqrt(claimed / kSeeds), 0.1 / 32, 0.1 * 0.1 / 32);
 }
 
-// Half of the image 3 % too bright, half 3 % too dark, equal radiance: the image has no bias, its two objects
-// have.
+// Half of the image is 3 % too bright and half 3 % too dark, with equal radiance: the image has no bias, but its two
+// objects have one.
 TEST(FrameErrorTest, BiasOfAnObjectHidesInTheWholeImage) {
   Image x = rgb_image(64, 64, [](std::size_t i, std::uint32_t) { return i % 64 < 32 ? 1.03 : 0.97; });
   Channel& ids = x.add_ids("id.object");

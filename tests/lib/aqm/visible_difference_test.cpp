@@ -1,5 +1,5 @@
-// tests/lib/aqm/visible_difference_test.cpp -- what the model sees of gratings whose threshold is known, and
-// what must hold of any pair.
+// tests/lib/aqm/visible_difference_test.cpp -- the model's response to gratings whose threshold is known, and
+// properties that hold for any pair of pictures.
 #include "lib/aqm/visible_difference.h"
 
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ double threshold_times_sensitivity(double frequency, double degrees, double spee
   return kHalfSeen / std::pow(-std::log1p(-p), 1 / kPsychometricSlope);
 }
 
-// Two estimates that err alike, each by d / sqrt(2) of their difference d: m + a and m - a are judged as m + a /
-// sqrt(2) beside m - a / sqrt(2). Grey is below the display's white, so that nothing is clipped; mixtures round in
+// Two estimates with equal errors, each d / sqrt(2) of their difference d: m + a and m - a are compared as m + a /
+// sqrt(2) and m - a / sqrt(2). Grey is below the display's white, so that nothing is clipped; mixtures round in
 // float32.
 TEST(VisibleDifferenceTest, OfTwoEstimatesIsJudgedWhatEitherErrsBy) {
   const auto image = [](double amplitude) {
@@ -154,8 +154,8 @@ TEST(VisibleDifferenceTest, AUniformChangeIsNotSeen) {
   for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_LT(p, 1e-3);
 }
 
-// What does not count is taken for equal, whatever it holds, and does not leak into its neighbours. Those
-// differ by .01 cd/m2, which nobody sees, so that none of them is passed over as equal.
+// Masked pixels count as equal, whatever they hold, and do not affect their neighbours. The neighbours differ by .01
+// cd/m2, which nobody sees, so that none of them is skipped as equal.
 TEST(VisibleDifferenceTest, WhatDoesNotCountIsNotSeen) {
   DisplayedPair pair = grating(1.0 / 12, 0, 0, 64);
   for (float& value : pair.second) value += 0.01f;

@@ -42,7 +42,7 @@ std::string descriptors() {
   return list;
 }
 
-/// What a library does that hostile data has taken over. Says "done" if nobody stops it.
+/// Does what a library would do that a hostile file has taken over. Prints "done" if nothing stops it.
 void do_harm(const std::string& kind) {
   const char* const canary = std::getenv("CHILD_PROBE_CANARY");
   if (kind == "open") ::open("/etc/hostname", O_RDONLY);
@@ -57,7 +57,7 @@ void do_harm(const std::string& kind) {
   print("done");
 }
 
-/// As a helper should be: works, with memory, exceptions and words.
+/// Behaves well: works, with memory, exceptions and messages.
 int behave() {
   std::vector<std::string> texts;
   for (int i = 0; i < 1000; ++i) texts.emplace_back(std::size_t(i) * 1000, 'x');

@@ -1,5 +1,5 @@
-// Helpers that die, hang, print too much or too little and ask for too much memory: each gives one line, and nothing of
-// it is left behind.
+// Child programs that die, hang, print too much or too little, or ask for too much memory: each gives one line, and no
+// process or descriptor remains.
 #include "lib/core/child_process.h"
 
 #include <gtest/gtest.h>
@@ -180,7 +180,7 @@ TEST_F(ChildProcess, WorksInManyThreadsAtOnce) {
 }
 
 TEST_F(ChildProcess, WorksWhereTheCallerIgnoresItsChildren) {
-  // The kernel then waits for children itself, and how they ended is not told.
+  // The kernel then reaps children itself, and their exit status is unknown.
   const auto handler = std::signal(SIGCHLD, SIG_IGN);
   EXPECT_EQ(text_of(run("echo", "abc")), "abc");
   EXPECT_EQ(run("hang", "", {.wall_s = 1}).trouble, "gave no answer within 1 s");

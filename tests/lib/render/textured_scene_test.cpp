@@ -1,5 +1,5 @@
-// Light and textures: answers known on paper for emission, coverage, normal maps, unlit surfaces and reflectance that
-// varies over a surface.
+// Light and textures: closed forms for emission, coverage, normal maps, unlit surfaces and reflectance that varies over
+// a surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,8 +50,9 @@ HandMadeScene half_dark_lamp(bool alpha = false) {
 constexpr float kHalf = 0.502886f;  // sRGB code 188
 
 TEST(EmissiveTexture, IrradianceIsThatOfTheBrightHalf) {
-  // Samples have L cos / pdf between 0 and about twice their mean; N = 2^14 stratified in two dimensions but for the
-  // edge of the texture: sigma about 2 / sqrt(N) of the mean at worst, 1.6 %; stratified far less.
+  // A sample L cos / pdf lies between 0 and about twice the mean. N = 2^14 samples are stratified in two dimensions
+  // except at the edge of the texture: sigma is about 2 / sqrt(N) of the mean at worst, 1.6 %, and far less if
+  // stratified.
   for (const bool alpha : {false, true}) {
     HandMadeScene scene = half_dark_lamp(alpha);
     const Lights lights(scene.frame(), table_of(scene));
@@ -74,8 +75,8 @@ TEST(EmissiveTexture, IrradianceIsThatOfTheBrightHalf) {
 }
 
 TEST(EmissiveTexture, PhotonsCarryTheTexelsLight) {
-  // pi L A of the bright half, 2 m^2. Half of the photons carry all: sigma = 1 / sqrt(N), 0.8 % for N = 2^14; here
-  // the points are a lattice.
+  // pi L A of the bright half, 2 m^2. Half of the photons carry all flux: sigma = 1 / sqrt(N), 0.8 % for N = 2^14; here
+  // the points form a lattice.
   for (const bool alpha : {false, true}) {
     HandMadeScene scene = half_dark_lamp(alpha);
     const Lights lights(scene.frame(), table_of(scene));
@@ -106,8 +107,9 @@ TEST(EmissiveTexture, TrianglesThatAreDarkAllOverAreNoLights) {
   EXPECT_NEAR(mean_emission_share(scene.frame(), 0, 0).r + mean_emission_share(scene.frame(), 0, 1).r, 2.0f / 8, 0.025);
 }
 
-// Small against the texels and large: what few points say of the mean. A ramp from 0 to 1 over two texels, read between
-// their middles, is its value at the triangle's centroid; stripes of 0 and 1, 4 and 400 of them, have the mean 1/2.
+// Textures with texels larger and smaller than the triangle: what a few points give as the mean. A ramp from 0 to 1
+// over two texels, interpolated between their middles, has as its mean the value at the triangle's centroid; 4 or 400
+// stripes of 0 and 1 have the mean 1/2.
 TEST(EmissiveTexture, MeansOverATriangleOfAnySize) {
   const auto lamp = [](int texels, float left, float right) {
     HandMadeScene scene;
@@ -123,13 +125,13 @@ TEST(EmissiveTexture, MeansOverATriangleOfAnySize) {
   const auto [lower, upper] = lamp(2, 0.25f, 0.75f);
   EXPECT_NEAR(lower, 1.0 / 3, 1e-4);
   EXPECT_NEAR(upper, 2.0 / 3, 1e-4);
-  // A stripe is two parts wide or more: a sixteenth of them lie in the wrong one, or a level of grey is 1/255.
+  // A stripe is at least two parts wide: a sixteenth of them lie in the wrong stripe, or a level of grey is 1/255.
   for (const int texels : {8, 800})
     for (const float mean : lamp(texels, 0, 1)) EXPECT_NEAR(mean, 0.5, 1.0 / 16) << texels;
 }
 
-// MASK with an animated alpha: nothing of the lamp is there in the first frame, all of it in the second. What the table
-// keeps of the first must not dim the second.
+// MASK with an animated alpha: in the first frame the lamp is invisible, in the second it is complete. Values that the
+// table keeps from the first frame must not dim the second.
 TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
   HandMadeScene hidden, shown;
   for (HandMadeScene* scene : {&hidden, &shown}) {
@@ -143,7 +145,7 @@ TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
   const std::vector<SceneFrame> frames{hidden.frame(), shown.frame()};
   const EmissionTable table = build_emission_table(frames);
   EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 0.01 * 8 * M_PI,
-              1e-4);  // the least share: for whom all is hidden
+              1e-4);  // the least share, for a lamp that is hidden completely
   EXPECT_NEAR(Lights(frames[1], table).total_flux().r, 8 * M_PI, 1e-4);
 }
 
@@ -189,7 +191,7 @@ TEST(Alpha, BlendMeetsTheShareAlphaOfTheRays) {
   }
 }
 
-/// Red at y = -1, green at y = 1: linear between, and the factor multiplies it. Roughness and all else stay.
+/// Red at y = -1, green at y = 1: linear in between, times the factor. Roughness and all other properties stay.
 TEST(VertexColours, MultiplyBaseColour) {
   HandMadeScene scene;
   Material material = matte({0.8f, 0.4f, 0.6f});
@@ -210,8 +212,7 @@ TEST(VertexColours, MultiplyBaseColour) {
   EXPECT_EQ(colour_at(3, 0.5f), (Rgb{0.8f, 0.4f, 0.6f}));
 }
 
-/// Alpha .2 below, .6 above, times that of the texture: .8 on the left, .2 on the right. 4 sigma of 20000 draws as
-/// above.
+/// Alpha .2 below, .6 above, times the texture's: .8 on the left, .2 on the right. 4 sigma of 20000 draws as above.
 TEST(VertexColours, MultiplyAlpha) {
   for (const bool textured : {false, true})
     for (const bool occlusion : {false, true}) {
@@ -280,7 +281,7 @@ TEST(Alpha, HalfTransparentQuadBeforeALampDimsItByAlpha) {
   scene.add_point_light({0, 0, 3}, Rgb(10.0f));
   const Tracer tracer(scene.frame());
   const Lights lights(scene.frame(), table_of(scene));
-  // Straight below, seen from the side under the veil: direct light is 0.6 (albedo/pi I / d^2). N = 40000 draws of
+  // Straight below, seen from the side under the veil: direct light is 0.6 (albedo/pi I / d^2). N = 40000 draws with
   // probability 0.6: sigma = sqrt(0.4 / 0.6 / N) = 0.4 %.
   double direct = 0;
   constexpr int kSamples = 40000;
@@ -296,8 +297,8 @@ TEST(Alpha, HalfTransparentQuadBeforeALampDimsItByAlpha) {
 }
 
 TEST(Alpha, PhotonsOnAVeilStandForAllThatArrive) {
-  // A veil of alpha 0.25 under a point light on its axis: flux that arrives is that of the solid angle of the square,
-  // whatever alpha. Seen from height 1 over its centre a square of side 2 fills a sixth of the sphere: 4 pi I / 6.
+  // A veil of alpha 0.25 under a point light on its axis: the flux that arrives is that of the solid angle of the
+  // square, for any alpha. From height 1 above its centre a square of side 2 fills a sixth of the sphere: 4 pi I / 6.
   HandMadeScene scene = veil(Material::Alpha::blend, 0.25f, false);
   scene.add_point_light({0, 0, 1}, Rgb(1.0f));
   const Tracer tracer(scene.frame());
@@ -352,7 +353,8 @@ TEST(NormalMap, TiltsAsTheSpecificationSays) {
 }
 
 TEST(NormalMap, ATiltedNormalIsLitLikeATiltedPlane) {
-  // Light from straight above on a matte plane whose map tilts by 45 degrees: cos 45 of what the plain one gets.
+  // Light from straight above on a matte plane whose map tilts normals by 45 degrees: cos 45 of the plain plane's
+  // light.
   HandMadeScene scene;
   Material material = matte(Rgb(0.8f));
   material.textures.emplace().normal = texture_of_image();
@@ -369,8 +371,8 @@ TEST(NormalMap, ATiltedNormalIsLitLikeATiltedPlane) {
   EXPECT_NEAR(layers[Layer::direct].g, 0.8 / M_PI * std::sqrt(0.5), 2e-3);
 }
 
-/// A plate of side 2 under a normal map of stripes that lean 45 degrees to the left and to the right by turns; no
-/// stripes: plain.
+/// A plate of side 2 with a normal map of stripes that lean 45 degrees to the left and to the right alternately;
+/// without stripes: plain.
 void add_ridges(int stripes, HandMadeScene& scene) {
   Material plate = matte(Rgb(0.5f));
   if (stripes > 0) {
@@ -403,9 +405,9 @@ constexpr float kSlanting = 75 * kPi / 180;
 /// Cosines of light at 75 degrees to a stripe that leans 45 degrees towards it, and to the plate.
 const double kTowards = std::cos(kPi / 6), kLevel = std::cos(kSlanting);
 
-/// A lamp 3 m off at 75 degrees; h and a: what it is above a place and aside of it. A stripe that leans towards it gets
-/// (a + h) / (h sqrt 2) times what the plane gets, the next one nothing. 3 800 photons: 1.7 % of noise, most of it the
-/// same on both; codes are good for 1 %.
+/// A lamp 3 m away at 75 degrees. h and a are its height above a place and its horizontal distance. A stripe that leans
+/// towards it gets (a + h) / (h sqrt 2) times the light of the plane, the next one none. 3 800 photons: 1.7 % of noise,
+/// most of it the same on both; codes are accurate to 1 %.
 TEST(NormalMap, PhotonsOnFineRidgesFollowEachOfThem) {
   const Vec3 lamp{-3 * std::sin(kSlanting), 0, 3 * std::cos(kSlanting)};
   double plain = 0, ridges = 0;
@@ -420,14 +422,14 @@ TEST(NormalMap, PhotonsOnFineRidgesFollowEachOfThem) {
               0.03 * ridges / plain);
 }
 
-/// Two halves that lean 45 degrees inwards, a lamp 50 m above: cos 45 of what the plane gets, and 1 % more, as the lamp
-/// is half a metre to the side on which either leans.
+/// Two halves that lean 45 degrees inwards, with a lamp 50 m above: cos 45 of the plane's light, plus 1 %, because the
+/// lamp is half a metre towards the side to which either half leans.
 TEST(NormalMap, PhotonsOnBroadRidgesFollowThem) {
   const double plain = flux_on_ridges(0, {0, 0, 50}, 1'000'000);
   EXPECT_NEAR(flux_on_ridges(2, {0, 0, 50}, 1'000'000), std::sqrt(0.5) * 1.01 * plain, 0.01 * plain);
 }
 
-/// Sun of 1 W/m^2 at 75 degrees on a plate of ridges under a thin pane, which lets T of it through: caustic light.
+/// Sun of 1 W/m^2 at 75 degrees on a plate of ridges under a thin pane of transmittance T: caustic light.
 struct RidgesUnderAPane {
   HandMadeScene made;
   SceneFrame frame;
@@ -464,8 +466,8 @@ struct RidgesUnderAPane {
                  f = (rs * rs + rp * rp) / 2;
     return 1 - f;
   }
-  /// Mean caustic radiance of 400 rays from just above, each of which stands for `width` of the plate, times pi / rho:
-  /// E.
+  /// Mean caustic irradiance E = pi / rho times the radiance of 400 rays from just above, each with a footprint of
+  /// `width`.
   double seen(float width) const {
     PhotonLightOptions options;
     options.caustic_only = true;
@@ -489,10 +491,10 @@ struct RidgesUnderAPane {
   }
 };
 
-/// Who tells the stripes apart sees T cos 30 on every other one and nothing on those between; who does not sees the
-/// plate, T cos 75, as path tracing has it: 1.67 times less. 16 000 photons there: 1 % of noise; 7 % of the mean of the
-/// finer view are who of 400 rays meets which stripe; codes are half a code off, 0.0055 of the normal, which is 2.1 %
-/// of cos 75.
+/// A camera that resolves the stripes sees T cos 30 on every other one and nothing in between. A camera that does not
+/// sees the plate, T cos 75, as in path tracing: 1.67 times less. 16 000 photons: 1 % of noise. In the finer view,
+/// which of 400 rays meets which stripe adds 7 % of the mean. Codes are half a code off, 0.0055 of the normal, which is
+/// 2.1 % of cos 75.
 TEST(NormalMap, CausticLightOnRidgesIsSeenAsTheEyeTellsThemApart) {
   const RidgesUnderAPane ridges(128), plain(0);
   const double arriving = RidgesUnderAPane::transmittance();
@@ -502,7 +504,7 @@ TEST(NormalMap, CausticLightOnRidgesIsSeenAsTheEyeTellsThemApart) {
   EXPECT_NEAR(ridges.seen(0), arriving * kTowards / 2, 0.15 * arriving * kTowards / 2);
 }
 
-/// Points stand for what rays of gathering meet: each gets the light of the stripe it lies on.
+/// Points represent hits of gather rays: each has the light of the stripe on which it lies.
 TEST(NormalMap, PointsOnRidgesGetCausticLightOfTheirStripes) {
   const RidgesUnderAPane ridges(128);
   PointOptions options;
@@ -556,9 +558,9 @@ TEST(Unlit, ShowsItselfToTheEyeAndLightsNothing) {
   }
 }
 
-/// Inside a hollow sphere of matte walls every place sends the same light to every other: after one reflection light
-/// is spread evenly, so only the mean reflectance m counts: indirect irradiance is E_0 m / (1 - m) everywhere, with
-/// E_0 = F / S the light of a lamp at the centre. Here one half of the wall reflects 0.8, the other 0.2.
+/// In a hollow sphere of matte walls every place sends the same light to every other. After one reflection light is
+/// uniform, so only the mean reflectance m counts: indirect irradiance is E_0 m / (1 - m) everywhere, where E_0 = F / S
+/// is the light of a lamp at the centre. One half of the wall reflects 0.8, the other 0.2.
 HandMadeScene two_coloured_sphere() {
   HandMadeScene scene;
   Material wall = matte(Rgb(1.0f));
@@ -615,9 +617,9 @@ TEST(TexturedReflectance, EyePathsInASphere) {
   }
 }
 
-/// A closed room of side 2 of one reflectance, from an atlas: each face shows the middle quarter of an image of 128
-/// texels, 32 of them per metre. Two texels around it are like it; all else is black, and must not be seen in any
-/// light. Cones of a tenth, which mix in what is beside, lose 2 % at each reflection, 8 % in all.
+/// A closed room of side 2 with one reflectance, from an atlas: each face shows the middle quarter of an image of 128
+/// texels, 32 per metre. Two texels around the quarter are equal to it; all others are black and must not affect any
+/// light. Cones of a tenth, which would mix in these texels, would lose 2 % at each reflection, 8 % in all.
 HandMadeScene room_of_charts(float emission) {
   HandMadeScene scene;
   Material wall = matte(Rgb(1.0f), Rgb(emission));
@@ -682,10 +684,9 @@ TEST(TexturedReflectance, EyePathsSeeNothingBesideAChart) {
   EXPECT_NEAR(sum, expected, 4 * 0.008 * expected);
 }
 
-/// A plate of stripes 0.2 m wide, by turns white metal and black plastic of the same roughness, 20 m below a lamp and
-/// the top of a sphere that stores photons. kind: 0 stripes, 1 all metal, 2 all plastic. The light that goes from the
-/// stripes is the mean of metal's and plastic's: F0 is 0.52 in the mean; by the mean colour and metalness it would be
-/// 0.27.
+/// A plate of stripes 0.2 m wide, alternately white metal and black plastic of the same roughness, 20 m below a lamp
+/// and the top of a sphere that stores photons. kind: 0 stripes, 1 all metal, 2 all plastic. The light from the stripes
+/// is the mean of metal's and plastic's: F0 is 0.52 in the mean; with the mean colour and metalness it would be 0.27.
 HandMadeScene striped_plate(int kind) {
   HandMadeScene scene;
   Material plate = matte(Rgb(kind == 2 ? 0.0f : 1.0f));
