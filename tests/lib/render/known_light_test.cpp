@@ -170,16 +170,16 @@ TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   KnownLight known;
   const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f);
   ASSERT_TRUE(seen);
-  EXPECT_FALSE(known.told(seen->first, {0, 1, 0}, 100, 0)) << "there are no points";
+  EXPECT_FALSE(known.point_light(seen->first, {0, 1, 0}, 100, 0)) << "there are no points";
   known.points = &chain.lookup;
   const PointLookup::Light* light = chain.lookup.find(seen->first.position, {0, 1, 0});
   ASSERT_TRUE(light);
   ASSERT_TRUE(chain.lookup.is_uniform(*light));
   const float limit = PointLookup::kNear * light->radius;
   for (const float u : {0.0f, 0.5f, 0.999f}) {
-    EXPECT_FALSE(known.told(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;
-    ASSERT_TRUE(known.told(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)) << u;
-    EXPECT_EQ(known.told(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)->irradiance, light->all);
+    EXPECT_FALSE(known.point_light(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;
+    ASSERT_TRUE(known.point_light(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)) << u;
+    EXPECT_EQ(known.point_light(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)->irradiance, light->all);
   }
 }
 
@@ -204,10 +204,10 @@ TEST(KnownLight, DirectLightIsNotReadWhereAShadowEnds) {
   for (const auto& [x, direct, expected] :
        {std::tuple{-0.45f, true, 1.25f}, {-0.05f, false, 1.25f}, {0.05f, false, 1.25f}, {0.45f, true, 6.25f}}) {
     hit.position = {x, 0, 0.05f};
-    const std::optional<KnownLight::Told> told = known.told(hit, {0, 1, 0}, 1, 0);
-    ASSERT_TRUE(told) << x;
-    EXPECT_EQ(told->direct, direct) << x;
-    EXPECT_EQ(told->irradiance, Rgb(expected)) << x;
+    const std::optional<KnownLight::PointLight> stored = known.point_light(hit, {0, 1, 0}, 1, 0);
+    ASSERT_TRUE(stored) << x;
+    EXPECT_EQ(stored->has_direct, direct) << x;
+    EXPECT_EQ(stored->irradiance, Rgb(expected)) << x;
   }
 }
 
