@@ -5,9 +5,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "lib/core/parallel.h"
-#include "lib/density/morton.h"
-
 namespace tempolux {
 namespace {
 
