@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "lib/core/parallel.h"
@@ -17,6 +18,8 @@ constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: what is darke
 /// is sqrt(150) / (50 x 7^2) = .5 % of the static light, which is about what gather rays leave. In the narrow disc it
 /// were 3 photons and 3.5 %: boiling. (docs/methods/dynamic.md)
 constexpr float kWider = 7;
+
+constexpr InterpolationOptions kInfluenceStore{.least_cosine = 0, .only_read = true};
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -40,7 +43,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
     for (std::size_t i = first; i < last; ++i) {
       const IrradianceRecord& record = records[i];
       changes[i].update = record.irradiance;
-      const PointLookup::Light* point = points.find(record.position, record.normal);
+      const PointLookup::Light* point = points.nearest(record.position, record.normal);
       const float radius = point ? kWider * points.point(*point).radius : 0;
       const PathRandom random = random_at(record.position, seed);
       SignedDensity::Area area;
@@ -60,7 +63,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                                const InfluenceThresholds& thresholds)
-    : store_({.least_cosine = 0, .only_read = true}), thresholds_(thresholds) {
+    : store_(kInfluenceStore), above_(kInfluenceStore), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -77,14 +80,24 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
   }
   if (!records.empty()) least_ = kLeastShare * float(sum / double(records.size()));
   store_.add(pairs);
+  std::erase_if(pairs, [&](const IrradianceRecord& pair) { return !(relative(pair.irradiance) > thresholds_.low); });
+  above_.add(pairs);
+}
+
+float InfluenceField::relative(Rgb pair) const {
+  if (thresholds_.absolute || !(pair.r > 0)) return pair.r;
+  return pair.r / std::max({pair.g, least_, 1e-30f});
 }
 
 float InfluenceField::at(Vec3 position, Vec3 normal) const {
   const std::optional<Rgb> found = store_.irradiance(position, normal);
-  if (!found) return INFINITY;
-  const float influence = found->r;
-  if (thresholds_.absolute || !(influence > 0)) return influence;
-  return influence / std::max({found->g, least_, 1e-30f});
+  return found ? relative(*found) : INFINITY;
+}
+
+float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
+  constexpr float kAny = std::numeric_limits<float>::min();
+  if (above_.covers(position, normal, kAny)) return thresholds_.gathered_share(at(position, normal));
+  return store_.covers(position, normal, kAny) ? 0 : 1;
 }
 
 }  // namespace tempolux

@@ -47,12 +47,18 @@ class InfluenceField {
   /// In the thresholds' terms: divided by the largest channel of the static irradiance there (at least a hundredth of
   /// the records' mean) unless they are absolute. Infinity where no record is near.
   float at(Vec3 position, Vec3 normal) const;
-  /// Share of E_y there.
-  float gathered_share(Vec3 position, Vec3 normal) const { return thresholds_.gathered_share(at(position, normal)); }
+  /// Share of E_y there: of at() by the thresholds. It is 0 where no record above the lower threshold counts, since a
+  /// mean of influences over a mean of irradiances is at most the largest of their ratios. So most places need no mean.
+  float gathered_share(Vec3 position, Vec3 normal) const;
   const InfluenceThresholds& thresholds() const { return thresholds_; }
 
  private:
-  RecordStore store_;  ///< of influence (r) and static irradiance (g) as if they were irradiance
+  /// Influence in the thresholds' terms; pair: influence (r), static irradiance (g).
+  float relative(Rgb pair) const;
+
+  /// Of influence (r) and static irradiance (g) as if they were irradiance: all records, those above the lower
+  /// threshold
+  RecordStore store_, above_;
   InfluenceThresholds thresholds_;
   float least_ = 0;  ///< W/m^2
 };

@@ -49,7 +49,7 @@ std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading)
 }
 
 float LocalisedLight::gathered_share(const SurfacePoint& surface, Vec3 shading) const {
-  return influence_.thresholds().gathered_share(influence(surface, shading));
+  return moving_.contains(surface.object) ? 1 : influence_.gathered_share(surface.position, shading);
 }
 
 float LocalisedLight::influence(const SurfacePoint& surface, Vec3 shading) const {
