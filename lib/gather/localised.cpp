@@ -21,6 +21,8 @@ constexpr float kWider = 7;
 
 constexpr InterpolationOptions kInfluenceStore{.least_cosine = 0, .only_read = true};
 
+constexpr float kAny = std::numeric_limits<float>::min();  ///< weight of whatever counts
+
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
   std::uint64_t key = seed;
   for (const float x : {p.x, p.y, p.z}) key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
@@ -94,9 +96,10 @@ float InfluenceField::at(Vec3 position, Vec3 normal) const {
   return found ? relative(*found) : INFINITY;
 }
 
+bool InfluenceField::is_above_low(Vec3 position, Vec3 normal) const { return above_.covers(position, normal, kAny); }
+
 float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
-  constexpr float kAny = std::numeric_limits<float>::min();
-  if (above_.covers(position, normal, kAny)) return thresholds_.gathered_share(at(position, normal));
+  if (is_above_low(position, normal)) return thresholds_.gathered_share(at(position, normal));
   return store_.covers(position, normal, kAny) ? 0 : 1;
 }
 

@@ -47,8 +47,10 @@ class InfluenceField {
   /// In the thresholds' terms: divided by the largest channel of the static irradiance there (at least a hundredth of
   /// the records' mean) unless they are absolute. Infinity where no record is near.
   float at(Vec3 position, Vec3 normal) const;
-  /// Share of E_y there: of at() by the thresholds. It is 0 where no record above the lower threshold counts, since a
-  /// mean of influences over a mean of irradiances is at most the largest of their ratios. So most places need no mean.
+  /// Does a record above the lower threshold count there? If not and any record counts, E_y has no share: a mean of
+  /// influences over a mean of irradiances is at most the largest of their ratios. Most places have none.
+  bool is_above_low(Vec3 position, Vec3 normal) const;
+  /// Share of E_y there: at() by the thresholds.
   float gathered_share(Vec3 position, Vec3 normal) const;
   const InfluenceThresholds& thresholds() const { return thresholds_; }
 
