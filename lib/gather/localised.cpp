@@ -65,7 +65,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                                const InfluenceThresholds& thresholds)
-    : store_(kInfluenceStore), above_(kInfluenceStore), thresholds_(thresholds) {
+    : store_(kInfluenceStore), above_(kInfluenceStore), below_(kInfluenceStore), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -82,8 +82,15 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
   }
   if (!records.empty()) least_ = kLeastShare * float(sum / double(records.size()));
   store_.add(pairs);
-  std::erase_if(pairs, [&](const IrradianceRecord& pair) { return !(relative(pair.irradiance) > thresholds_.low); });
-  above_.add(pairs);
+  std::vector<IrradianceRecord> above, below;
+  for (const IrradianceRecord& pair : pairs) {
+    // Without least_: the mean of what is lifted to it may be above the mean lifted to it.
+    const Rgb light = pair.irradiance;
+    if (light.r > thresholds_.low * (thresholds_.absolute ? 1 : light.g)) above.push_back(pair);
+    if (thresholds_.gathered_share(relative(light)) < 1) below.push_back(pair);
+  }
+  above_.add(above);
+  below_.add(below);
 }
 
 float InfluenceField::relative(Rgb pair) const {
@@ -99,8 +106,8 @@ float InfluenceField::at(Vec3 position, Vec3 normal) const {
 bool InfluenceField::is_above_low(Vec3 position, Vec3 normal) const { return above_.covers(position, normal, kAny); }
 
 float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
-  if (is_above_low(position, normal)) return thresholds_.gathered_share(at(position, normal));
-  return store_.covers(position, normal, kAny) ? 0 : 1;
+  if (!below_.covers(position, normal, kAny)) return 1;
+  return is_above_low(position, normal) ? thresholds_.gathered_share(at(position, normal)) : 0;
 }
 
 }  // namespace tempolux

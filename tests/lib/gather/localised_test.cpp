@@ -140,15 +140,16 @@ TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
 }
 
 TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
-  // Records with influences on both sides of the thresholds, some alone; the look-up that ends early agrees with the
-  // mean at every place: none, a share and all of it all occur.
+  // Records with influences on both sides of the thresholds, some alone, some in the dark; the look-up that ends early
+  // agrees with the mean at every place: none, a share and all of it all occur.
   const PathRandom random(1, 2);
   std::vector<IrradianceRecord> records;
   std::vector<float> influences;
   for (std::uint32_t i = 0; i < 60; ++i) {
     const Vec2 u = random.get2(i, Purpose::test), v = random.get2(i, Purpose::place);
-    records.push_back(record({20 * u.x, 0, 20 * u.y}, 1 + v.x));
-    influences.push_back(v.y < 0.7f ? 0.05f * v.y : 0.6f * (v.y - 0.7f));
+    records.push_back(record({20 * u.x, 0, 20 * u.y}, i % 4 == 0 ? 0 : 1 + v.x));
+    influences.push_back(v.y < 0.7f ? 0.05f * v.y : 0.9f * (v.y - 0.7f));
+    if (i % 4 == 0) influences.back() *= 0.01f;  // as large as that of the least irradiance that is told from black
   }
   for (const bool absolute : {false, true}) {
     const InfluenceField field(records, influences, {.absolute = absolute});
