@@ -166,6 +166,16 @@ TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
   }
 }
 
+TEST(Influence, BesideADarkRecordTheMeanDecides) {
+  // Mean irradiance 100, so 1 is told from black. Both records are below the threshold, .0594 / 1 and .1188 / 2 of .06;
+  // between them the means are .0891 and 1: above it.
+  const std::vector<IrradianceRecord> records{record(kMiddle, 0), record(kMiddle, 2), record({20, 0, 20}, 298)};
+  const std::vector<float> influences{0.0594f, 0.1188f, 0};
+  const InfluenceField field(records, influences, {});
+  EXPECT_NEAR(field.at(kMiddle, kUp), 0.0891f, 1e-6f);
+  EXPECT_FLOAT_EQ(field.gathered_share(kMiddle, kUp), field.thresholds().gathered_share(field.at(kMiddle, kUp)));
+}
+
 TEST(Influence, ARecordThatNoPointStandsForHasTheDiscOfTheNearestPoint) {
   // The point's clearance is nil, so it represents no place. Its disc is 7 x 0.05 m wide, the map's 0.5 m. Photons
   // between the two do not count.
