@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "lib/core/parallel.h"
@@ -17,6 +18,10 @@ constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: what is darke
 /// is sqrt(150) / (50 x 7^2) = .5 % of the static light, which is about what gather rays leave. In the narrow disc it
 /// were 3 photons and 3.5 %: boiling. (docs/methods/dynamic.md)
 constexpr float kWider = 7;
+
+constexpr InterpolationOptions kInfluenceStore{.least_cosine = 0, .only_read = true};
+
+constexpr float kAny = std::numeric_limits<float>::min();  ///< weight of whatever counts
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -40,7 +45,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
     for (std::size_t i = first; i < last; ++i) {
       const IrradianceRecord& record = records[i];
       changes[i].update = record.irradiance;
-      const PointLookup::Light* point = points.find(record.position, record.normal);
+      const PointLookup::Light* point = points.nearest(record.position, record.normal);
       const float radius = point ? kWider * points.point(*point).radius : 0;
       const PathRandom random = random_at(record.position, seed);
       SignedDensity::Area area;
@@ -60,7 +65,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                                const InfluenceThresholds& thresholds)
-    : store_({.least_cosine = 0, .only_read = true}), thresholds_(thresholds) {
+    : store_(kInfluenceStore), above_(kInfluenceStore), below_(kInfluenceStore), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -77,14 +82,32 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
   }
   if (!records.empty()) least_ = kLeastShare * float(sum / double(records.size()));
   store_.add(pairs);
+  std::vector<IrradianceRecord> above, below;
+  for (const IrradianceRecord& pair : pairs) {
+    // Without least_: the mean of what is lifted to it may be above the mean lifted to it.
+    const Rgb light = pair.irradiance;
+    if (light.r > thresholds_.low * (thresholds_.absolute ? 1 : light.g)) above.push_back(pair);
+    if (thresholds_.gathered_share(relative(light)) < 1) below.push_back(pair);
+  }
+  above_.add(above);
+  below_.add(below);
+}
+
+float InfluenceField::relative(Rgb pair) const {
+  if (thresholds_.absolute || !(pair.r > 0)) return pair.r;
+  return pair.r / std::max({pair.g, least_, 1e-30f});
 }
 
 float InfluenceField::at(Vec3 position, Vec3 normal) const {
   const std::optional<Rgb> found = store_.irradiance(position, normal);
-  if (!found) return INFINITY;
-  const float influence = found->r;
-  if (thresholds_.absolute || !(influence > 0)) return influence;
-  return influence / std::max({found->g, least_, 1e-30f});
+  return found ? relative(*found) : INFINITY;
+}
+
+bool InfluenceField::is_above_low(Vec3 position, Vec3 normal) const { return above_.covers(position, normal, kAny); }
+
+float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
+  if (!below_.covers(position, normal, kAny)) return 1;
+  return is_above_low(position, normal) ? thresholds_.gathered_share(at(position, normal)) : 0;
 }
 
 }  // namespace tempolux

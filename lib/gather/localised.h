@@ -47,12 +47,20 @@ class InfluenceField {
   /// In the thresholds' terms: divided by the largest channel of the static irradiance there (at least a hundredth of
   /// the records' mean) unless they are absolute. Infinity where no record is near.
   float at(Vec3 position, Vec3 normal) const;
-  /// Share of E_y there.
-  float gathered_share(Vec3 position, Vec3 normal) const { return thresholds_.gathered_share(at(position, normal)); }
+  /// Does a record above the lower threshold count there? If not and any record counts, E_y has no share: a mean of
+  /// influences over a mean of irradiances is at most the largest of their ratios. Most places have none.
+  bool is_above_low(Vec3 position, Vec3 normal) const;
+  /// Share of E_y there: at() by the thresholds. 1 where all records that count are above the upper one.
+  float gathered_share(Vec3 position, Vec3 normal) const;
   const InfluenceThresholds& thresholds() const { return thresholds_; }
 
  private:
-  RecordStore store_;  ///< of influence (r) and static irradiance (g) as if they were irradiance
+  /// Influence in the thresholds' terms; pair: influence (r), static irradiance (g).
+  float relative(Rgb pair) const;
+
+  /// Of influence (r) and static irradiance (g) as if they were irradiance: all records, those above the lower
+  /// threshold, those below the upper one.
+  RecordStore store_, above_, below_;
   InfluenceThresholds thresholds_;
   float least_ = 0;  ///< W/m^2
 };

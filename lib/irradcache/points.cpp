@@ -138,6 +138,12 @@ const PointLookup::Light* PointLookup::search(const Question& q) const {
   return nullptr;
 }
 
+const PointLookup::Light* PointLookup::nearest(Vec3 position, Vec3 normal) const {
+  thread_local NeighbourList found;
+  index_.find_nearest(facing(position, normal, 0), 1, found);
+  return found.count() == 0 ? nullptr : &lights_[index_.source(found.photons()[0])];
+}
+
 bool PointLookup::apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const {
   if (!(bright.radius > 0 && bright.radius < widest_)) return false;
   const double there = double(channel_sum(bright.indirect)), here = double(channel_sum(dark.indirect));

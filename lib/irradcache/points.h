@@ -74,6 +74,9 @@ class PointLookup {
     const Question question = ask(position, normal);
     return read(question, answer(question));
   }
+  /// The nearest point that faces within 90 degrees of `normal`, whatever lies between: for what needs the scale of the
+  /// photons near a place, not its light. nullptr if no point faces this way.
+  const Light* nearest(Vec3 position, Vec3 normal) const;
   std::size_t size() const { return points_.size(); }
   float spacing() const { return spacing_; }
   /// Of point number `point`.

@@ -39,8 +39,14 @@ inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Ve
     const __m256 cosine =
         all(normal.x) * of(e.normal_x) + all(normal.y) * of(e.normal_y) + all(normal.z) * of(e.normal_z);
     const __m256 near = _mm256_cmp_ps(dx * dx + dy * dy + dz * dz, r * r * reach, _CMP_LT_OQ);
-    for (int lanes = _mm256_movemask_ps(_mm256_and_ps(near, _mm256_cmp_ps(cosine, least, _CMP_GT_OQ))); lanes;
-         lanes &= lanes - 1) {
+    const __m256 counts = _mm256_and_ps(near, _mm256_cmp_ps(cosine, least, _CMP_GT_OQ));
+    if (_mm256_testz_ps(counts, counts)) continue;
+    // |d . (n + n_i)| as a square: |x| <= a if x^2 <= a^2
+    const __m256 off = dx * (all(normal.x) + of(e.normal_x)) + dy * (all(normal.y) + of(e.normal_y)) +
+                       dz * (all(normal.z) + of(e.normal_z)),
+                 most = r * all(2 * kOffPlane + kSlack);
+    for (int lanes = _mm256_movemask_ps(_mm256_and_ps(counts, _mm256_cmp_ps(off * off, most * most, _CMP_LE_OQ)));
+         lanes; lanes &= lanes - 1) {
       const auto i = std::size_t(std::countr_zero(unsigned(lanes)));
       if (found(
               Entry{{e.x[i], e.y[i], e.z[i]}, e.radius[i], {e.normal_x[i], e.normal_y[i], e.normal_z[i]}, e.record[i]}))

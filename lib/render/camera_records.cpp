@@ -77,7 +77,7 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
                             },
                             [](std::size_t) {}};
   const auto matters = [&](const SeenPoint& seen) {
-    return rides(seen) || field.at(seen.surface.position, seen.normal) > input.influence.low;
+    return rides(seen) || field.gathered_share(seen.surface.position, seen.normal) > 0;
   };
   RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
   const GatherCounts counts = place_for_all({input.gather, input.tracer, options, matters, &source}, cameras, store);

@@ -33,6 +33,9 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
 }
 
 std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading) const {
+  // A record of updated_ that counts is one of influence_'s, too: f is 0 if none of them is above the lower threshold.
+  if (!moving_.contains(surface.object) && !influence_.is_above_low(surface.position, shading))
+    if (const std::optional<Rgb> updated = updated_.irradiance(surface.position, shading)) return updated;
   const float share = gathered_share(surface, shading);
   Rgb sum{0.0f};
   if (share < 1) {
@@ -49,7 +52,7 @@ std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading)
 }
 
 float LocalisedLight::gathered_share(const SurfacePoint& surface, Vec3 shading) const {
-  return influence_.thresholds().gathered_share(influence(surface, shading));
+  return moving_.contains(surface.object) ? 1 : influence_.gathered_share(surface.position, shading);
 }
 
 float LocalisedLight::influence(const SurfacePoint& surface, Vec3 shading) const {

@@ -141,5 +141,62 @@ TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
   EXPECT_NEAR(change.influence, 25, 4 * 25 / std::sqrt(196.0f));
 }
 
+TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
+  // Records with influences on both sides of the thresholds, some alone, some in the dark; the look-up that ends early
+  // agrees with the mean at every place: none, a share and all of it all occur.
+  const PathRandom random(1, 2);
+  std::vector<IrradianceRecord> records;
+  std::vector<float> influences;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const Vec2 u = random.get2(i, Purpose::test), v = random.get2(i, Purpose::place);
+    records.push_back(record({20 * u.x, 0, 20 * u.y}, i % 4 == 0 ? 0 : 1 + v.x));
+    influences.push_back(v.y < 0.7f ? 0.05f * v.y : 0.9f * (v.y - 0.7f));
+    if (i % 4 == 0) influences.back() *= 0.01f;  // as large as that of the least irradiance that is told from black
+  }
+  for (const bool absolute : {false, true}) {
+    const InfluenceField field(records, influences, {.absolute = absolute});
+    int none = 0, all = 0, some = 0;
+    for (std::uint32_t i = 0; i < 4000; ++i) {
+      const Vec2 u = random.get2(i, Purpose::scatter), v = random.get2(i, Purpose::lobe);
+      const Vec3 at{20 * u.x, 0, 20 * u.y}, normal = normalize(Vec3{v.x - 0.5f, 1, v.y - 0.5f});
+      const float share = field.gathered_share(at, normal);
+      // A mean of ratios at the threshold may round to above it, by 1e-7: t^2 = 1e-11.
+      ASSERT_NEAR(share, field.thresholds().gathered_share(field.at(at, normal)), 1e-9f);
+      ++(share == 0 ? none : share == 1 ? all : some);
+    }
+    EXPECT_GT(std::min({none, all, some}), 50);
+  }
+}
+
+TEST(Influence, BesideADarkRecordTheMeanDecides) {
+  // Mean irradiance 100, so 1 is told from black. Both records are below the threshold, .0594 / 1 and .1188 / 2 of .06;
+  // between them the means are .0891 and 1: above it.
+  const std::vector<IrradianceRecord> records{record(kMiddle, 0), record(kMiddle, 2), record({20, 0, 20}, 298)};
+  const std::vector<float> influences{0.0594f, 0.1188f, 0};
+  const InfluenceField field(records, influences, {});
+  EXPECT_NEAR(field.at(kMiddle, kUp), 0.0891f, 1e-6f);
+  EXPECT_FLOAT_EQ(field.gathered_share(kMiddle, kUp), field.thresholds().gathered_share(field.at(kMiddle, kUp)));
+}
+
+TEST(Influence, ARecordThatNoPointStandsForHasTheDiscOfTheNearestPoint) {
+  // The point's clearance is nil, so it represents no place. Its disc is 7 x 0.05 m wide, the map's 0.5 m. Photons
+  // between the two do not count.
+  Floor floor;
+  floor.spread(4000, 0.1f, 1);
+  const auto near = [](const Photon& p) { return std::hypot(p.position[0] - 2, p.position[2] - 2) < 0.4f; };
+  std::erase_if(floor.photons, near);
+  std::vector<SignedDensity> maps;
+  maps.push_back(floor.density());
+  std::vector<IrradiancePoint> points(1);
+  points[0].position = kMiddle + Vec3{0.01f, 0, 0};
+  points[0].normal = kUp;
+  points[0].radius = 0.05f;
+  const PointLookup lookup(points, 0.2f, [](Vec3, Vec3, float reach) { return Clearance{reach, {0, 0}}; });
+  const std::vector<IrradianceRecord> records{record(kMiddle, 10)};
+  ASSERT_EQ(lookup.find(kMiddle, kUp), nullptr);
+  ASSERT_TRUE(maps[0].at(kMiddle, kUp, 0, PathRandom(1, 1)));
+  EXPECT_EQ(record_changes(records, maps, lookup, 0)[0].influence, 0);
+}
+
 }  // namespace
 }  // namespace tempolux
