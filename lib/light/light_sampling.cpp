@@ -44,7 +44,7 @@ bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double 
                                   LightSample& s) const {
   const double left = u * total;
   if (left < environment_weight || total <= environment_weight)
-    return sample_environment(point, normal, u_float, left / environment_weight, share * environment_weight / total, s);
+    return sample_environment(point, u_float, left / environment_weight, share * environment_weight / total, s);
   return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight),
                     share * (1 - environment_weight / total), s);
 }
@@ -83,15 +83,12 @@ bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 poi
 
 /// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
 /// up u.
-bool Lights::Impl::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
-                                      LightSample& s) const {
+bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  if (!(sky_by_normal && normal != Vec3{} ? sky_by_normal->sample(normal, u1, u2, found)
-                                          : environment->sample(u1, u2, found)))
-    return false;
+  if (!environment->sample(u1, u2, found)) return false;
   return take_from_sky(found, point, found.pdf_solid_angle * probability, s);
 }
 
@@ -234,10 +231,7 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
   }
   double total = 0;
   const double share = impl_->distant_share(point, normal, from, total);
-  const float pdf =
-      float((impl_->sky_by_normal && normal != Vec3{} ? impl_->sky_by_normal->pdf_solid_angle(normal, place, direction)
-                                                      : environment_->pdf_solid_angle(place, direction)) *
-            share * impl_->environment_weight / total);
+  const float pdf = float(environment_->pdf_solid_angle(place, direction) * share * impl_->environment_weight / total);
   return pdf < INFINITY ? pdf : 0;
 }
 

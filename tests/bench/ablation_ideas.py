@@ -16,8 +16,6 @@ class Idea:
 
 IDEAS = (
     # ---- samples of light
-    Idea("sky by the cosine", "directions of the sky are drawn by its light times the cosine at irradiance points", "points",
-         (("lib/light/lights.cpp", "if (impl_->environment_weight > 0) impl_->sky_by_normal =", "if (impl_->environment_weight < 0) impl_->sky_by_normal ="),)),
     Idea("learned lights", "a grid of what reaches places through openings, by which lights are drawn", "frames",
          (("lib/render/learn_lights.cpp", "if (!scene.lights.has_distant()) return nullptr;", "if (scene.lights.count() > 0) return nullptr;"),)),
     Idea("suns apart", "a ray to a sun beside that to another light", "frames",
@@ -43,6 +41,7 @@ IDEAS = (
            "  static_assert(kMostLit == kMostOnward);"),)),
     Idea("edges between pixels", "what is seen counts as uneven where neighbours differ", "frames",
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
+    # Stays whatever codes say: without it filtered frames have blotches (docs/notebook/outliers.md).
     Idea("outliers spread", "light that one sample alone claims goes to the pixels around", "frames",
          (("tools/frame-render.cpp", "frame_options.spread_outliers = !options.keep_outliers &&", "frame_options.spread_outliers = false &&"),)),
     # ---- photons and points

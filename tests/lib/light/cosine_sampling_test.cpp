@@ -1,13 +1,11 @@
-// Light is drawn by the cosine as well: maps of the square against their densities, triangles and skies against closed
-// forms.
+// Light of triangles is drawn by the cosine as well: maps of the square against their densities, triangles against
+// closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "lib/core/random.h"
 #include "lib/core/sobol.h"
-#include "lib/light/sky_by_normal.h"
 #include "lib/light/spherical_triangle.h"
 #include "lib/light/triangle_light.h"
 #include "tests/lib/light/light_scene.h"
@@ -79,49 +77,6 @@ TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
     const double exact = polygon_irradiance({0, 0, 0}, normal, corners);
     EXPECT_NEAR(sum, exact, 1e-3 * exact);
     EXPECT_LT(std::sqrt(std::max(0.0, square - sum * sum)), 0.1 * exact);
-  }
-}
-
-/// A sky that is bright on one side, with a sun: the density integrates to 1 (the mean of 1 / density over its own
-/// samples is the sphere), and is that of pdf_solid_angle() but on borders of parts. A uniform sky of radiance 1 gives
-/// pi; its samples' deviation is 1.29 of the mean by radiance alone (E[(4 cos)^2] = 8/3 over the half above); by the
-/// cosine too it is .3 for the one sample in 10 that is kept for parts below and for the slack of a normal's bin, and
-/// the cosine inside of a part: below .45.
-TEST(SkyByNormal, SamplesHaveTheirDensityAndDifferLittle) {
-  Environment sky;
-  sky.width = 64;
-  sky.height = 32;
-  sky.rotation_rad = 1;
-  sky.radiance.assign(64 * 32, Rgb(1.0f));
-  for (const bool even : {true, false}) {
-    if (!even) {
-      for (std::size_t i = 0; i < sky.radiance.size(); ++i) sky.radiance[i] = Rgb(i % 64 < 32 ? 2.0f : 0.2f);
-      sky.radiance[64 * 9 + 17] = Rgb(900.0f);
-    }
-    const EnvironmentLight light(sky);
-    const SkyByNormal by_normal(light);
-    for (const Vec3 normal : {Vec3{0, 1, 0}, normalize(Vec3{1, -0.3f, 0.2f}), normalize(Vec3{-0.4f, 0.5f, -0.9f})}) {
-      double sphere = 0, sum = 0, square = 0;
-      int apart = 0;
-      constexpr std::uint32_t kCount = 1 << 16;
-      for (std::uint32_t i = 0; i < kCount; ++i) {
-        EnvironmentLight::Sample s;
-        const Vec2 u = sobol_owen_2d(i, 9);
-        ASSERT_TRUE(by_normal.sample(normal, double(u.x), double(u.y), s));
-        apart += std::abs(by_normal.pdf_solid_angle(normal, s.direction) / s.pdf_solid_angle - 1) > 1e-3;
-        sphere += 1 / s.pdf_solid_angle / kCount;
-        const double e = double(s.radiance.g) * std::max(0.0f, dot(normal, s.direction)) / s.pdf_solid_angle;
-        sum += e / kCount;
-        square += e * e / kCount;
-      }
-      EXPECT_NEAR(sphere, 4 * std::numbers::pi,
-                  0.02 * 4 * std::numbers::pi);  // parts below are drawn one in 20 to 40 times
-      EXPECT_LT(apart, int(kCount / 200));
-      if (even) {
-        EXPECT_NEAR(sum, std::numbers::pi, 3e-3);
-        EXPECT_LT(std::sqrt(square - sum * sum), 0.45 * std::numbers::pi);
-      }
-    }
   }
 }
 
