@@ -111,8 +111,8 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
 
 /// Draws a point on the light in the slot, which was chosen with this probability. With `joint`, `left` is the
 /// remainder of the number that chose the slot and replaces u.x.
-inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left,
-                                      Vec2 u, bool joint, LightSample& sample) const {
+inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u,
+                                      bool joint, LightSample& sample) const {
   const Impl& m = *this;
   if (slot >= m.triangles.size())
     return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
@@ -124,7 +124,7 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 norma
     u.x = to_float(std::min(left + fill * step, 1.0));
   }
   TrianglePoint on_triangle;
-  if (!sample_triangle(t, point, normal, u, on_triangle)) return false;
+  if (!sample_triangle(t, point, u, on_triangle)) return false;
   const double pdf = probability * on_triangle.pdf_solid_angle;
   sample.wi = on_triangle.wi;
   sample.position = on_triangle.position;
@@ -164,8 +164,7 @@ bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability
   if (tree.empty()) return false;
   LightTree::Choice choice;
   if (!tree.choose(start, point, normal, u_choice, choice)) return false;
-  return sample_slot(tree_slot[choice.light], point, normal, choice.probability * probability, choice.left, u, joint,
-                     sample);
+  return sample_slot(tree_slot[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
 }
 
 bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
@@ -207,7 +206,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   if (m.first_slot[surface] == kNone) return 0;
   const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
   if (light == kNone) return 0;
-  const double on_triangle = pdf_triangle(m.triangles[slot], point, normal, on_light);
+  const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
   const LightGrid::Cell* cell = m.known(point, normal);

@@ -58,7 +58,7 @@ struct Lights::Impl {
     return !any_distant ? 0 : from == From::all ? sum_distant(normal) : environment_weight;
   }
   double distant_share(Vec3 point, Vec3 normal, From from, double& total) const;
-  bool sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left, Vec2 u, bool joint,
+  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
                    LightSample& sample) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                       LightSample& s) const;
