@@ -194,7 +194,8 @@ double EnvironmentLight::pdf_solid_angle(const Place& place, Vec3 direction) con
   return pdf(place, luminances(corners(place.row, place.column)), std::sqrt(d.x * d.x + d.z * d.z));
 }
 
-Vec2 EnvironmentLight::numbers_of(const Place& place, Vec3 direction) const {
+Vec2 EnvironmentLight::numbers_of(Vec3 direction) const {
+  const Place place = place_of(direction);
   const Luminances at = luminances(corners(place.row, place.column));
   const double a = polar(place.row), b = polar(place.row + 1);
   double across;

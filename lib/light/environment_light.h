@@ -48,8 +48,7 @@ class EnvironmentLight {
   double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
   double pdf_solid_angle(const Place& place, Vec3 direction) const;
   /// The numbers (u1, u2) for which sample() gives this direction, but for rounding.
-  Vec2 numbers_of(Vec3 direction) const { return numbers_of(place_of(direction), direction); }
-  Vec2 numbers_of(const Place& place, Vec3 direction) const;
+  Vec2 numbers_of(Vec3 direction) const;
 
  private:
   struct Corners {

@@ -44,7 +44,7 @@ bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double 
                                   LightSample& s) const {
   const double left = u * total;
   if (left < environment_weight || total <= environment_weight)
-    return sample_environment(point, normal, u_float, left / environment_weight, share * environment_weight / total, s);
+    return sample_environment(point, u_float, left / environment_weight, share * environment_weight / total, s);
   return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight),
                     share * (1 - environment_weight / total), s);
 }
@@ -83,15 +83,12 @@ bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 poi
 
 /// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
 /// up u.
-bool Lights::Impl::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
-                                      LightSample& s) const {
+bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  if (!(sky_by_normal && normal != Vec3{} ? sky_by_normal->sample(normal, u1, u2, found)
-                                          : environment->sample(u1, u2, found)))
-    return false;
+  if (!environment->sample(u1, u2, found)) return false;
   return take_from_sky(found, point, found.pdf_solid_angle * probability, s);
 }
 
@@ -114,8 +111,8 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
 
 /// Draws a point on the light in the slot, which was chosen with this probability. With `joint`, `left` is the
 /// remainder of the number that chose the slot and replaces u.x.
-inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left,
-                                      Vec2 u, bool joint, LightSample& sample) const {
+inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u,
+                                      bool joint, LightSample& sample) const {
   const Impl& m = *this;
   if (slot >= m.triangles.size())
     return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
@@ -127,7 +124,7 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 norma
     u.x = to_float(std::min(left + fill * step, 1.0));
   }
   TrianglePoint on_triangle;
-  if (!sample_triangle(t, point, normal, u, on_triangle)) return false;
+  if (!sample_triangle(t, point, u, on_triangle)) return false;
   const double pdf = probability * on_triangle.pdf_solid_angle;
   sample.wi = on_triangle.wi;
   sample.position = on_triangle.position;
@@ -167,8 +164,7 @@ bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability
   if (tree.empty()) return false;
   LightTree::Choice choice;
   if (!tree.choose(start, point, normal, u_choice, choice)) return false;
-  return sample_slot(tree_slot[choice.light], point, normal, choice.probability * probability, choice.left, u, joint,
-                     sample);
+  return sample_slot(tree_slot[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
 }
 
 bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
@@ -210,7 +206,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   if (m.first_slot[surface] == kNone) return 0;
   const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
   if (light == kNone) return 0;
-  const double on_triangle = pdf_triangle(m.triangles[slot], point, normal, on_light);
+  const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
   const LightGrid::Cell* cell = m.known(point, normal);
@@ -234,10 +230,7 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
   }
   double total = 0;
   const double share = impl_->distant_share(point, normal, from, total);
-  const float pdf =
-      float((impl_->sky_by_normal && normal != Vec3{} ? impl_->sky_by_normal->pdf_solid_angle(normal, place, direction)
-                                                      : environment_->pdf_solid_angle(place, direction)) *
-            share * impl_->environment_weight / total);
+  const float pdf = float(environment_->pdf_solid_angle(place, direction) * share * impl_->environment_weight / total);
   return pdf < INFINITY ? pdf : 0;
 }
 

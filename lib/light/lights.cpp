@@ -123,9 +123,6 @@ Lights::~Lights() = default;
 Lights::Lights(Lights&&) noexcept = default;
 
 void Lights::use(const LightGrid* grid) { impl_->grid = grid; }
-void Lights::weigh_sky_by_cosine() {
-  if (impl_->environment_weight > 0) impl_->sky_by_normal = std::make_unique<SkyByNormal>(*impl_->environment);
-}
 bool Lights::has_distant() const { return impl_->any_distant; }
 bool Lights::has_placed() const { return !impl_->tree.empty(); }
 

@@ -93,9 +93,6 @@ class Lights {
   /// From now on, where the grid has a cell, samples are drawn by the cell's probabilities; nullptr: no longer. The
   /// grid must outlive this object. The expectation does not change.
   void use(const LightGrid* grid);
-  /// From now on, directions of the environment are drawn in proportion to radiance times cosine (SkyByNormal), if
-  /// sample() gets a normal and the grid has no cell there. The expectation does not change. Takes some milliseconds.
-  void weigh_sky_by_cosine();
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const;
   /// True if any light inside the scene shines.

@@ -11,7 +11,6 @@
 #include "lib/core/sampling.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/lights.h"
-#include "lib/light/sky_by_normal.h"
 #include "lib/light/triangle_light.h"
 
 namespace tempolux {
@@ -31,8 +30,6 @@ struct Lights::Impl {
   std::vector<std::uint32_t> tree_slot;   // and back
   std::vector<std::uint32_t> suns;        // indices of the directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
-  // Set if directions of the environment are drawn by radiance times cosine
-  std::unique_ptr<SkyByNormal> sky_by_normal;
   double environment_weight = 0;    // irradiance from the environment, averaged over all normals; 0: none or black
   Aim aim;                          // of photons from directional lights and environment
   bool any_distant = false;         // true if the environment is not black or a directional light shines
@@ -61,11 +58,11 @@ struct Lights::Impl {
     return !any_distant ? 0 : from == From::all ? sum_distant(normal) : environment_weight;
   }
   double distant_share(Vec3 point, Vec3 normal, From from, double& total) const;
-  bool sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left, Vec2 u, bool joint,
+  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
                    LightSample& sample) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                       LightSample& s) const;
-  bool sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability, LightSample& s) const;
+  bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;
   double disc_area() const { return std::numbers::pi * sphere_radius * sphere_radius; }
   float distance_beyond() const { return float(sphere_radius > 0 ? 2 * sphere_radius : 1); }
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;

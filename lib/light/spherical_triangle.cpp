@@ -13,8 +13,7 @@ Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); 
 /// Unit vector along v minus its projection on the unit vector w.
 Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
 
-/// Where both corners' values are below this, the cosine between them may be larger than at the corners.
-constexpr double kLeast = 0.01;
+constexpr double kLeast = 0.01;  ///< least corner value, over the largest
 
 }  // namespace
 
@@ -37,18 +36,6 @@ Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, 
   const Vec3d c2 = a * cos_b + toward_c * std::sqrt(1 - cos_b * cos_b);
   const double omc = u.y * (1 - std::min(1.0, dot(c2, b)));
   return b * (1 - omc) + reject(c2, b) * std::sqrt(omc * (2 - omc));
-}
-
-Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec3d w) {
-  const auto& [a, b, c] = t;
-  // c2 is where the arc from b through w meets the arc from a to c.
-  Vec3d c2 = cross(cross(b, w), cross(c, a));
-  if (!(length2(c2) > 0)) return {0, 0};
-  c2 = unit(dot(c2, a + c) < 0 ? -c2 : c2);
-  const double part = 2 * std::atan2(std::abs(dot(a, cross(b, c2))), 1 + dot(a, b) + dot(b, c2) + dot(c2, a));
-  const double whole = length2(b - c2);  // 2 (1 - b.c2), without cancellation
-  return {float(std::clamp(part / solid_angle, 0.0, 1.0)),
-          float(whole > 0 ? std::clamp(length2(b - w) / whole, 0.0, 1.0) : 0)};
 }
 
 BilinearWarp::BilinearWarp(std::array<double, 4> values) : w_(values) {

@@ -17,8 +17,6 @@ SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2);
 /// (0, 1) corner 0, (1, 1) corner 2. Double precision, since thin triangles cancel most digits. [Arvo, "Stratified
 /// Sampling of Spherical Triangles", SIGGRAPH 1995]
 Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec2 u);
-/// The inverse: u for the unit direction w. At corner 1 u.x is arbitrary and set to 0.
-Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec3d w);
 
 /// Maps the unit square to itself with a density that is bilinear between four corner values. If an integrand is
 /// roughly proportional to these values, all samples contribute about the same. [Hart, Pharr, Mueller, Lopes, McGuire &
@@ -26,7 +24,7 @@ Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, 
 class BilinearWarp {
  public:
   /// Values at u = (0, 0), (1, 0), (0, 1), (1, 1), not negative. Each counts as at least a hundredth of the largest,
-  /// since an integrand that is 0 at all corners may be positive between them.
+  /// so that the density is never 0.
   explicit BilinearWarp(std::array<double, 4> values);
   Vec2 operator()(Vec2 u) const;
   double density(Vec2 u) const;  ///< of the mapped points at u; the mean is 1

@@ -42,19 +42,10 @@ struct View {
   /// Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
 
-  /// Cosines at the corners, for samples by solid angle.
-  BilinearWarp cosines(const SphericalTriangle& t, Vec3 normal) const {
-    const Vec3d n(normal);
-    const double at1 = dot(t[1], n);
-    return BilinearWarp({at1, at1, dot(t[0], n), dot(t[2], n)});
-  }
-  /// Cosine / distance^3 at the corners, for samples by area: the triangle's own cosine is height / distance.
-  BilinearWarp factors(Vec3 normal) const {
-    const auto factor = [normal](Vec3 v, double l) {
-      return (normal == Vec3{} ? l : double(dot(v, normal))) / (l * l * l * l);
-    };
-    const Vec3 middle = (v1 + v2) * 0.5f;
-    return BilinearWarp({factor(v0, l0), factor(v1, l1), factor(v2, l2), factor(middle, length(middle))});
+  /// 1 / distance^3 at the corners, for samples by area: the triangle's own cosine is height / distance.
+  BilinearWarp factors() const {
+    const auto factor = [](double l) { return 1 / (l * l * l); };
+    return BilinearWarp({factor(l0), factor(l1), factor(l2), factor(length((v1 + v2) * 0.5f))});
   }
 };
 
@@ -117,24 +108,18 @@ Vec3 TriangleLight::point(double b1, double b2) const {
   return Vec3(Vec3d(corner) + Vec3d(edge1) * b1 + Vec3d(edge2) * b2);
 }
 
-bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {
+bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample) {
   const View view(light, from);
   if (!view.visible) return false;
   const bool large = view.large();
   Vec2 b;
   double density = 1;
   if (large) {
-    const SphericalTriangle seen = as_seen(view.v0, view.v1, view.v2);
     const double omega = view.solid_angle();
-    if (normal != Vec3{}) {
-      const BilinearWarp warp = view.cosines(seen, normal);
-      u = warp(u);
-      density = warp.density(u);
-    }
-    density /= omega;
-    b = project(light, view, sample_spherical_triangle(seen, omega, u));
+    density = 1 / omega;
+    b = project(light, view, sample_spherical_triangle(as_seen(view.v0, view.v1, view.v2), omega, u));
   } else {
-    const BilinearWarp warp = view.factors(normal);
+    const BilinearWarp warp = view.factors();
     u = warp(u);
     density = warp.density(u);
     b = sample_triangle(u);
@@ -150,23 +135,17 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u,
   return sample.pdf_solid_angle < INFINITY;
 }
 
-double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {
+double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position) {
   const View view(light, from);
   if (!view.visible) return 0;
-  const Vec3d to = Vec3d(position) - Vec3d(from);
-  const double d = length(to);
-  if (view.large()) {
-    const double omega = view.solid_angle();
-    if (normal == Vec3{} || !(d > 0)) return 1 / omega;
-    const SphericalTriangle seen = as_seen(view.v0, view.v1, view.v2);
-    return view.cosines(seen, normal).density(find_in_spherical_triangle(seen, omega, to / d)) / omega;
-  }
+  if (view.large()) return 1 / view.solid_angle();
+  const double d = length(Vec3d(position) - Vec3d(from));
   const Vec3d at = Vec3d(position) - Vec3d(light.corner), edge1(light.edge1), edge2(light.edge2);
   const Vec3d across = cross(edge1, edge2);
   const double twice2 = length2(across);
   const Vec2 b{float(std::clamp(dot(cross(at, edge2), across) / twice2, 0.0, 1.0)),
                float(std::clamp(dot(cross(edge1, at), across) / twice2, 0.0, 1.0))};
-  const double pdf = view.factors(normal).density(find_in_triangle(b)) * d * d * d / (light.area * view.height);
+  const double pdf = view.factors().density(find_in_triangle(b)) * d * d * d / (light.area * view.height);
   return pdf < INFINITY ? pdf : 0;
 }
 

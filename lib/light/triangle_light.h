@@ -57,11 +57,10 @@ struct TrianglePoint {
 /// is seen edge-on.
 ///
 /// If the triangle's solid angle is between 0.02 sr and 2 pi - 0.02 sr, the direction is drawn by solid angle (Arvo,
-/// "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995): uniformly if `normal` is zero, else nearly in
-/// proportion to the cosine at a surface of this unit normal. Otherwise the point is uniform in area, by Heitz' map.
-/// pdf_triangle makes the same choice from the same numbers.
-bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample);
+/// "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995). Otherwise a point is drawn by area, nearly in
+/// proportion to 1 / distance^3, by Heitz' map. pdf_triangle makes the same choice from the same numbers.
+bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample);
 /// Density [1/sr] with which sample_triangle draws `position`; 0 where sample_triangle returns false.
-double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position);
+double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position);
 
 }  // namespace tempolux

@@ -16,17 +16,10 @@ class Idea:
 
 IDEAS = (
     # ---- samples of light
-    Idea("sky by the cosine", "directions of the sky are drawn by its light times the cosine at irradiance points", "points",
-         (("lib/light/lights.cpp", "if (impl_->environment_weight > 0) impl_->sky_by_normal =", "if (impl_->environment_weight < 0) impl_->sky_by_normal ="),)),
     Idea("learned lights", "a grid of what reaches places through openings, by which lights are drawn", "frames",
          (("lib/render/learn_lights.cpp", "if (!scene.lights.has_distant()) return nullptr;", "if (scene.lights.count() > 0) return nullptr;"),)),
     Idea("suns apart", "a ray to a sun beside that to another light", "frames",
          (("tools/frame-render.cpp", "!yardstick && lights.has_suns()}", "false}"),)),
-    Idea("cosine on lamps", "a place on a triangle is drawn by the cosine at the surface, too", "frames",
-         (("lib/light/triangle_light.cpp", "bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {\n",
-           "bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {\n  normal = {};\n"),
-          ("lib/light/triangle_light.cpp", "double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {\n",
-           "double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {\n  normal = {};\n"))),
     Idea("matte rays meet lamps", "a ray that leaves a matte surface counts lamps it meets, weighed against light samples", "frames",
          (("lib/render/path_tracer.cpp", "if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));", ""),
           ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),
@@ -43,6 +36,7 @@ IDEAS = (
            "  static_assert(kMostLit == kMostOnward);"),)),
     Idea("edges between pixels", "what is seen counts as uneven where neighbours differ", "frames",
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
+    # Stays whatever codes say: without it filtered frames have blotches (docs/notebook/outliers.md).
     Idea("outliers spread", "light that one sample alone claims goes to the pixels around", "frames",
          (("tools/frame-render.cpp", "frame_options.spread_outliers = !options.keep_outliers &&", "frame_options.spread_outliers = false &&"),)),
     # ---- photons and points

@@ -41,8 +41,7 @@ void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& opti
   const SceneFrame frame = static_scene_of(input.at(number));
   tool.stats().phase("build");
   const Tracer tracer(frame);
-  Lights lights(frame, input.emission(frame.frame));
-  lights.weigh_sky_by_cosine();
+  const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("read photons");
   const formats::PhotonMap map =
       read_photons(tool, frame_name(options.photons, number), frame, LightNeeded::all, "static");
@@ -59,8 +58,7 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   const EmissionTable& emission = input.emission(frame.frame);
   tool.stats().phase("build");
   const Tracer whole(frame, tree), without(standing, tree);
-  Lights lights(frame, emission);
-  lights.weigh_sky_by_cosine();
+  const Lights lights(frame, emission);
   tool.stats().phase("read points");
   GatherPoints points = read_points(tool, frame_name(options.update, number), standing);
   tool.stats().phase("read photons");
@@ -90,8 +88,7 @@ void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, in
   const SceneFrame frame = input.at(number);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
-  Lights lights(frame, input.emission(frame.frame));
-  lights.weigh_sky_by_cosine();
+  const Lights lights(frame, input.emission(frame.frame));
   const GatherPoints points = options.high.empty() ? points_of_photons(tool, frame_name(options.photons, number),
                                                                        tracer, lights, options.points_of(frame))
                                                    : points_of_parts(tool, options, tracer, lights).whole;

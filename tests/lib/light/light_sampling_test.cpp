@@ -8,6 +8,7 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/light/light_tree.h"
+#include "lib/light/spherical_triangle.h"
 #include "lib/light/triangle_light.h"
 #include "tests/lib/light/light_scene.h"
 #include "tests/support/sphere.h"
@@ -110,7 +111,7 @@ TEST(TriangleLight, HasTheSolidAngleOfAnOctant) {
   Vec3d mean;
   for (std::uint32_t i = 0; i < 1 << 14; ++i) {
     TrianglePoint p;
-    ASSERT_TRUE(sample_triangle(t, {0, 0, 0}, {}, sobol_owen_2d(i, 1), p));
+    ASSERT_TRUE(sample_triangle(t, {0, 0, 0}, sobol_owen_2d(i, 1), p));
     EXPECT_NEAR(p.pdf_solid_angle, 2 / std::numbers::pi, 1e-6);
     mean += Vec3d(p.wi) / double(1 << 14);
   }
@@ -308,6 +309,24 @@ TEST(Lights, SurviveExtremeNumbers) {
     const PhotonEmission e = lights.emit(u);
     EXPECT_TRUE(is_finite(e.flux) && is_finite(e.origin) && is_finite(e.travel));
   }
+}
+
+/// The map takes a share of the square to where its density has it: of the quarter u.x, u.y < 1/2 the integral of the
+/// bilinear density is known (its corner values 1, 2, 3, 6 have the means 1, 1.5, 2, 3 at the quarter's corners: 7.5 /
+/// 4 / 3 of a fourth).
+TEST(BilinearWarp, FollowsItsDensity) {
+  const BilinearWarp warp({1, 2, 3, 6});
+  int inside = 0;
+  double inverse = 0;
+  constexpr std::uint32_t kCount = 1 << 16;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    const Vec2 u = warp(sobol_owen_2d(i, 7));
+    inside += u.x < 0.5f && u.y < 0.5f;
+    inverse += 1 / warp.density(u) / kCount;
+  }
+  EXPECT_NEAR(double(inside) / kCount, 7.5 / 4 / 3 / 4,
+              1e-3);  // Sobol points: some of their number's root on the border
+  EXPECT_NEAR(inverse, 1, 1e-3);
 }
 
 }  // namespace
