@@ -96,6 +96,11 @@ class PointLookup {
   /// too bright were left out, the mean of the light read would be too dark.
   bool is_uniform(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
   bool is_uniform_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
+  /// Does not compare neighbours: light counts as even around all points. For few points that stand for many, whose
+  /// neighbours are much nearer and so more alike. Must not be called during look-ups.
+  void take_as_even() {
+    for (Light& light : lights_) light.uneven.store(kKnown, std::memory_order_relaxed);
+  }
   static constexpr float kContrast = 8;
   /// Marks a point's direct light as uneven. A lamp so close lights a spot smaller than the spacing: most spots contain
   /// no point, and a point in one would represent too large an area. Must not be called during look-ups.

@@ -11,7 +11,6 @@
 #include "formats/hash.h"
 #include "lib/plan/stages.h"
 #include "lib/render/choose_light.h"
-#include "lib/render/choose_photons.h"
 #include "lib/render/choose_preview.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
@@ -81,15 +80,14 @@ class FramePilot {
     const auto look_of = [&](const RoughFrame& rough) {
       Look look;
       look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
-      look.paths = lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons)
-                                                             : wish_.photons;
+      look.paths = rough.paths_of_light;
       look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays},
                                 kinds_.find("caustic") != std::string::npos);
       return look;
     };
     RoughOptions options{kinds_, wish_.pixel_error, wish_.photons, spheres_, 0, places};
     options.enough = [&](const RoughFrame& rough) { return enough(look_of(rough)); };
-    return look_of(rough_frame({tracer_, lights_}, aimed_lights, view_, options));
+    return look_of(rough_frame({tracer_, lights_, lights_.has_suns()}, aimed_lights, view_, options));
   }
 
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }

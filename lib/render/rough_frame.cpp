@@ -13,6 +13,7 @@
 #include "lib/gather/irradiance_points.h"
 #include "lib/gather/place_records.h"
 #include "lib/irradcache/points.h"
+#include "lib/render/choose_photons.h"
 #include "lib/render/known_light.h"
 #include "lib/render/pilot_photons.h"
 #include "lib/render/pixel_noise.h"
@@ -169,7 +170,8 @@ void ask(const Samples& samples, const Levels& levels, double pixel_error, Rough
 /// The files that a frame would read, made roughly.
 class RoughLight {
  public:
-  RoughLight(const RenderScene& scene, formats::PhotonBlock photons, const RoughOptions& options)
+  /// paths: of the map that a frame would read, whose estimates of density are narrower: as many hits are then near.
+  RoughLight(const RenderScene& scene, formats::PhotonBlock photons, std::uint64_t paths, const RoughOptions& options)
       : photons_(std::move(photons)) {
     PointOptions placing;
     placing.seed = options.seed;
@@ -177,24 +179,24 @@ class RoughLight {
     placing.seen.assign(options.seen.begin(), options.seen.end());
     placed_ = place_points(scene.frame(), placing);
     estimate_points(scene.tracer, scene.lights, photons_, {}, placing, placed_.points);
+    const double narrower = std::sqrt(double(kPaths) / double(std::max(kPaths, paths)));
+    for (IrradiancePoint& point : placed_.points) point.radius *= float(narrower);
     lookup_.emplace(placed_.points, placed_.spacing, point_clearance(scene.tracer));
+    lookup_->take_as_even();
     lamps_ = note_lamps_beside(scene.tracer, scene.lights, *lookup_);
     const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
     if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
   }
+  /// Of a frame's samples: as a rule only records sample bright points.
   KnownLight known() const {
     KnownLight known;
     known.points = &*lookup_;
-    known.bright = bright_ ? &*bright_ : nullptr;
-    known.bright_samples = 1;
     return known;
   }
-  /// near_factor: such that as many hits are near as with a map of `photons` paths, whose estimates are narrower.
-  GatherOptions gathering(std::uint64_t photons, std::uint64_t seed) const {
+  GatherOptions gathering(std::uint64_t seed) const {
     GatherOptions options;
     options.seed = seed;
     options.rays = kRays;
-    options.near_factor *= float(std::sqrt(double(kPaths) / double(std::max(kPaths, photons))));
     options.bright = bright_ ? &*bright_ : nullptr;
     return options;
   }
@@ -278,8 +280,7 @@ Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathe
 
 void measure_records(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
   const auto gather = [&](std::uint64_t seed) {
-    return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(),
-                       light.gathering(picture.options.photons, seed));
+    return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(), light.gathering(seed));
   };
   const std::array<FinalGather, 2> gathers{gather(picture.options.seed), gather(~picture.options.seed)};
   const RecordStore placed = place_roughly(picture, gathers[0]);
@@ -361,6 +362,7 @@ void measure_gathering(const Picture& picture, const RoughLight& light, RoughFra
 RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view,
                        const RoughOptions& options) {
   RoughFrame rough;
+  rough.paths_of_light = options.photons;
   look_at_places(scene, view, options, rough);
   RayCounts counts;
   const Samples paths = take_samples(scene, view, nullptr, options, counts);
@@ -374,11 +376,12 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   formats::PhotonBlock photons =
       pilot_photons(scene.tracer, aimed, options.kinds, kPaths, options.seed ^ 0x61727269766564ull);
   rough.photons_per_path = double(photons.photons.size()) / kPaths;
+  if (scene.lights.has_distant()) rough.paths_of_light = photon_paths(rough.photons_per_path, options.photons);
   compare(picture, photons, paths, rough);
   bound_by_paths(options, rough);
   const auto enough = [&] { return options.enough && options.enough(rough); };
   if (enough()) return rough;
-  const RoughLight light(scene, std::move(photons), options);
+  const RoughLight light(scene, std::move(photons), rough.paths_of_light, options);
   measure_gathering(picture, light, rough);
   if (!enough()) measure_records(picture, light, rough);
   return rough;

@@ -63,12 +63,13 @@ struct RoughFrame {
   MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
   double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
   double photons_per_path = 0;
+  std::uint64_t paths_of_light = 0;  ///< that the map would have: more than asked for where few of them arrive
 };
 
 struct RoughOptions {
   std::string kinds;  ///< of photons, as PhotonOptions::set_kinds: "caustic,indirect"
   double pixel_error = 0.016;
-  std::uint64_t photons = 700'000;       ///< paths that the map would have
+  std::uint64_t photons = 700'000;       ///< paths of light that the map has where enough of them arrive
   std::span<const AimSphere> seen = {};  ///< where points lie; none: everywhere
   std::uint64_t seed = 0;
   int places = 2048;  ///< of the picture

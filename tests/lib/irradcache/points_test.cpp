@@ -228,6 +228,21 @@ TEST(Points, ContrastCountsWhereItIsMoreThanNoiseOfPhotons) {
   EXPECT_FALSE(apart(10, 0, 10));       // of nobody knows how few photons
 }
 
+/// Every second point of a grid has no light, the others 50 photons' worth: 1 against 0 is more than 32 times, surely.
+/// A look-up that takes light as even does not say so, though it was asked before.
+TEST(Points, TakenAsEvenAreNotCompared) {
+  std::vector<IrradiancePoint> points;
+  for (int i = 0; i < 100; ++i) {
+    points.push_back(point_at({float(i % 10), 0, float(i / 10)}, {0, 1, 0}, 0, float(i % 2)));
+    points.back().direct = Rgb(float(i % 2));
+    points.back().radius = i % 2 ? 1.0f : 10.0f;
+  }
+  PointLookup lookup(points, 1);
+  EXPECT_FALSE(lookup.is_uniform_indirect(lookup.light(44)) || lookup.is_uniform(lookup.light(44)));
+  lookup.take_as_even();
+  EXPECT_TRUE(lookup.is_uniform_indirect(lookup.light(44)) && lookup.is_uniform(lookup.light(44)));
+}
+
 /// Bright points, and dark ones close behind them that face the same way: of another object they are the outer leaf of
 /// a double wall, of the same one they are where its light ends.
 TEST(Points, TheOtherLeafOfADoubleWallIsNoContrast) {

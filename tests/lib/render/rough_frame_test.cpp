@@ -69,6 +69,19 @@ TEST(RoughFrame, EndsWhenTheAnswerIsKnown) {
   EXPECT_LE(paths.gather.all, whole.gather.all);
 }
 
+/// A wall divides the room, and one half is dark. A frame's points are 6 times as dense as a rough frame's, so nearly
+/// all rays end at their first hit. The work of a sample is at most 2 for the camera ray, 2 for the onward ray, 1 for the
+/// light sample and 1 for the point. One ray in 25 finds no point in a fold of the room and costs 5 more: 6.20 in all.
+/// If neighbours across the wall were compared, rays of the lit half would go on beside it: 6.52.
+TEST(RoughFrame, RaysEndAtPointsAsInAFrame) {
+  test::HandMadeScene scene;
+  scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
+  scene.add_quad({2, 0, 0}, {2, 4, 0}, {2, 4, 4}, {2, 0, 4}, test::matte(Rgb(0.5f)));
+  scene.add_quad({0.5f, 3.9f, 1.5f}, {1.5f, 3.9f, 1.5f}, {1.5f, 3.9f, 2.5f}, {0.5f, 3.9f, 2.5f},
+                 test::matte(Rgb(0.0f), Rgb(5.0f)));
+  EXPECT_LT(rough_of(scene.frame(), 64, std::uint64_t(1) << 40).gather.work, 6.35);
+}
+
 /// The number of records does not grow with the number of pixels as long as pixels do not limit radii. Here radii are
 /// 20 cm and more, because all surfaces are 1 m away and more. With 64 pixels a pixel is 5 cm wide and a record is
 /// valid over 4 of them; with 640 pixels over 40. The places differ between the two: a fifth.
