@@ -26,7 +26,7 @@ IDEAS = (
     Idea("gloss forks", "under a gloss both lobes are followed at the first surface", "frames",
          (("lib/render/path_tracer.cpp", "if (known_ && known_->forks() && ", "if (known_ && walk.bounce > 1000 && known_->forks() && "),)),
     Idea("gloss reads points", "what a rough gloss shows is told by points, as what rays of the hemisphere meet", "frames",
-         (("lib/render/path_tracer.cpp", "(beyond.spread > 0 && !known.bright)", "(beyond.spread > 1000 && !known.bright)"),)),
+         (("lib/render/path_tracer.cpp", "(since.spread > 0 && !known.bright)", "(since.spread > 1000 && !known.bright)"),)),
     # ---- numbers of samples
     Idea("parts apart", "light samples, rays onward and camera rays have numbers of their own", "frames",
          (("lib/render/pixel_noise.cpp",
@@ -43,7 +43,7 @@ IDEAS = (
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
     Idea("more photons", "up to 16 times as many photon paths where few of them arrive", "photons",
-         (("lib/plan/decide.cpp", "lights_.has_distant() && rough.places > 0 ? photon_paths(", "rough.places > 1000000000 ? photon_paths("),)),
+         (("lib/render/rough_frame.cpp", "if (scene.lights.has_distant()) rough.paths_of_light", "if (scene.lights.count() > 1000000000) rough.paths_of_light"),)),
     Idea("points by importance", "points lie where cameras look", "points",
          (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
     Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",
