@@ -209,6 +209,7 @@ def write(bench, page, docs, peers, figures, command, left_out):
     text = f"""# Results
 
 Written by `{command}` (tests/bench/bench.py); every number comes out of it, `--only NAME` measures one part again. Details: {link}, a file for each part.
+Seen error beside path tracing, a dozen scenes: [every-scene-quick.md]({link}/every-scene-quick.md).
 
 CPU seconds are user and system time of all threads and processes. Normalised: x (bare walk measured in the same run, million photons
 per CPU second of one thread: tests/bench/bare_walk, Embree alone on S2) / 5; absolute limits are in these, comparisons are of one run. Rows called
