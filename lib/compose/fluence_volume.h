@@ -10,9 +10,9 @@
 
 namespace tempolux {
 
-/// Sums over the cells of a grid: the majorants' box with each cell cut into `per_majorant`^3. A cell sums flux /
-/// majorant [W m] of its photons per channel, as a 64-bit multiple of `unit`. So adding a photon and subtracting it
-/// again restores the sums exactly, in any order.
+/// Sums of photon flux over the cells of a grid. The grid covers the majorants' box and cuts each majorant cell into
+/// `per_majorant`^3 cells. A cell holds, by channel, the sum of flux / majorant [W m] of its photons as a 64-bit
+/// multiple of `unit`. Such sums are exact: a photon that is added and subtracted again leaves no trace, in any order.
 class FluenceSums {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 25;

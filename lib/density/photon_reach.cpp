@@ -8,7 +8,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kAsked = 1000;
-constexpr std::size_t kStray = 20;  ///< one photon in this many may be farther from others than the reach
+constexpr std::size_t kStray = 20;  ///< one photon in this many may lie farther from its neighbours than the reach
 
 }  // namespace
 

@@ -20,8 +20,8 @@ struct Halves {
 /// Halved first: the sum may not be a number.
 inline float mean_of(float a, float b) { return a / 2 + b / 2; }
 
-/// The neighbourhood of a pixel: the pixels of its kind within 7 x 7, and again their pixels of the kind within 7 x 7,
-/// so that close pixels weigh more.
+/// The neighbourhood of a pixel: pixels of its kind, weighted. The weights are those of two box filters of 7 x 7
+/// pixels, one after the other, over pixels of one kind. So close pixels weigh more.
 class Neighbourhood {
  public:
   /// `kinds`, by pixel: 1 inside surfaces, 0 at edges.

@@ -138,7 +138,8 @@ class Unpacking {
     add(std::move(piece));
   }
 
-  /// Adds settings and size of one accessor to the piece; the indices come first.
+  /// Appends the decoding settings and the size of one accessor to the piece. The accessor of the indices is the first
+  /// one to be appended.
   void add_part(const Part& part, PackedPiece& piece, const std::string& place) const {
     const Json& accessors = array_of(document_, "accessors");
     if (part.accessor >= accessors.size()) fail(place, "accessor " + std::to_string(part.accessor) + " does not exist");

@@ -37,6 +37,31 @@ class HandMadeScene {
   std::uint32_t add_quad(Vec3 a, Vec3 b, Vec3 c, Vec3 d, const Material& material, bool moving = false) {
     return add({a, b, c, d}, {{0, 1, 2}, {0, 2, 3}}, material, moving);
   }
+  /// The six faces of a box, fronts outwards; returns the object's number.
+  std::uint32_t add_box(Vec3 lower, Vec3 upper, const Material& material, bool moving = false) {
+    const Vec3 l = lower, u = upper;
+    return add({{l.x, l.y, l.z},
+                {u.x, l.y, l.z},
+                {u.x, u.y, l.z},
+                {l.x, u.y, l.z},
+                {l.x, l.y, u.z},
+                {u.x, l.y, u.z},
+                {u.x, u.y, u.z},
+                {l.x, u.y, u.z}},
+               {{0, 2, 1},
+                {0, 3, 2},
+                {4, 5, 6},
+                {4, 6, 7},
+                {0, 1, 5},
+                {0, 5, 4},
+                {3, 6, 2},
+                {3, 7, 6},
+                {0, 7, 3},
+                {0, 4, 7},
+                {1, 2, 6},
+                {1, 6, 5}},
+               material, moving);
+  }
   /// The six faces of a box, fronts inwards.
   void add_room(Vec3 lower, Vec3 upper, const Material& material) {
     const Vec3 l = lower, u = upper;

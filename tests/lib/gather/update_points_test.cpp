@@ -28,28 +28,7 @@ struct Room {
     scene.add_room({0, 0, 0}, {4, 3, 4}, test::matte({0.7f, 0.6f, 0.5f}));
     scene.add_quad({1.7f, 2.95f, 1.7f}, {2.3f, 2.95f, 1.7f}, {2.3f, 2.95f, 2.3f}, {1.7f, 2.95f, 2.3f},
                    test::matte(Rgb(0.0f), Rgb(10.0f)), lamp_moves);
-    const Vec3 u = at + Vec3{0.6f, 0.6f, 0.6f};
-    scene.add({{at.x, at.y, at.z},
-               {u.x, at.y, at.z},
-               {u.x, u.y, at.z},
-               {at.x, u.y, at.z},
-               {at.x, at.y, u.z},
-               {u.x, at.y, u.z},
-               {u.x, u.y, u.z},
-               {at.x, u.y, u.z}},
-              {{0, 2, 1},
-               {0, 3, 2},
-               {4, 5, 6},
-               {4, 6, 7},
-               {0, 1, 5},
-               {0, 5, 4},
-               {3, 6, 2},
-               {3, 7, 6},
-               {0, 7, 3},
-               {0, 4, 7},
-               {1, 2, 6},
-               {1, 6, 5}},
-              test::matte(Rgb(0.3f)), true);
+    scene.add_box(at, at + Vec3{0.6f, 0.6f, 0.6f}, test::matte(Rgb(0.3f)), true);
     frame = scene.frame();
     standing = static_scene_of(frame);
     table = build_emission_table(std::span(&frame, 1));

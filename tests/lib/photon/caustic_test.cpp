@@ -23,29 +23,6 @@ Material glass(float roughness, Rgb color = Rgb(1.0f), float distance = INFINITY
   m.attenuation_distance = distance;
   return m;
 }
-void add_box(HandMadeScene& scene, Vec3 l, Vec3 u, const Material& m) {
-  scene.add({{l.x, l.y, l.z},
-             {u.x, l.y, l.z},
-             {u.x, u.y, l.z},
-             {l.x, u.y, l.z},
-             {l.x, l.y, u.z},
-             {u.x, l.y, u.z},
-             {u.x, u.y, u.z},
-             {l.x, u.y, u.z}},
-            {{0, 2, 1},
-             {0, 3, 2},
-             {4, 5, 6},
-             {4, 6, 7},
-             {0, 1, 5},
-             {0, 5, 4},
-             {3, 6, 2},
-             {3, 7, 6},
-             {0, 7, 3},
-             {0, 4, 7},
-             {1, 2, 6},
-             {1, 6, 5}},
-            m);
-}
 
 struct Stored {
   double direct = 0, caustic = 0, indirect = 0, emitted = 0, gone = 0;  ///< W, green
@@ -83,7 +60,7 @@ Stored trace(HandMadeScene& scene, std::uint64_t count, std::uint32_t object) {
 TEST(Caustics, SlabPassesWhatFresnelSays) {
   for (float color : {1.0f, 0.4f}) {
     HandMadeScene scene;
-    add_box(scene, {-40, -0.1f, -40}, {40, 0.1f, 40}, glass(0, Rgb(color), color < 1 ? 0.2f : INFINITY));
+    scene.add_box({-40, -0.1f, -40}, {40, 0.1f, 40}, glass(0, Rgb(color), color < 1 ? 0.2f : INFINITY));
     const std::uint32_t floor =
         scene.add_quad({-400, -2, 400}, {400, -2, 400}, {400, -2, -400}, {-400, -2, -400}, matte(Rgb(0.0f)));
     scene.add_point_light({0, 1.1f, 0}, Rgb(1.0f));
@@ -113,7 +90,7 @@ TEST(Caustics, RoughGlassLosesNoPhotons) {
     Material wall = matte(Rgb(0.0f), Rgb(1.0f));
     wall.double_sided = false;
     closed.add_room({-2, -2, -2}, {2, 2, 2}, wall);
-    add_box(closed, {-1.2f, -1.2f, -1.2f}, {1.2f, 1.2f, 1.2f}, glass(roughness));
+    closed.add_box({-1.2f, -1.2f, -1.2f}, {1.2f, 1.2f, 1.2f}, glass(roughness));
     const Stored stored = trace(closed, 200000, 0);
     EXPECT_NEAR((stored.direct + stored.caustic) / stored.emitted, 1, 0.005) << roughness;
     EXPECT_GT(stored.caustic_count, 10000u);

@@ -42,28 +42,7 @@ struct Room {
     if (!sunny)
       scene.add_quad({0.4f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.6f}, {0.4f, 0.99f, 0.6f},
                      test::matte(Rgb(0.0f), Rgb(5.0f)), lamp_moves);
-    const Vec3 u = at + Vec3{0.2f, 0.2f, 0.2f};
-    scene.add({{at.x, at.y, at.z},
-               {u.x, at.y, at.z},
-               {u.x, u.y, at.z},
-               {at.x, u.y, at.z},
-               {at.x, at.y, u.z},
-               {u.x, at.y, u.z},
-               {u.x, u.y, u.z},
-               {at.x, u.y, u.z}},
-              {{0, 2, 1},
-               {0, 3, 2},
-               {4, 5, 6},
-               {4, 6, 7},
-               {0, 1, 5},
-               {0, 5, 4},
-               {3, 6, 2},
-               {3, 7, 6},
-               {0, 7, 3},
-               {0, 4, 7},
-               {1, 2, 6},
-               {1, 6, 5}},
-              box, true);
+    scene.add_box(at, at + Vec3{0.2f, 0.2f, 0.2f}, box, true);
     frame = scene.frame();
     if (sunny) {
       PlacedLight sun;

@@ -15,30 +15,6 @@ using test::glass;
 using test::HandMadeScene;
 using test::matte;
 
-/// A box, fronts outwards.
-void add_box(HandMadeScene& scene, Vec3 l, Vec3 u, const Material& m) {
-  scene.add({{l.x, l.y, l.z},
-             {u.x, l.y, l.z},
-             {u.x, u.y, l.z},
-             {l.x, u.y, l.z},
-             {l.x, l.y, u.z},
-             {u.x, l.y, u.z},
-             {u.x, u.y, u.z},
-             {l.x, u.y, u.z}},
-            {{0, 2, 1},
-             {0, 3, 2},
-             {4, 5, 6},
-             {4, 6, 7},
-             {0, 1, 5},
-             {0, 5, 4},
-             {3, 6, 2},
-             {3, 7, 6},
-             {0, 7, 3},
-             {0, 4, 7},
-             {1, 2, 6},
-             {1, 6, 5}},
-            m);
-}
 /// A screen at z = -3 that glows with radiance 1 towards +z.
 void add_screen(HandMadeScene& scene) {
   scene.add_quad({-40, -40, -3}, {40, -40, -3}, {40, 40, -3}, {-40, 40, -3}, matte(Rgb(0.0f), Rgb(1.0f)));
@@ -84,7 +60,7 @@ TEST(GlassPaths, SlabLetsThroughTheFresnelSeries) {
       Material m = glass(0);
       m.attenuation_color = Rgb(float(color));
       m.attenuation_distance = color < 1 ? 0.25f : INFINITY;
-      add_box(scene, {-4, -4, -0.1f}, {4, 4, 0.1f}, m);
+      scene.add_box({-4, -4, -0.1f}, {4, 4, 0.1f}, m);
       add_screen(scene);
       const double f = fresnel(std::cos(angle), 1.5), inside = std::sqrt(1 - std::pow(std::sin(angle) / 1.5, 2));
       const double a = std::pow(color, 0.2 / inside / 0.25), expected = (1 - f) * (1 - f) * a / (1 - f * f * a * a);
@@ -100,7 +76,7 @@ TEST(GlassPaths, RoughGlassInAFurnaceIsInvisible) {
   for (float roughness : {0.0f, 0.1f, 0.3f, 0.6f, 1.0f}) {
     HandMadeScene scene;
     scene.add_room({-2, -2, -2}, {2, 2, 2}, matte(Rgb(0.0f), Rgb(1.0f)));
-    add_box(scene, {-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, glass(roughness));
+    scene.add_box({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, glass(roughness));
     const Mean seen = look(scene, {1.5f, 0.4f, 1.2f}, {-1.4f, -0.3f, -1}, 40000);
     // 0.005 is the required accuracy for a few boundaries per path
     EXPECT_NEAR(seen.mean(), 1, 0.005 + 3 * seen.sigma()) << roughness;
