@@ -206,11 +206,12 @@ def write(bench, page, docs, peers, figures, command, left_out):
         if f:
             (results / f"{name}.md").write_text(section(name, f, command).rstrip("\n") + "\n")
     link = results.relative_to(page.parent) if results.is_relative_to(page.parent) else results
+    quick = results / "every-scene-quick.md"  # everyscene.py --quick --report writes it
+    beside = f"Seen error beside path tracing, a dozen scenes: [{quick.name}]({link}/{quick.name}).\n" if quick.is_file() else ""
     text = f"""# Results
 
 Written by `{command}` (tests/bench/bench.py); every number comes out of it, `--only NAME` measures one part again. Details: {link}, a file for each part.
-Seen error beside path tracing, a dozen scenes: [every-scene-quick.md]({link}/every-scene-quick.md).
-
+{beside}
 CPU seconds are user and system time of all threads and processes. Normalised: x (bare walk measured in the same run, million photons
 per CPU second of one thread: tests/bench/bare_walk, Embree alone on S2) / 5; absolute limits are in these, comparisons are of one run. Rows called
 preset are the shipped ones, the same for every scene; a row with settings of its own says so. A verdict is the latest run's; after {MOST_CHANGES} changes
