@@ -1,5 +1,5 @@
-// formats/base_file.h -- an overlay names the file it changes: keys `base` and `base-digest` (photons.md, section 8;
-// radsamples.md, section 6).
+// formats/base_file.h -- the base of an overlay: the file that the overlay changes. The header keys `base` and
+// `base-digest` name it (photons.md, section 8; radsamples.md, section 6).
 #pragma once
 
 #include <string>
@@ -16,7 +16,8 @@ inline bool is_base_name(std::string_view text) {
   return !text.empty() && text != "." && text != ".." && text.find('/') == text.npos && is_printable(text);
 }
 
-/// What is wrong with the two keys; "" if nothing. Both empty: no overlay.
+/// Checks the values of the two keys: returns the fault, or "" if there is none. If both are empty, the file is no
+/// overlay.
 inline std::string_view fault_of_base(std::string_view name, std::string_view digest) {
   if (name.empty() != digest.empty()) return "base and base-digest do not stand together";
   if (!name.empty() && !is_base_name(name)) return "base is not the name of a file without folder";
@@ -24,7 +25,8 @@ inline std::string_view fault_of_base(std::string_view name, std::string_view di
   return "";
 }
 
-/// The base of the overlay `path`: it lies in the same folder; of a pipe, "-", in the current one.
+/// Path of the base of the overlay `path`. The base lies in the overlay's folder; if the overlay comes from a pipe
+/// ("-"), in the current folder.
 inline std::string path_of_base(const std::string& path, const std::string& name) {
   return path.substr(0, path.rfind('/') + 1) + name;
 }

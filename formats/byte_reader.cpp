@@ -13,7 +13,7 @@
 namespace tempolux::formats {
 namespace {
 
-constexpr std::size_t kBufferSize = 32 << 10;  // small: it is copied once more than the large reads
+constexpr std::size_t kBufferSize = 32 << 10;  // small, since bytes in the buffer are copied twice
 
 std::string reason_of(int error) { return std::strerror(error); }
 

@@ -1,4 +1,5 @@
-// formats/byte_reader.h -- a file or pipe, read front to back with the offset at hand for messages.
+// formats/byte_reader.h -- reads a file or a pipe front to back and counts bytes, so that messages can give the
+// offset.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +18,18 @@ class ByteReader {
   ByteReader(const ByteReader&) = delete;
   ByteReader& operator=(const ByteReader&) = delete;
 
-  /// The next `size` bytes into `data`; fail()s with "ends inside WHAT" if there are fewer. ResourceError if
-  /// the system cannot read.
+  /// Reads the next `size` bytes into `data`. If there are fewer, calls fail() with "ends inside WHAT". Throws
+  /// ResourceError if the system cannot read.
   void read(void* data, std::size_t size, const char* what);
-  /// fail()s unless `size` more bytes can follow; of a pipe this is not known, and passes. Call it with every
-  /// count from the file before memory is taken for it.
+  /// Calls fail() if fewer than `size` more bytes can follow. The size of a pipe is unknown, so every size passes.
+  /// Call it with every count from the file before memory is allocated for that count.
   void expect(std::uint64_t size, const char* what);
-  /// fail()s if there is another byte.
+  /// Calls fail() if there is another byte.
   void expect_end();
 
   /// Bytes read so far.
   std::uint64_t offset() const { return offset_; }
-  /// Size of the whole file from where it was opened; 0 if it is a pipe.
+  /// Number of bytes from where the file was opened to its end; 0 for a pipe.
   std::uint64_t size() const { return known_size_ ? size_ : 0; }
 
   /// Throws InputError "FILE: byte OFFSET: REASON; REMEDY".

@@ -8,7 +8,7 @@
 namespace tempolux::formats {
 namespace {
 
-/// The longest head of a block: mark, words, checksum.
+/// Largest number of words in the head of a block. A head is: mark, words, checksum.
 constexpr std::size_t kMaxWords = 4;
 
 }  // namespace

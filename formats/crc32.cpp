@@ -1,8 +1,8 @@
-// formats/crc32.cpp -- by 16 tables, or by folding.
+// formats/crc32.cpp -- computes CRC-32 with 16 tables, or by folding with carry-less multiplication.
 //
-// Folding: V. Gopal et al., "Fast CRC Computation for Generic Polynomials Using PCLMULQDQ Instruction",
-// Intel, 2009. Tables: M. Kounavis, F. Berry, "A Systematic Approach to Building High Performance
-// Software-Based CRC Generators", ISCC 2005, with 16 bytes per step.
+// Folding: V. Gopal et al., "Fast CRC Computation for Generic Polynomials Using PCLMULQDQ Instruction", Intel, 2009.
+// Tables: M. Kounavis, F. Berry, "A Systematic Approach to Building High Performance Software-Based CRC Generators",
+// ISCC 2005, with 16 bytes per step.
 #include "formats/crc32.h"
 
 #include <immintrin.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Tables = std::array<std::array<std::uint32_t, 256>, 16>;
 
-/// tables[k][b]: what byte b followed by k zero bytes does to a zero register.
+/// tables[k][b] is the register after byte b and k zero bytes, if the register was zero before.
 constexpr Tables make_tables() {
   Tables tables{};
   for (std::uint32_t b = 0; b < 256; ++b) {
@@ -29,7 +29,7 @@ constexpr Tables make_tables() {
 }
 constexpr Tables kTables = make_tables();
 
-/// The register (not inverted) after `size` more bytes.
+/// Returns the register (not inverted) after `size` more bytes.
 std::uint32_t advance(std::uint32_t r, const unsigned char* p, std::size_t size) {
   for (; size >= 16; size -= 16, p += 16) {
     std::array<std::uint32_t, 4> w;
@@ -48,12 +48,12 @@ __attribute__((target("pclmul"))) inline __m128i load(const unsigned char* p) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
 }
 
-/// x moved forward by the distance whose remainders are in k, plus the 16 bytes that lie there.
+/// Moves x forward by the distance whose remainders are in k, and adds the 16 bytes at the new place.
 __attribute__((target("pclmul"))) inline __m128i fold(__m128i x, __m128i k, __m128i next) {
   return _mm_xor_si128(_mm_xor_si128(_mm_clmulepi64_si128(x, k, 0x00), _mm_clmulepi64_si128(x, k, 0x11)), next);
 }
 
-/// As advance(), for size >= 64.
+/// The same as advance(), for size >= 64.
 __attribute__((target("pclmul"))) std::uint32_t advance_folded(std::uint32_t r, const unsigned char* p,
                                                                std::size_t size) {
   // x^(512+32), x^(512-32) and x^(128+32), x^(128-32) mod P, reflected [Gopal 2009, table 2]
@@ -71,7 +71,7 @@ __attribute__((target("pclmul"))) std::uint32_t advance_folded(std::uint32_t r, 
   }
   __m128i x = fold(fold(fold(x0, by_16, x1), by_16, x2), by_16, x3);
   for (; size >= 16; size -= 16, p += 16) x = fold(x, by_16, load(p));
-  // The 16 bytes left have the remainder of all bytes so far.
+  // The remaining 16 bytes have the same remainder as all bytes so far.
   std::array<unsigned char, 16> rest;
   _mm_storeu_si128(reinterpret_cast<__m128i*>(rest.data()), x);
   return advance(advance(0, rest.data(), rest.size()), p, size);

@@ -6,11 +6,11 @@
 
 namespace tempolux::formats {
 
-/// CRC of `size` bytes; `crc` is that of the bytes before them (0 at the start), as zlib's crc32().
-/// Carry-less multiplication where the processor has it, else tables; the same value either way.
+/// CRC of `size` bytes. `crc` is the CRC of the bytes before them, 0 at the start, as in zlib's crc32(). Uses
+/// carry-less multiplication if the processor has it, else tables; both give the same value.
 std::uint32_t crc32(const void* data, std::size_t size, std::uint32_t crc = 0);
 
-/// The two ways, for tests and timings. crc32_folded must only be called where crc32_has_folding().
+/// The two implementations, for tests and timings. Call crc32_folded only if crc32_has_folding() is true.
 std::uint32_t crc32_tables(const void* data, std::size_t size, std::uint32_t crc = 0);
 std::uint32_t crc32_folded(const void* data, std::size_t size, std::uint32_t crc = 0);
 bool crc32_has_folding();

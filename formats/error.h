@@ -1,16 +1,16 @@
-// formats/error.h -- the kinds of trouble a tool can be in, and whose fault each is.
+// formats/error.h -- the two kinds of errors that a tool reports: faults of the input, and failures of the machine.
 #pragma once
 
 #include <stdexcept>
 
 namespace tempolux {
 
-/// The input is bad, stale or unsupported. The message says file, place and remedy. A tool exits 2.
+/// The input is invalid, stale or unsupported. The message names file, place and remedy. The tool exits with 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The work could not be done: no memory, disk full, write failed. A tool exits 3.
+/// The work cannot be done: no memory, a full disk, a failed write. The tool exits with 3.
 struct ResourceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

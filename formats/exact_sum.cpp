@@ -5,8 +5,8 @@
 namespace tempolux::formats {
 
 double ExactSum::rounded() const {
-  // The sum as an integer of 11 limbs of 32 bits, in units of 2^-149; each limb first holds its own sum of
-  // low halves and high parts of the bins, then carries go up.
+  // Converts the bins to an integer of 11 limbs of 32 bits, in units of 2^-149. Each limb first sums the low halves
+  // and the high parts of its bins; then carries are added to the next limbs.
   std::array<std::int64_t, 11> limbs{};
   for (std::size_t e = 0; e < 256; ++e) {
     const std::size_t shift = e == 0 ? 0 : e - 1, limb = shift / 32;
@@ -29,7 +29,7 @@ double ExactSum::rounded() const {
     for (std::int64_t& limb : limbs) limb = -limb;
     carry();
   }
-  // The highest 64 bits that matter; what is below them only breaks ties.
+  // The highest 64 bits decide the result; lower bits only break ties.
   int top = int(limbs.size()) - 1;
   while (top > 0 && limbs[std::size_t(top)] == 0) --top;
   const auto limb = [&](int i) { return i >= 0 ? std::uint64_t(limbs[std::size_t(i)]) : 0; };

@@ -8,11 +8,11 @@
 
 namespace tempolux::formats {
 
-/// Adds float32 values without error: one 64-bit counter per sign and exponent takes the 24-bit mantissas, so
-/// the sum has no order and two sums may be joined. Room for 2^39 values.
+/// Adds float32 values without rounding. One 64-bit counter per sign and exponent sums the 24-bit mantissas, so the
+/// result does not depend on the order, and two sums can be joined. Holds up to 2^39 values.
 class ExactSum {
  public:
-  /// `value` must be finite.
+  /// Adds a value, which must be finite.
   void add(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     bins_[bits >> 23] += (bits & 0x7fffff) | (std::uint32_t((bits & 0x7f800000) != 0) << 23);
@@ -31,7 +31,7 @@ class ExactSum {
 struct ExactRgbSum {
   std::array<ExactSum, 3> channels;
 
-  /// `value` must be finite.
+  /// Adds a value, which must be finite.
   void add(const std::array<float, 3>& value) {
     for (std::size_t c = 0; c < 3; ++c) channels[c].add(value[c]);
   }

@@ -1,4 +1,5 @@
-// formats/float_bits.h -- what a float32 is, by its bits: the same in every floating-point mode.
+// formats/float_bits.h -- classifies float32 numbers by their bits, with the same result in every floating-point
+// mode.
 #pragma once
 
 #include <array>
@@ -7,13 +8,13 @@
 
 namespace tempolux::formats {
 
-/// Neither infinite nor NaN.
+/// True if x is neither infinite nor NaN.
 inline bool is_finite(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7f800000u) != 0x7f800000u; }
 
-/// Below zero, where denormal numbers count as zero too; -0 is not. NaN with a sign is.
+/// True if x is below 0; denormal numbers count as well, -0 does not. Also true for a NaN with a sign.
 inline bool is_negative(float x) { return std::bit_cast<std::uint32_t>(x) > 0x80000000u; }
 
-/// +0 or -0, and no denormal number.
+/// True for +0 and -0; false for denormal numbers.
 inline bool is_zero(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7fffffffu) == 0; }
 
 inline bool is_finite(const std::array<float, 3>& v) { return is_finite(v[0]) && is_finite(v[1]) && is_finite(v[2]); }

@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// XXH3 of 128 bits over the bytes it is fed, independent of how they were cut into pieces.
+/// XXH3 of 128 bits over all added bytes. The hash does not depend on the pieces in which they were added.
 class Hasher {
  public:
   Hasher();
@@ -20,21 +20,21 @@ class Hasher {
   Hasher& operator=(Hasher&&) noexcept;
 
   void add_bytes(const void* data, std::size_t size);
-  /// A string with its length, so that "ab","c" differs from "a","bc".
+  /// Adds a string and its length, so that "ab","c" differs from "a","bc".
   void add(std::string_view text);
-  /// A number or plain struct without padding, little-endian as on every machine we build for.
+  /// Adds a number, or a plain struct without padding; little-endian, as on every machine that this program supports.
   template <class T>
   requires(std::is_trivially_copyable_v<T> && !std::is_convertible_v<T, std::string_view>) void add(const T& value) {
     add_bytes(&value, sizeof(T));
   }
-  /// An array with its length.
+  /// Adds an array and its length.
   template <class T>
   void add_array(std::span<const T> values) {
     add(std::uint64_t(values.size()));
     add_bytes(values.data(), values.size_bytes());
   }
 
-  /// 32 lower-case hexadecimal digits. Does not end the hash: more may be added.
+  /// 32 lower-case hexadecimal digits. More data may be added afterwards.
   std::string hex() const;
 
  private:

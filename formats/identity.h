@@ -1,4 +1,4 @@
-// formats/identity.h -- which state of which scene a file belongs to (conventions.md, "Identity").
+// formats/identity.h -- identifies the scene, and its state, to which a file belongs (conventions.md, "Identity").
 #pragma once
 
 #include <array>
@@ -8,21 +8,22 @@
 
 namespace tempolux::formats {
 
-/// Content hashes by concern, each as evaluated at the frame or over the interval for which the file is
-/// valid; empty means unknown. Never the camera, seed, options or version.
+/// Content hashes by concern, evaluated at the frame or over the interval for which the file is valid; empty:
+/// unknown. Camera, seed, options and version are never part of an identity.
 struct Identity {
   std::string static_geometry, moving_geometry, materials, lights, media;
-  int first_frame = 0, last_frame = -1;  ///< valid for these frames; last < first: no identity at all
+  int first_frame = 0,
+      last_frame = -1;  ///< first and last frame for which the file is valid; last < first: there is no identity
 
-  /// Of photons: hash of the frozen emission table, by which paths were chosen. Light that was recorded holds whatever
-  /// it is; an update that replaces some of the paths needs the same.
+  /// Only for photons: hash of the emission table with which paths were chosen. A reader of the photons does not need
+  /// it. An update that replaces some of the paths needs the same table.
   std::string emission{};
 
   bool known() const { return last_frame >= first_frame; }
   bool operator==(const Identity&) const = default;
 };
 
-/// A concern by the name that JSON and attributes of frames have for it; header lines write - for _.
+/// The name of a concern, as in JSON and in attributes of frames. Header lines write - instead of _.
 struct Concern {
   std::string_view name;
   std::string Identity::*hash;
@@ -33,11 +34,11 @@ inline constexpr std::array<Concern, 6> kConcerns{{{"static_geometry", &Identity
                                                    {"lights", &Identity::lights},
                                                    {"media", &Identity::media},
                                                    {"emission", &Identity::emission}}};
-/// Of the scene's state: all but the photons' emission.
+/// The concerns of the scene's state: all except `emission`.
 inline constexpr std::span<const Concern> kSceneConcerns = std::span(kConcerns).first(5);
 
-/// Which of `concerns` differ between what a file says and what the scene is: their names separated by ", ". Unknown on
-/// either side never differs. Frames are not compared: which may differ, the reader knows.
+/// Names of the concerns in which a file differs from the scene, separated by ", ". A hash that is unknown on either
+/// side does not count as different. Frames are not compared: the reader decides which frames may differ.
 std::string stale_concerns(const Identity& file, const Identity& scene,
                            std::span<const Concern> concerns = kSceneConcerns);
 

@@ -1,4 +1,4 @@
-// formats/large_pages.h -- memory for many values: asks the system to hand it out in large pages.
+// formats/large_pages.h -- asks the system for large pages for a large array.
 #pragma once
 
 #include <sys/mman.h>
@@ -8,9 +8,10 @@
 
 namespace tempolux::formats {
 
-/// Hint before a block of `bytes` is first written: in pages of 2 MiB there is one page fault where there were 512,
-/// which one thread would take while the others wait. Only whole large pages inside the block are concerned, so memory
-/// around it stays as it is, and a system that has none ignores the hint. No error: it is never needed.
+/// Asks the system to use pages of 2 MiB for a block of `bytes`. Call it before the block is first written. A large
+/// page causes one page fault instead of 512; while one thread waits for a fault, others wait, too. Only whole large
+/// pages inside the block change, so memory around it is not affected. A system without large pages ignores the
+/// request, so there is no error.
 inline void prefer_large_pages(void* first, std::size_t bytes) {
   constexpr std::uintptr_t page = std::uintptr_t(2) << 20;
   const auto begin = (reinterpret_cast<std::uintptr_t>(first) + page - 1) & ~(page - 1);

@@ -1,4 +1,4 @@
-// formats/octahedral.h -- unit vectors in two 16-bit numbers (conventions.md, "Octahedral normals").
+// formats/octahedral.h -- stores unit vectors in two 16-bit numbers (conventions.md, "Octahedral normals").
 #pragma once
 
 #include <array>
@@ -7,9 +7,9 @@
 
 namespace tempolux::formats {
 
-/// Octahedral encoding (conventions.md) of a vector that is not zero, of any length, in two 16-bit numbers of
-/// 0 .. 65534, and back (unit length to 1e-7). The axes are exact; the angle is off by at most 6.5e-5 rad.
-/// Encoding has no branches: which way normals look is not foretold by those before.
+/// Octahedral encoding (conventions.md): converts a vector of any length above 0 to two numbers of 0 .. 65534;
+/// decoding returns a vector of unit length within 1e-7. The axes are exact; other directions err by at most 6.5e-5
+/// rad. Encoding has no branches, since processors cannot predict the direction of normals.
 inline std::array<std::uint16_t, 2> encode_normal(std::array<float, 3> n) {
   const double x = n[0], y = n[1], z = n[2], s = std::abs(x) + std::abs(y) + std::abs(z), p = x / s, q = y / s;
   const double below = z < 0, above = 1 - below, a = std::abs(p),

@@ -1,4 +1,5 @@
-// formats/record_statistics.h -- counts, bounds and spreads of records, for the summaries of several formats.
+// formats/record_statistics.h -- numbers, bounds, means and differences of records, for the summaries of several
+// formats.
 #pragma once
 
 #include <algorithm>
@@ -25,15 +26,15 @@ struct Spread {
     max = std::max(max, x);
     sum += x;
   }
-  /// 0 if there are none.
+  /// Mean of the numbers; 0 if there are none.
   double mean() const { return count > 0 ? sum / double(count) : 0; }
 };
 
-/// How many records there are, of what and where.
+/// Number of records by surface set and by object, and their bounds.
 struct RecordCensus {
   std::uint64_t count = 0;
   std::array<std::uint64_t, 2> by_set{};             ///< by SurfaceSet
-  std::map<std::uint16_t, std::uint64_t> by_object;  ///< 65535: not known
+  std::map<std::uint16_t, std::uint64_t> by_object;  ///< by id.object; 65535: unknown
   std::array<Spread, 3> position;                    ///< m, world space, by axis
 
   template <class Record>
@@ -45,14 +46,14 @@ struct RecordCensus {
   }
 };
 
-/// How two files differ, record by record in file order.
+/// Differences of two files, record by record in file order.
 struct RecordDifference {
-  std::uint64_t records = 0;    ///< compared: the shorter of the two
-  std::uint64_t differing = 0;  ///< of these, records with any field unequal
-  std::uint64_t first = 0;      ///< index of the first of them; only if differing > 0
+  std::uint64_t records = 0;    ///< number of compared records: that of the shorter file
+  std::uint64_t differing = 0;  ///< compared records with any different field
+  std::uint64_t first = 0;      ///< index of the first different record; only if differing > 0
   std::array<double, 3> largest_position{}, largest_irradiance{};  ///< m, W/m^2: |a - b| by axis, by channel
 
-  /// Widens by the next two records. `irradiance_of` gives the channels to compare.
+  /// Compares the next two records. `irradiance_of` gives the channels to compare.
   template <class Record, class Irradiance>
   void add(const Record& a, const Record& b, const Irradiance& irradiance_of) {
     const std::uint64_t index = records++;

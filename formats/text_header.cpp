@@ -8,7 +8,7 @@
 namespace tempolux::formats {
 namespace {
 
-/// Header lines write - where a concern's name has _.
+/// The concern's key in a header line: its name with - instead of _.
 std::string key_of(const Concern& concern) {
   std::string key(concern.name);
   std::replace(key.begin(), key.end(), '_', '-');

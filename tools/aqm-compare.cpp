@@ -1,10 +1,10 @@
-// tools/aqm-compare.cpp -- how wrong a frame or a sequence is, and whether a viewer would see that.
+// tools/aqm-compare.cpp -- measures the error of a frame or a sequence, and predicts whether a viewer sees it.
 //
 //     aqm-compare frame.exr --reference-halves ref_a.exr ref_b.exr --json - | jq .total.rmse
 //     aqm-compare out.####.exr ref.####.exr --frames 0-47 --layer indirect --difference diff.####.png
 //     aqm-compare a.exr b.exr --flow flow.exr --except why.exr -o seen.png --fail-above 5%
 //
-// Figures: lib/aqm/frame_error.h; what a viewer sees: lib/aqm/visible_difference.h; JSON:
+// Error figures: lib/aqm/frame_error.h. Vision model: lib/aqm/visible_difference.h. JSON:
 // formats/comparison/comparison.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -132,8 +132,8 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   return comparison;
 }
 
-/// relMSE for --fail-above: if it does not exist, since the reference is black, 0 for equal frames and infinity for
-/// others.
+/// relMSE for --fail-above. If the reference is black, relMSE does not exist: then 0 for equal frames, and infinity
+/// for others.
 double relative_error(const Comparison& result) {
   if (const auto& relative = result.total.relative_squared_error) return relative->value;
   return result.total.squared_error.root() > 0 ? INFINITY : 0;

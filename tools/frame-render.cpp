@@ -2,8 +2,8 @@
 //
 //     frame-render room.glb --frame 12 --size 640x360 --spp 256 --halves -o ref.0012.exr
 //     frame-render room.glb --frame 12 --size 640x360 --photons p.0012.photons -o f.0012.exr
-//     frame-render room.glb --frame 12 --size 640x360 --irradcache c.0012.irradcache --photons p.0012.photons -o
-// f.0012.exr
+//     frame-render room.glb --frame 12 --size 640x360 --irradcache c.0012.irradcache --photons p.0012.photons
+//                  -o f.0012.exr
 //
 // Channels and attributes: formats/frames/frames.md.
 #include <CLI/CLI.hpp>

@@ -1,11 +1,13 @@
 // gather-temporal -- light over time: irradiance records that keep their incoming light from frame to frame, and
-// photons of many frames.
+// light textures from the photons of many frames.
 //
 //     gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad
-//     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540 -o s.0000.radsamples --cache
-//     c.0000.irradcache gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540 --previous
-//     s.0000.radsamples ... gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540 -o
-//     s.####.radsamples --cache c.####.irradcache
+//     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540
+//                     -o s.0000.radsamples --cache c.0000.irradcache
+//     gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540
+//                     --previous s.0000.radsamples -o s.0001.radsamples --cache c.0001.irradcache
+//     gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540
+//                     -o s.####.radsamples --cache c.####.irradcache
 //
 // Formats: formats/radsamples/radsamples.md, formats/irradcache/irradcache.md.
 #include <CLI/CLI.hpp>

@@ -1,10 +1,12 @@
-// ibr-warp -- make a frame from key frames: warp their pixels by depth, say where pixels move and which must be traced.
+// ibr-warp -- make a frame from key frames: warp their pixels by depth, write the pixel flow, and mark the pixels that
+// must be traced.
 //
-//     ibr-warp key.0008.exr key.0016.exr --scene room.glb --frame 12 -o f.0012.exr --flow flow.0012.exr --mask
-//     why.0012.exr frame-render room.glb --frame 12 --base f.0012.exr --mask why.0012.exr -o f.0012.exr ... ibr-warp
-//     left.exr --view right.exr -o warped.exr --mask why.exr
+//     ibr-warp key.0008.exr key.0016.exr --scene room.glb --frame 12 -o f.0012.exr
+//              --flow flow.0012.exr --mask why.0012.exr
+//     frame-render room.glb --frame 12 --base f.0012.exr --mask why.0012.exr -o f.0012.exr ...
+//     ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr
 //
-// docs/methods/warping.md; formats/flow/flow.md, formats/mask/mask.md.
+// Method: docs/methods/warping.md. Formats: formats/flow/flow.md, formats/mask/mask.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>

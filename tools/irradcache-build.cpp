@@ -30,7 +30,7 @@ constexpr std::uint64_t kMaxPoints = 1 << 28;  ///< per side of all surfaces
 
 using Options = tools::CacheOptions;
 
-/// Refuses options that the step does not read; they would have no effect, silently.
+/// Refuses options that the step does not read: without an error they would have no effect.
 void refuse_unread(const CLI::App& app, const std::string& step, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (app.get_option(name)->count() > 0) throw InputError(name + ": " + step + " does not read it; leave it out");

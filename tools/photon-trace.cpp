@@ -4,8 +4,8 @@
 //     photon-trace room.glb --frames 0-47 --photons 1M -o photons.####.photons
 //     photon-trace room.glb --frame 0 --map static --photons 1M -o s.photons --paths s.paths
 //     photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons
-//     photon-trace room.glb --frames 1-23 --majorants m --update p.####.photons --share 10% --strategy census -o
-//     p.####.photons
+//     photon-trace room.glb --frames 1-23 --majorants m --update p.####.photons --share 10% --strategy census
+//                  -o p.####.photons
 //
 // Formats: formats/photons/photons.md, formats/paths/paths.md. Method: docs/methods/dynamic.md.
 #include <CLI/CLI.hpp>
@@ -151,7 +151,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   count(tool, result, output, tracer.refused_ray_count());
 }
 
-/// What moves in one interval of a segment: its boxes, and a hash of its states.
+/// The movers in one interval of a segment: their boxes, and a hash of their states.
 struct Movers {
   MovingBoxes boxes;
   std::string hash;

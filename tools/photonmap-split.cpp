@@ -185,7 +185,7 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
   tool.stats().count("high", double(parts.high.size()));
 }
 
-/// The names of `list` that are (or are not) in `chosen`, in the order of `list`.
+/// The names of `list`, in its order, that are in `chosen`; with `in` false, those that are not.
 std::string names_in(const std::string& list, const std::vector<std::string>& chosen, bool in) {
   std::string names;
   for (const std::string& name : CLI::detail::split(list, ','))
@@ -195,7 +195,7 @@ std::string names_in(const std::string& list, const std::vector<std::string>& ch
 
 const std::vector<std::string> kKinds{"direct", "caustic", "indirect", "volume"};
 
-/// The kinds that --kind names, and the other kinds, of those in a file.
+/// The kinds of a file in two lists: the kinds that --kind names, and all others.
 struct KindLists {
   std::string chosen, rest;
 };

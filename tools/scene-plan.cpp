@@ -1,11 +1,10 @@
-// tools/scene-plan.cpp -- decides what a range of frames needs, and from which files each picture is made.
+// tools/scene-plan.cpp -- decides which stages a range of frames needs, and from which files each picture is made.
 //
 //     scene-plan room.glb --frames 0-47 -o out
-//
-// Writes out/plan.json, out/plan.mk and out/state/*. If scene, options and programs have not changed it only checks
-// that and writes nothing. Format: formats/plan/plan.md.
-//
 //     scene-plan --tidy out
+//
+// Writes out/plan.json, out/plan.mk and out/state/*. If scene, options and programs have not changed, it only finds
+// that out and writes nothing. Format: formats/plan/plan.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -52,7 +51,7 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
   wish.method = *named<FrameMethod>(kFrameMethods, options.method);
   wish.filter = options.filter == "auto" ? Wish::kAutoFilter : options.filter == "none" ? 0 : std::stoi(options.filter);
   wish.camera = tool.common().camera;
-  // Of the options that all stages share, those that are not part of the scene's states.
+  // Collects the shared options that are not part of the scene's states.
   for (const CLI::Option* option : tool.app().get_options())
     if (const auto& shared = tools::kSharedWords; std::ranges::find(shared, option->get_name()) != shared.end())
       for (const std::string& word : option->results()) wish.common += option->get_name() + ' ' + word + '\n';

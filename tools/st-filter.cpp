@@ -39,7 +39,7 @@ struct Options {
 
 /// The files of a frame.
 struct Names {
-  std::string frame, flow;  ///< flow "": in the frame's own channels, if anywhere
+  std::string frame, flow;  ///< flow "": the flow is in the frame's own channels, or there is none
 };
 
 /// A loaded frame, and the data that the filter needs from it.
@@ -51,7 +51,7 @@ struct LoadedFrame {
 
 class FilterRun {
  public:
-  /// sequence: filters each frame in turn, with its neighbours; otherwise only one frame.
+  /// sequence: true to filter each frame in turn, with its neighbours; false to filter a single frame.
   FilterRun(tools::Tool& tool, const Options& options, std::vector<Names> names, bool sequence)
       : tool_(tool),
         options_(options),
@@ -85,7 +85,7 @@ class FilterRun {
   }
 
  private:
-  /// The root mean square over frames goes into the statistics.
+  /// Adds the frame's noise to the statistics, which report the root mean square over all frames.
   void say_noise(const Image& image) {
     for (const std::string name : {"noise.codes", "noise.linear"})
       if (const auto found = image.numbers.find("tempolux:" + name); found != image.numbers.end()) {
@@ -116,8 +116,8 @@ class FilterRun {
     } catch (const InputError& error) { throw InputError(file + ": " + error.what()); }
   }
 
-  /// to_filter: the frame itself is filtered, now or later; otherwise only the parts that its neighbours use are read
-  /// and kept.
+  /// to_filter: true if the frame itself is filtered, now or later. Otherwise only the parts that its neighbours use
+  /// are read and kept.
   LoadedFrame& load(std::size_t index, bool to_filter) {
     const auto [found, is_new] = loaded_.try_emplace(index);
     LoadedFrame& loaded = found->second;
@@ -140,8 +140,8 @@ class FilterRun {
     return loaded;
   }
 
-  /// colour: pixels may be NaN and are filled from their neighbours. all: reads every channel, else those that
-  /// --channels and the filter need.
+  /// colour: true if pixels may be NaN; these are filled from their neighbours. all: true to read every channel,
+  /// false to read the channels of --channels and those that the filter needs.
   Image read(const std::string& file, bool colour, bool all) {
     const auto is_named = [&](const std::string& channel) {
       return std::any_of(options_.channels.begin(), options_.channels.end(),

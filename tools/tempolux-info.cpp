@@ -1,4 +1,4 @@
-// tempolux-info -- what is in a file of ours: facts, validity, digest, differences, pictures, points.
+// tempolux-info -- shows the content of files: facts, validity, digest, differences, pictures, points.
 //
 //     tempolux-info f.0012.photons
 //     tempolux-info --diff a.exr b.exr || echo they differ
@@ -32,7 +32,7 @@ void print(const Facts& facts, bool as_json) {
   else std::cout << tools::facts_as_text(facts);
 }
 
-/// Exit code 1 if a file is not valid; a missing file is a usage error.
+/// Checks files. Returns exit code 1 if a file is not valid; a missing file is bad usage.
 int check_files(tools::Tool& tool, const Request& request) {
   int code = tools::exit_ok;
   for (const std::string& file : request.files) {

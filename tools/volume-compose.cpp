@@ -1,4 +1,5 @@
-// volume-compose -- put the smoke of a scene into a frame: light that photons brought, slices from back to front.
+// volume-compose -- composites the smoke of a scene over a frame: light from photons and sampled lamps, in slices
+// along each ray.
 //
 //     volume-compose room.glb --frame 12 --photons 12.photons --base 12.exr -o 12.smoke.exr
 //     volume-compose room.glb --frame 12 --photons 12.photons --points 12.irradpoints --base 12.exr -o 12.smoke.exr

@@ -1,4 +1,4 @@
-// formats/irradcache/header.cpp -- the text of a header (irradcache.md, section 1).
+// formats/irradcache/header.cpp -- writes and parses the text of a header (irradcache.md, section 1).
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 8> kColumnsNames{
     "none",      "influence",           "update",           "influence,update",
     "clearance", "influence,clearance", "update,clearance", "influence,update,clearance"};
 
-/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const IrradcacheHeader& h) {
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   if (!std::isfinite(h.error_bound) || h.error_bound < 0) return "error-bound is not finite or is negative";
@@ -28,7 +28,7 @@ std::string_view fault_of(const IrradcacheHeader& h) {
   return fault_of_common(h.origin, h.identity);
 }
 
-/// "first last first last ..."
+/// Parses "first last first last ..."; false if the text has another form.
 bool parse_ranges(std::string_view text, std::vector<std::array<std::int32_t, 2>>& ranges) {
   const auto spaces = std::size_t(std::count(text.begin(), text.end(), ' '));
   if (spaces % 2 == 0) return false;

@@ -1,4 +1,4 @@
-// formats/irradcache/layout.h -- numbers of irradcache.md that its writer and its reader share.
+// formats/irradcache/layout.h -- declarations that the writer and the reader of irradcache.md share.
 #pragma once
 
 #include <array>
@@ -19,29 +19,30 @@ inline constexpr std::string_view kBlockMark = "IRRC";
 inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kClearanceSize = 20,
                              kEndBodySize = 32;
 
-/// Bytes of one record in a block with these columns.
+/// Number of bytes of one record in a block with these columns.
 constexpr std::size_t record_size(std::uint32_t columns) {
   return kRecordSize + (columns & column_influence ? kInfluenceSize : 0) + (columns & column_update ? kUpdateSize : 0) +
          (columns & column_clearance ? kClearanceSize : 0);
 }
 
-/// The format with the earliest minor version that has all keys of such a header.
+/// The format with the earliest minor version that has all keys of this header.
 Format format_of(const IrradcacheHeader& header);
 
-/// The text of a header. std::invalid_argument if a value is out of range.
+/// The text of the header. Throws std::invalid_argument if a value is out of range.
 std::string header_text(const IrradcacheHeader& header);
 
-/// Parses the text of a file of version 1.minor; keys that we do not know pass if it is later than ours. Nothing if the
-/// header is good.
+/// Parses the text of a file of version 1.`minor`. Unknown keys are accepted if `minor` is later than this program's
+/// version. Returns nothing if the header is valid.
 std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradcacheHeader& header);
 
-/// Why a record is refused (irradcache.md, sections 3 and 4); "" if it is good. The predicate of the format.
+/// The reason for refusing a record (irradcache.md, sections 3 and 4); "" if the record is valid. Reader and writer
+/// both call it.
 std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t columns);
 
-/// Counts records and adds their irradiance.
+/// Counts records and sums their irradiance.
 class RecordSums {
  public:
-  /// `record` must be good.
+  /// Adds a record, which must be valid.
   void add(const IrradianceCacheRecord& record);
   IrradcacheTotals totals() const { return {count_, sum_.rounded()}; }
 

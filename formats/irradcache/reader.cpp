@@ -1,4 +1,4 @@
-// formats/irradcache/reader.cpp -- load_irradcache.
+// formats/irradcache/reader.cpp -- reads .irradcache files.
 #include "formats/irradcache/layout.h"
 
 namespace tempolux::formats {
@@ -6,7 +6,7 @@ namespace {
 
 using namespace irradcache;
 
-/// The records of a block's body.
+/// Parses the records in the body of a block and appends them.
 void append_records(const std::vector<char>& body, std::uint32_t columns, const ContainerReader& in,
                     std::vector<IrradianceCacheRecord>& records, RecordSums& sums) {
   const std::size_t count = body.size() / record_size(columns);

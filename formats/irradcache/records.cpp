@@ -1,4 +1,4 @@
-// formats/irradcache/records.cpp -- what one record may hold, sums of many, the digest (irradcache.md).
+// formats/irradcache/records.cpp -- checks and sums records, and computes the digest (irradcache.md).
 #include <cmath>
 #include <limits>
 

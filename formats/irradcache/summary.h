@@ -1,4 +1,4 @@
-// formats/irradcache/summary.h -- what is in an irradiance cache, in figures: for people and for checks.
+// formats/irradcache/summary.h -- statistics of an irradiance cache, for people and for checks.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ struct IrradcacheSummary {
   RecordCensus records;
   std::array<Spread, 3> irradiance;  ///< W/m^2, by channel
   Spread radius;                     ///< m: after clamping
-  Spread radius_unclamped;           ///< m: of the records where it is finite
-  Spread influence;                  ///< W/m^2; none without the column
+  Spread radius_unclamped;           ///< m: over the records with a finite one
+  Spread influence;                  ///< W/m^2; without values if the file does not have the column
 };
 
 IrradcacheSummary summarise(const IrradcacheFile& file);

@@ -1,4 +1,4 @@
-// formats/irradcache/writer.cpp -- IrradcacheWriter.
+// formats/irradcache/writer.cpp -- writes .irradcache files.
 #include <algorithm>
 #include <stdexcept>
 
@@ -19,7 +19,7 @@ struct IrradcacheWriter::State {
   void write_block(std::span<const IrradianceCacheRecord> records);
 };
 
-/// At most kMaxBlockCount records, then the columns.
+/// Writes at most kMaxBlockCount records: the records first, then their optional columns.
 void IrradcacheWriter::State::write_block(std::span<const IrradianceCacheRecord> records) {
   std::string body;
   body.reserve(records.size() * record_size(columns));

@@ -1,4 +1,4 @@
-// formats/irradpoints/header.cpp -- the text of a header (irradpoints.md, section 1).
+// formats/irradpoints/header.cpp -- writes and parses the text of a header (irradpoints.md, section 1).
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace tempolux::formats::irradpoints {
 namespace {
 
-/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const IrradpointsHeader& h) {
   if (kinds_of(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect in this order";
   if (!is_part(h.part)) return "part is not low or high";

@@ -1,6 +1,6 @@
-// formats/irradpoints/irradpoints.h -- read and write .irradpoints files, version 1.
+// formats/irradpoints/irradpoints.h -- reads and writes .irradpoints files, version 1.
 //
-// irradpoints.md is the definition of the format. If this code and that text disagree, the text is right.
+// irradpoints.md defines the format. If this code disagrees with that page, the page is right.
 #pragma once
 
 #include <array>
@@ -19,36 +19,36 @@
 
 namespace tempolux::formats {
 
-/// Irradiance at one side of a surface point, by kind of the light that arrives.
+/// Irradiance on one side of a surface at a point, by kind of light.
 struct IrradiancePointRecord {
   std::array<float, 3> position{};                    ///< m; world space minus the header's origin
-  std::array<std::uint16_t, 2> normal{32767, 32767};  ///< octahedral: on the side that is lit (octahedral.h)
-  std::uint16_t object = 0xffff;                      ///< id.object; 0xffff if not known
+  std::array<std::uint16_t, 2> normal{32767, 32767};  ///< octahedral (octahedral.h): normal of the lit side
+  std::uint16_t object = 0xffff;                      ///< id.object; 0xffff if unknown
   SurfaceSet set = SurfaceSet::static_set;
   std::uint8_t reserved = 0;  ///< written as 0, read as 0
-  float radius = 0;           ///< m: of the density estimate behind `indirect`; 0: there was none
-  /// W/m^2, linear Rec. 709, >= 0; 0 of a kind that the header does not name.
+  float radius = 0;           ///< m: radius of the density estimate of `indirect`; 0: no estimate was made
+  /// W/m^2, linear Rec. 709, >= 0. A kind that the header does not name is 0.
   std::array<float, 3> direct{}, caustic{}, indirect{};
 
   bool operator==(const IrradiancePointRecord&) const = default;
 };
 static_assert(sizeof(IrradiancePointRecord) == 60);
 
-/// What the header says.
+/// The values of the header.
 struct IrradpointsHeader {
   std::string history;             ///< one line per tool, each ending in LF
   Identity identity;               ///< scene state and frames for which the points are valid; may be empty
   std::array<double, 3> origin{};  ///< m, world space
-  /// m, > 0: mean distance of points, sqrt(area / number of points): each stands for spacing^2 m^2.
+  /// m, > 0: mean distance of points, sqrt(area / number of points). Each point represents an area of spacing^2.
   double spacing = 0;
-  std::uint64_t emitted_count = 0;  ///< photon paths behind caustic and indirect; 0: none
-  /// Kinds that were estimated, in this order; the others are not in the file.
+  std::uint64_t emitted_count = 0;  ///< photon paths from which caustic and indirect were estimated; 0: none
+  /// The estimated kinds, in this order; the file has no columns for the others.
   std::string kinds = "direct,caustic,indirect";
-  std::string part;  ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
+  std::string part;  ///< "low" or "high": the file holds only this part of the light (photonmap-split); "": all light
 };
 
-/// Closing totals: exact sums over the points of each kind's irradiance [W/m^2], rounded once. Times
-/// spacing^2 they are the flux that arrives at the surfaces [W].
+/// Totals in the end block: exact sums over the points of each kind's irradiance [W/m^2], rounded once. A sum times
+/// spacing^2 is the flux [W] that arrives at the surfaces.
 struct IrradpointsTotals {
   std::uint64_t point_count = 0;
   std::array<double, 3> direct{}, caustic{}, indirect{};
@@ -56,17 +56,17 @@ struct IrradpointsTotals {
   bool operator==(const IrradpointsTotals&) const = default;
 };
 
-/// Writes one .irradpoints stream front to back; never seeks, so a pipe will do. A mistake of the caller (a
-/// value out of the format's range, irradiance of a kind the header does not name) is std::invalid_argument:
-/// nothing that a reader would refuse is written.
+/// Writes one .irradpoints stream front to back, without seeking, so the output may be a pipe. Throws
+/// std::invalid_argument for a value out of the format's range, or irradiance of a kind that the header does not
+/// name. So every written file is one that readers accept.
 class IrradpointsWriter {
  public:
-  /// `sink` is called with pieces of the file, in order; it throws if it cannot write.
+  /// `sink` receives the pieces of the file, in order. It throws if it cannot write.
   IrradpointsWriter(std::function<void(const void*, std::size_t)> sink, const IrradpointsHeader& header);
   ~IrradpointsWriter();
-  /// Appends points, cut into blocks of at most 65536. The cut depends on the calls; the digest does not.
+  /// Appends points in blocks of at most 65536. The blocks depend on the calls; the digest does not.
   void write(std::span<const IrradiancePointRecord> points);
-  /// Writes the end block. Returns the totals as written.
+  /// Writes the end block and returns the totals.
   IrradpointsTotals finish();
 
  private:
@@ -74,20 +74,20 @@ class IrradpointsWriter {
   std::unique_ptr<State> state_;
 };
 
-/// A whole file.
+/// The content of a file.
 struct IrradpointsFile {
   IrradpointsHeader header;
   IrradpointsTotals totals;
   std::vector<IrradiancePointRecord> records;
 };
 
-/// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
-/// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known()
-/// is false, and the tool warns. Memory: 60 bytes per point and one block.
+/// Reads and checks a file; "-" is standard input. Throws InputError "FILE: byte OFFSET: REASON; REMEDY" for every
+/// truncation, flipped bit and value out of range. An unknown identity is no error: header.identity.known() is then
+/// false, and the tool warns. Memory: 60 bytes per point and one block.
 IrradpointsFile load_irradpoints(const std::string& path);
 
-/// Hash of the data without header and history (irradpoints.md, section 7): equal points in equal order have
-/// equal digests, however they were cut into blocks.
+/// Hash of the data without header and history (irradpoints.md, section 7). Equal points in equal order have equal
+/// digests, whatever the blocks.
 std::string digest_of(const IrradpointsFile& file);
 
 }  // namespace tempolux::formats

@@ -1,4 +1,4 @@
-// formats/irradpoints/layout.h -- numbers of irradpoints.md that its writer and its reader share.
+// formats/irradpoints/layout.h -- declarations that the writer and the reader of irradpoints.md share.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcach
 inline constexpr std::string_view kBlockMark = "IRPT";
 inline constexpr std::size_t kPointSize = 24, kIrradianceSize = 12, kEndBodySize = 80;
 
-/// One of the three kinds, in the order of their columns.
+/// A kind of light; kKinds lists the three kinds in the order of their columns.
 struct Kind {
   std::string_view name;
   std::array<float, 3> IrradiancePointRecord::*irradiance;
@@ -29,32 +29,33 @@ inline constexpr std::array<Kind, 3> kKinds{
      {"caustic", &IrradiancePointRecord::caustic, &IrradpointsTotals::caustic},
      {"indirect", &IrradiancePointRecord::indirect, &IrradpointsTotals::indirect}}};
 
-/// Bits of the kinds in a list "direct,indirect", bit k for kKinds[k]; 0 if it is not such a list in this
-/// order.
+/// Bit set of the kinds in a list such as "direct,indirect"; bit k stands for kKinds[k]. 0 if the text is no list of
+/// kinds in this order.
 unsigned kinds_of(std::string_view list);
 
-/// Bytes of one point in a block with these kinds.
+/// Number of bytes of one point in a block with these kinds.
 constexpr std::size_t point_size(unsigned kinds) {
   return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1));
 }
 
-/// The version a file with this header has: the oldest that knows its keys.
+/// The format with the earliest minor version that has all keys of this header.
 Format format_of(const IrradpointsHeader& header);
 
-/// The text of a header. std::invalid_argument if a value is out of range.
+/// The text of the header. Throws std::invalid_argument if a value is out of range.
 std::string header_text(const IrradpointsHeader& header);
 
-/// Parses the text of a file of version 1.minor; keys that we do not know pass if it is later than ours. Nothing if the
-/// header is good.
+/// Parses the text of a file of version 1.`minor`. Unknown keys are accepted if `minor` is later than this program's
+/// version. Returns nothing if the header is valid.
 std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradpointsHeader& header);
 
-/// Why a point is refused (irradpoints.md, section 3); "" if it is good. The predicate of the format.
+/// The reason for refusing a point (irradpoints.md, section 3); "" if the point is valid. Reader and writer both call
+/// it.
 std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds);
 
-/// Counts points and adds their irradiance, kind by kind.
+/// Counts points and sums their irradiance by kind.
 class PointSums {
  public:
-  /// `point` must be good.
+  /// Adds a point, which must be valid.
   void add(const IrradiancePointRecord& point);
   IrradpointsTotals totals() const;
 

@@ -1,4 +1,4 @@
-// formats/irradpoints/reader.cpp -- load_irradpoints.
+// formats/irradpoints/reader.cpp -- reads .irradpoints files.
 #include "formats/irradpoints/layout.h"
 
 namespace tempolux::formats {
@@ -6,7 +6,7 @@ namespace {
 
 using namespace irradpoints;
 
-/// The points of a block's body.
+/// Parses the points in the body of a block and appends them.
 void append_points(const std::vector<char>& body, unsigned kinds, const ContainerReader& in,
                    std::vector<IrradiancePointRecord>& points, PointSums& sums) {
   const std::size_t count = body.size() / point_size(kinds);

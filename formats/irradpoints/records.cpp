@@ -1,4 +1,4 @@
-// formats/irradpoints/records.cpp -- what one point may hold, sums of many, the digest (irradpoints.md).
+// formats/irradpoints/records.cpp -- checks and sums points, and computes the digest (irradpoints.md).
 #include "formats/float_bits.h"
 #include "formats/hash.h"
 #include "formats/irradpoints/layout.h"

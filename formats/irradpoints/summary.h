@@ -1,5 +1,4 @@
-// formats/irradpoints/summary.h -- what is in a file of irradiance points, in figures: for people and for
-// checks.
+// formats/irradpoints/summary.h -- statistics of a file of irradiance points, for people and for checks.
 #pragma once
 
 #include <array>
@@ -9,21 +8,21 @@
 
 namespace tempolux::formats {
 
-/// Figures of one kind of light.
+/// Statistics of one kind of light.
 struct IrradianceShare {
   std::array<Spread, 3> irradiance;  ///< W/m^2, by channel
-  std::array<double, 3> flux{};      ///< W: what arrives at all surfaces, total times spacing^2
+  std::array<double, 3> flux{};      ///< W: flux that arrives at all surfaces, total times spacing^2
 };
 
 struct IrradpointsSummary {
   RecordCensus points;
-  IrradianceShare direct, caustic, indirect;  ///< of a kind not in the file: of zeros
-  Spread radius;                              ///< m: of points that have a density estimate
+  IrradianceShare direct, caustic, indirect;  ///< zeros for a kind that the file does not have
+  Spread radius;                              ///< m: over the points with a density estimate
 };
 
 IrradpointsSummary summarise(const IrradpointsFile& file);
 
-/// Irradiance is that of all kinds together.
+/// Compares two files point by point; irradiance is the sum of all kinds.
 RecordDifference compare(const IrradpointsFile& a, const IrradpointsFile& b);
 
 }  // namespace tempolux::formats

@@ -1,4 +1,4 @@
-// formats/irradpoints/writer.cpp -- IrradpointsWriter.
+// formats/irradpoints/writer.cpp -- writes .irradpoints files.
 #include <algorithm>
 #include <stdexcept>
 
@@ -19,7 +19,7 @@ struct IrradpointsWriter::State {
   void write_block(std::span<const IrradiancePointRecord> points);
 };
 
-/// At most kMaxBlockCount points: all their places, then the irradiance of each kind.
+/// Writes at most kMaxBlockCount points: their places first, then the irradiance of each kind.
 void IrradpointsWriter::State::write_block(std::span<const IrradiancePointRecord> points) {
   std::string body;
   body.reserve(points.size() * point_size(kinds));

@@ -1,4 +1,4 @@
-// formats/mask/why.h -- why a pixel must be traced: the bits of a mask's channel `why` (mask.md 2).
+// formats/mask/why.h -- the causes for which a pixel must be traced: the bits of a mask's channel `why` (mask.md 2).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace tempolux::formats {
 
-/// A pixel's `why` is the sum of its causes; 0: nothing is wrong with it.
+/// Causes. A pixel's `why` is the sum of its causes; 0: the pixel need not be traced.
 enum Why : std::uint32_t {
   why_specular = 1,
   why_occlusion = 2,
@@ -22,10 +22,10 @@ enum Why : std::uint32_t {
 struct NamedWhy {
   Why bit;
   std::string_view name;
-  std::array<std::uint8_t, 3> color;  ///< sRGB: how tempolux-info draws it
+  std::array<std::uint8_t, 3> color;  ///< sRGB: the colour in tempolux-info's pictures
 };
 
-/// All of them, in the order in which a pixel with several is counted (its first cause) and drawn.
+/// All causes in order. A pixel with several causes is counted and drawn by the first of them.
 inline constexpr std::array<NamedWhy, 8> kWhys{{
     {why_specular, "specular", {80, 150, 255}},
     {why_occlusion, "occlusion", {230, 50, 50}},

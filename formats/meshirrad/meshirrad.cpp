@@ -41,14 +41,14 @@ bool is_filter(std::string_view text) {
   return false;
 }
 
-/// The least version that has what the header says.
+/// The earliest version that has all values of this header.
 Format format_of(const MeshirradHeader& h) {
   Format format = kFormat;
   format.minor = h.holds == MeshHolds::frame ? 0 : kHoldsSince;
   return format;
 }
 
-/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const MeshirradHeader& h) {
   if (!is_kinds(h.kinds)) return "kinds is not a list of direct, caustic, indirect in this order";
   if (!(h.cell > 0) || !std::isfinite(h.cell)) return "cell is not a length";
@@ -101,11 +101,11 @@ std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_
 
 bool is_good(float x) { return std::isfinite(x) && x >= 0; }
 
-/// The rules of meshirrad.md, section 3, for one element after the other.
+/// Checks element after element by the rules of meshirrad.md, section 3.
 class Checked {
  public:
   explicit Checked(MeshHolds holds) : holds_(holds) {}
-  /// "" if the element may follow those before.
+  /// Adds an element: returns the fault, or "" if the element may follow the earlier ones.
   std::string_view add(const MeshElement& e) {
     if (e.cuts < 1 || e.cuts > kMostCuts) return "cuts is not in 1 .. 1024";
     if (e.side > 1) return "side is neither 0 nor 1";
@@ -144,7 +144,7 @@ class Checked {
 }  // namespace
 
 MeshPlace mesh_place(std::uint32_t n, float u, float v) {
-  // Rows of equal v; in row j there are 2 (n - j) - 1 cells, in turn one that stands and one on its tip.
+  // Rows run along lines of equal v. Row j has 2 (n - j) - 1 cells: upright triangles alternate with inverted ones.
   const float x = std::clamp(u, 0.0f, 1.0f) * float(n), y = std::clamp(v, 0.0f, 1.0f) * float(n);
   const std::uint32_t j = std::min(std::uint32_t(y), n - 1), i = std::min(std::uint32_t(x), n - 1 - j);
   const bool tip = i + j + 1 < n && (x - float(i)) + (y - float(j)) > 1;

@@ -35,7 +35,7 @@ bool is_kinds(const std::string& list) {
   return false;
 }
 
-/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const PathsHeader& h) {
   if (h.group_count < 1 || h.group_count > kMaxGroupCount) return "groups is not in 1 .. 16777216";
   if (!is_kinds(h.kinds)) return "kinds is not a list of direct, caustic, indirect, volume in this order";
@@ -88,13 +88,13 @@ std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_u
   return std::nullopt;
 }
 
-/// The rules of paths.md, section 3, for one path after the other; and the sums of the end block.
+/// Checks path after path by the rules of paths.md, section 3, and computes the sums of the end block.
 class Checked {
  public:
   explicit Checked(const PathsHeader& header)
       : groups_(header.group_count), emitted_(header.emitted_count), intervals_(header.movers.size()) {}
 
-  /// "" if the path may follow those before.
+  /// Adds a path: returns the fault, or "" if the path may follow the earlier ones.
   std::string_view add(const TouchedPath& path) {
     if (path.path >= emitted_) return "path is not below emitted";
     if (path.intervals == 0 || (intervals_ < 64 && path.intervals >> intervals_))

@@ -1,6 +1,6 @@
-// formats/paths/paths.h -- read and write .paths files, version 1.
+// formats/paths/paths.h -- reads and writes .paths files, version 1.
 //
-// paths.md is the definition of the format. If this code and that text disagree, the text is right.
+// paths.md defines the format. If this code disagrees with that page, the page is right.
 #pragma once
 
 #include <array>
@@ -17,40 +17,40 @@
 
 namespace tempolux::formats {
 
-/// A photon path of a static map, and when in its segment something that moves can touch it.
+/// A light path of a static map that a mover can touch, and the intervals of the segment in which it can.
 struct TouchedPath {
-  std::uint64_t path = 0;       ///< number of the path: its group is path mod N_g
-  std::uint64_t intervals = 0;  ///< bit i: in interval i of the segment; not 0
+  std::uint64_t path = 0;       ///< number of the light path; its group is path mod N_g
+  std::uint64_t intervals = 0;  ///< bit i: a mover can touch the path in interval i; never 0
 
   bool operator==(const TouchedPath&) const = default;
 };
 static_assert(sizeof(TouchedPath) == 16);
 
-/// What the header says.
+/// The values of the header.
 struct PathsHeader {
   std::string history;                            ///< one line per tool, each ending in LF
-  Identity identity;                              ///< of what stands in the segment, and its frames
+  Identity identity;                              ///< identity of the segment's static scene, and the segment's frames
   std::array<double, 3> origin{};                 ///< m, world space
   std::uint32_t group_count = 1;                  ///< N_g of the map
-  std::uint64_t emitted_count = 0;                ///< paths of the map
-  std::uint64_t seed = 0;                         ///< of the map's random numbers
+  std::uint64_t emitted_count = 0;                ///< number of light paths of the map
+  std::uint64_t seed = 0;                         ///< seed of the map's random numbers
   std::string kinds = "direct,caustic,indirect";  ///< kinds of photons in the map
-  std::vector<std::string> movers;                ///< by interval, 1 to 64: hash of what moves in its frames
+  std::vector<std::string> movers;                ///< by interval, 1 to 64: hash of the movers in its frames
 };
 inline constexpr std::size_t kMostIntervals = 64;
 
-/// The interval that holds `frame`: floor((frame - first) n / (last - first + 1)) of n intervals. The frame must lie in
-/// first .. last.
+/// The interval that holds `frame`, which lies in first .. last: floor((frame - first) n / (last - first + 1)) with n
+/// = interval_count.
 std::size_t interval_of(int frame, int first, int last, std::size_t interval_count);
 
-/// Writes one .paths stream front to back; never seeks, so a pipe will do. A mistake of the caller is
-/// std::invalid_argument: nothing that a reader would refuse is written.
+/// Writes one .paths stream front to back, without seeking, so the output may be a pipe. Throws std::invalid_argument
+/// for a value that readers would refuse.
 class PathsWriter {
  public:
-  /// `sink` is called with pieces of the file, in order; it throws if it cannot write.
+  /// `sink` receives the pieces of the file, in order. It throws if it cannot write.
   PathsWriter(std::function<void(const void*, std::size_t)> sink, const PathsHeader& header);
   ~PathsWriter();
-  /// Paths in the order of the map: groups ascending, in a group ascending.
+  /// Appends paths in the order of the map: by group, and by number within a group.
   void write(std::span<const TouchedPath> paths);
   void finish();
 

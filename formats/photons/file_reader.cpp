@@ -6,7 +6,8 @@
 namespace tempolux::formats::photons {
 namespace {
 
-/// Makes room for exactly `count` values without touching those of a buffer that already has as many.
+/// Resizes to exactly `count` values. If the buffer already has as many, their content stays, which saves clearing
+/// them.
 template <class T>
 void resize(std::vector<T>& values, std::size_t count) {
   if (values.size() != count) values.resize(count);

@@ -1,4 +1,4 @@
-// formats/photons/file_reader.h -- one .photons file as it stands, overlays not resolved.
+// formats/photons/file_reader.h -- reads one .photons file alone; an overlay is not joined with its base.
 #pragma once
 
 #include "formats/container.h"
@@ -8,18 +8,19 @@ namespace tempolux::formats::photons {
 
 class FileReader {
  public:
-  /// Reads the header.
+  /// Opens the file and reads the header.
   explicit FileReader(const std::string& path);
 
   const PhotonHeader& header() const { return header_; }
   bool is_overlay() const { return !header_.base_name.empty(); }
-  /// Next block, which may be empty; false once ledger and end block have been read and checked.
+  /// Reads the next block, which may be empty. Returns false after the ledger and the end block were read and
+  /// checked.
   bool read_block(PhotonBlock& block);
-  /// Both after the last block.
+  /// Totals and ledger; valid after the last block.
   const PhotonTotals& totals() const { return totals_; }
   const std::vector<GroupFlux>& ledger() const { return ledger_; }
   std::uint64_t photon_count_bound() const { return in_.bytes().size() / photon_size(header_.columns); }
-  /// Throws InputError about the place reached.
+  /// Throws InputError with the present offset.
   [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const {
     in_.bytes().fail(in_.bytes().offset(), reason, remedy);
   }
@@ -35,7 +36,7 @@ class FileReader {
   PhotonHeader header_;
   RecordRules rules_;
   std::uint32_t last_group_ = 0;
-  std::vector<std::uint32_t> groups_;  ///< of an overlay: those that have a block
+  std::vector<std::uint32_t> groups_;  ///< in an overlay: the groups with a block
   std::uint64_t photon_count_ = 0;
   FluxSum stored_flux_;
   PhotonTotals totals_;

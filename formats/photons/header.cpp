@@ -1,4 +1,4 @@
-// formats/photons/header.cpp -- the text of a header (photons.md, section 2).
+// formats/photons/header.cpp -- writes and parses the text of a header (photons.md, section 2).
 #include <algorithm>
 
 #include "formats/base_file.h"
@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<std::string_view, kPathKinds> kKindNames{"direct", "caustic", "indirect", "volume", "tentative"};
 constexpr std::array<std::string_view, 4> kColumnsNames{"none", "direction", "albedo", "direction,albedo"};
 
-/// Bit set of the kinds in a list "direct,caustic"; 0 if it is not one.
+/// Bit set of the kinds in a list such as "direct,caustic"; 0 if the text is no such list.
 std::uint32_t parse_kinds(std::string_view list) {
   std::uint32_t kinds = 0;
   for (std::size_t first = 0; first <= list.size();) {
@@ -26,7 +26,7 @@ std::uint32_t parse_kinds(std::string_view list) {
 
 constexpr std::uint32_t kTentative = 1u << int(PathKind::tentative);
 
-/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const PhotonHeader& h) {
   if (h.map != "global" && h.map != "static" && h.map != "dynamic") return "map is not global, static or dynamic";
   if (parse_kinds(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect, volume, tentative";
@@ -45,7 +45,7 @@ std::string_view fault_of(const PhotonHeader& h) {
 
 constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2, kTentativeSince = 3, kPilotsSince = 4;  ///< minor versions
 
-/// Takes one line's value into the header.
+/// Parses the value of one line and stores it in the header.
 Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, PhotonHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "map") return h.map = value, Line::good;

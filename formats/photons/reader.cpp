@@ -1,4 +1,5 @@
-// formats/photons/reader.cpp -- PhotonReader: an overlay and its base as one map; the digest; load_photons.
+// formats/photons/reader.cpp -- reads photon maps: joins an overlay with its base, computes the digest, loads whole
+// maps.
 #include <algorithm>
 #include <functional>
 #include <stdexcept>
@@ -13,7 +14,7 @@ namespace {
 
 using namespace photons;
 
-/// The digest of photons.md, section 9.
+/// Computes the digest of photons.md, section 9.
 class Digest {
  public:
   void add(const PhotonBlock& block) {
@@ -54,9 +55,7 @@ class Digest {
   std::uint64_t count_ = 0;
 };
 
-/// The folder of a path with its slash; "" for a bare name and for "-".
-
-/// The ledger of a map: of two lists, groups ascending, the overlay's entry if both have one.
+/// Joins the ledgers of an overlay and its base, by ascending group. The overlay's entry replaces the base's.
 std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay, const std::vector<GroupFlux>& base) {
   std::vector<GroupFlux> merged;
   std::set_union(overlay.begin(), overlay.end(), base.begin(), base.end(), std::back_inserter(merged),
@@ -68,14 +67,14 @@ std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay, cons
 
 struct PhotonReader::State {
   FileReader file;
-  std::unique_ptr<FileReader> base;  ///< of an overlay
+  std::unique_ptr<FileReader> base;  ///< of an overlay; else null
   std::optional<Digest> digest, base_digest;
-  PhotonBlock next, next_base;  ///< of an overlay: the first block of each not yet delivered
+  PhotonBlock next, next_base;  ///< for an overlay: the next block of overlay and base that was not yet delivered
   bool has_next = false, has_next_base = false;
-  std::int64_t last_replaced = -1;  ///< the last group that the overlay was seen to hold
+  std::int64_t last_replaced = -1;  ///< the last group that the overlay holds, of those read so far
   PhotonTotals totals;
   std::vector<GroupFlux> ledger;
-  FluxSum stored_flux;  ///< of an overlay's whole map
+  FluxSum stored_flux;  ///< for an overlay: over the whole map
   bool ended = false;
 
   State(const std::string& path, const PhotonReadOptions& options) : file(path) {
@@ -106,7 +105,7 @@ bool PhotonReader::State::advance_base() {
   return true;
 }
 
-/// The block of the lower group; of a group that both have, the overlay's.
+/// Delivers the block of the lower group. If both files have the group, the overlay's block replaces the base's.
 bool PhotonReader::State::read_merged(PhotonBlock& block) {
   while (has_next || has_next_base) {
     if (has_next && (!has_next_base || next.group <= next_base.group)) {

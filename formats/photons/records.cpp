@@ -1,4 +1,4 @@
-// formats/photons/records.cpp -- what one photon may hold (photons.md, sections 4 and 5), and sums of many.
+// formats/photons/records.cpp -- checks photons (photons.md, sections 4 and 5) and sums their flux.
 #include <immintrin.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace tempolux::formats::photons {
 namespace {
 
-/// The reason why this photon is refused; "" if it is good. The predicate of the format.
+/// The reason for refusing a photon; "" if the photon is valid. Reader and writer both call it.
 std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
   for (float x : photon.position)
     if (!is_finite(x)) return "position is not finite";
@@ -25,7 +25,7 @@ std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
   return "";
 }
 
-/// The same for many at once, without the reason.
+/// True if any of the photons would be refused; tests many at once.
 bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
   const int exponent = 0x7f800000, none = 1;  // exponent & anything is never 1
   const __m256i mask = _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, 0, 0);

@@ -12,12 +12,12 @@ void add(PhotonShare& share, const Photon& photon) {
   for (std::size_t c = 0; c < 3; ++c) share.flux[c] += double(photon.flux[c]);
 }
 
-/// Photons of a reader one after the other, over the borders of blocks.
+/// Delivers a reader's photons one by one, across the borders of blocks.
 class PhotonStream {
  public:
   explicit PhotonStream(PhotonReader& reader) : reader_(reader) {}
 
-  /// Goes to the next photon; false at the end.
+  /// Advances to the next photon; false at the end.
   bool next() {
     while (++at_ >= block_.photons.size()) {
       if (!reader_.read_block(block_)) return false;
@@ -33,7 +33,8 @@ class PhotonStream {
   }
 
  private:
-  /// A column that one of the two lacks is a difference of the headers, not of each record.
+  /// Compares a column of two photons. A column that only one file has is a difference of headers, so it counts as
+  /// equal here.
   template <class Column>
   bool same(const Column& mine, const Column& others, std::size_t at) const {
     return mine.empty() || others.empty() || mine[at_] == others[at];
@@ -85,7 +86,7 @@ PhotonDifference compare(PhotonReader& a, PhotonReader& b) {
     widen(difference.largest_position, stream_a.photon().position, stream_b.photon().position);
     widen(difference.largest_flux, stream_a.photon().flux, stream_b.photon().flux);
   }
-  while (more_a) more_a = stream_a.next();  // so that totals and digests are known
+  while (more_a) more_a = stream_a.next();  // to the end, so that totals and digests become known
   while (more_b) more_b = stream_b.next();
   return difference;
 }

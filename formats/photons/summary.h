@@ -1,4 +1,4 @@
-// formats/photons/summary.h -- what is in a photon map, in figures: for people and for checks.
+// formats/photons/summary.h -- statistics of a photon map, for people and for checks.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace tempolux::formats {
 
-/// Number and flux of some of the photons.
+/// Number and flux of some photons.
 struct PhotonShare {
   std::uint64_t count = 0;
   std::array<double, 3> flux{};  ///< W: sum in file order
@@ -25,18 +25,18 @@ struct PhotonSummary {
   std::uint64_t largest_bounce = 0;
 };
 
-/// Reads all blocks that are left. Throws what the reader throws. One block of memory.
+/// Reads all remaining blocks. Throws as the reader does. Memory: one block.
 PhotonSummary summarise(PhotonReader& reader);
 
-/// How two maps differ, record by record in file order.
+/// Differences of two maps, photon by photon in file order.
 struct PhotonDifference {
-  std::uint64_t records = 0;    ///< compared: the shorter of the two
-  std::uint64_t differing = 0;  ///< of these, records with any field, group or column unequal
-  std::uint64_t first = 0;      ///< index of the first of them; only if differing > 0
+  std::uint64_t records = 0;    ///< number of compared photons: that of the smaller map
+  std::uint64_t differing = 0;  ///< compared photons with any different field, group or column
+  std::uint64_t first = 0;      ///< index of the first different photon; only if differing > 0
   std::array<double, 3> largest_position{}, largest_flux{};  ///< m, W: largest |a - b| by axis, by channel
 };
 
-/// Reads both to the end. Throws what the readers throw.
+/// Reads both maps to the end. Throws as the readers do.
 PhotonDifference compare(PhotonReader& a, PhotonReader& b);
 
 }  // namespace tempolux::formats

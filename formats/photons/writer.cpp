@@ -1,4 +1,4 @@
-// formats/photons/writer.cpp -- PhotonWriter and encode_block.
+// formats/photons/writer.cpp -- writes .photons files and encodes blocks.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -17,7 +17,7 @@ void put_flux(std::string& bytes, const std::array<double, 3>& flux) {
 
 [[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument("PhotonWriter: " + reason); }
 
-/// Appends one block of at most kMaxBlockCount photons, [first, first + count) of `block`.
+/// Encodes the photons [first, first + count) of `block`, at most kMaxBlockCount, as one block.
 void append_block(std::string& bytes, const PhotonBlock& block, std::uint32_t columns, std::size_t first,
                   std::size_t count) {
   const std::array<std::uint32_t, 2> words{block.group, std::uint32_t(count)};
@@ -52,14 +52,14 @@ struct PhotonWriter::State {
   PhotonHeader header;
   RecordRules rules;
   std::uint32_t last_group = 0;
-  std::vector<std::uint32_t> groups;  ///< of an overlay: those it holds
+  std::vector<std::uint32_t> groups;  ///< in an overlay: the groups that it holds
   std::uint64_t photon_count = 0;
   FluxSum stored_flux;
 
   State(ContainerWriter::Sink sink, const PhotonHeader& h)
       : out(std::move(sink), format_of(h), header_text(h)), header(h), rules(rules_of(h)) {}
   bool is_overlay() const { return !header.base_name.empty(); }
-  /// Checksums of the blocks in `bytes`, which must be those of `block`.
+  /// Reads the checksums of the encoded blocks in `bytes`, which must be those of `block`.
   std::vector<std::uint32_t> checksums_of(std::string_view bytes, const PhotonBlock& block) const;
   void check_ledger(std::span<const GroupFlux> ledger) const;
   void check_totals(const PhotonTotals& totals) const;

@@ -1,4 +1,4 @@
-// formats/plan/view.cpp -- read and write what plan.md calls a view.
+// formats/plan/view.cpp -- reads and writes the view files of plan.md.
 #include "formats/plan/view.h"
 
 #include <charconv>

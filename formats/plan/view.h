@@ -1,4 +1,4 @@
-// formats/plan/view.h -- state/SSSS-KEY.view: the spheres that hold what cameras see (plan.md, "Views").
+// formats/plan/view.h -- state/SSSS-KEY.view: spheres around the surfaces that cameras see (plan.md, "Views").
 #pragma once
 
 #include <array>
@@ -11,19 +11,20 @@ namespace tempolux::formats {
 struct ViewSphere {
   std::array<double, 3> centre{};  ///< world space, m
   double radius = 0;               ///< m, above 0
-  double weight = 0;               ///< above 0; shares are weight / sum of weights
+  double weight = 0;               ///< above 0; a sphere's share is its weight divided by the sum of all weights
 };
 
 inline constexpr std::size_t kMaxViewSpheres = 32;
 
-/// The file's text: a line that names the format, then a line per sphere; numbers that read back to the same bits.
+/// The text of the file: a line that names the format, then one line per sphere. Reading the numbers gives the same
+/// bits.
 std::string view_text(std::span<const ViewSphere> spheres);
 
-/// Reads the text; `name` is the file's in messages. InputError, with the line, for what is no view file, more than
-/// kMaxViewSpheres, numbers that are not finite or beyond 1e30, or a radius or weight that is not above 0.
+/// Parses the text; `name` is the file's name in messages. Throws InputError with the line for another kind of file,
+/// more than kMaxViewSpheres, numbers that are not finite or above 1e30, or a radius or weight that is not above 0.
 std::vector<ViewSphere> parse_view(const std::string& text, const std::string& name);
 
-/// The same of a file. InputError if it cannot be read.
+/// Reads and parses a file. Throws InputError also if the file cannot be read.
 std::vector<ViewSphere> read_view(const std::string& path);
 
 }  // namespace tempolux::formats

@@ -10,7 +10,7 @@
 namespace tempolux::formats::radsamples {
 namespace {
 
-/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const RadsamplesHeader& h) {
   if (!std::isfinite(h.diagonal) || h.diagonal <= 0) return "diagonal is not a length above 0";
   if (h.segment[0] > h.segment[1]) return "segment ends before it begins";

@@ -1,4 +1,4 @@
-// formats/radsamples/layout.h -- numbers and rules of radsamples.md that its writer and its reader share.
+// formats/radsamples/layout.h -- declarations and rules that the writer and the reader of radsamples.md share.
 #pragma once
 
 #include <array>
@@ -24,17 +24,18 @@ std::string header_text(const RadsamplesHeader& h);
 std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, bool allow_unknown,
                                              RadsamplesHeader& h);
 
-/// What is wrong with a record or a sample, as the reader and the writer both see it; "" if nothing. anchor: kNoAnchor
-/// without the column.
+/// Checks a record or a sample for both reader and writer: returns the fault, or "" if there is none. `anchor` is
+/// kNoAnchor if the file does not have the column.
 std::string_view fault_of(const RadsamplesRecord& r);
 std::string_view fault_of(const RadianceSample& s, std::uint32_t anchor, std::size_t points);
 
-/// Does a record of the file have its own samples in it? Always, but in overlays.
+/// True if the file itself holds the record's samples. Only in an overlay may a record take its samples from the
+/// base.
 bool is_own(const RadsamplesFile& file, std::size_t record);
-/// How many samples are in the file itself.
+/// Number of samples in the file itself.
 std::uint64_t own_samples(const RadsamplesFile& file);
 
-/// What the end block says.
+/// The values of the end block.
 struct Totals {
   std::uint64_t points = 0, records = 0, samples = 0;
   std::array<double, 3> irradiance{};

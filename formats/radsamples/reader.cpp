@@ -13,12 +13,12 @@ using namespace radsamples;
 
 namespace {
 
-/// Reads blocks of one mark after the other.
+/// Reads consecutive blocks that have the same mark.
 class Blocks {
  public:
   explicit Blocks(ContainerReader& in) : in_(in), mark_(in.read_mark()) {}
 
-  /// The next block if it has this mark; its body, count * size bytes, and where it begins.
+  /// Reads the next block if it has this mark: its body of count * size bytes, and the body's offset.
   bool next(std::string_view mark, std::size_t size) {
     if (mark_ != mark) return false;
     std::uint32_t entries = 0;
@@ -48,11 +48,11 @@ class Blocks {
   std::string mark_;
 };
 
-/// Hands over the samples of the records that have their own, record by record.
+/// Passes the samples that the file itself holds to `take`, record by record.
 void read_samples(Blocks& blocks, const RadsamplesFile& file, const TakeSamples& take) {
   const std::uint64_t wanted = own_samples(file);
   const std::size_t size = kSampleSize + (file.header.anchors ? kAnchorSize : 0);
-  std::vector<RadianceSample> samples;  // of the record that comes next, as far as they have come
+  std::vector<RadianceSample> samples;  // samples of the next record that were read so far
   std::vector<std::uint32_t> anchors;
   std::size_t next = 0;
   std::uint64_t done = 0;
@@ -93,11 +93,11 @@ void read_samples(Blocks& blocks, const RadsamplesFile& file, const TakeSamples&
 enum class Role { whole_or_overlay, base };
 RadsamplesFile read(const std::string& path, Role role, const TakeSamples& take);
 
-/// Hands over the base's samples where records have those. `fail` receives what is wrong.
+/// Passes the base's samples to `take` for the records that use them. `fail` receives a description of a fault.
 template <class Fail>
 void take_from_base(const RadsamplesFile& file, const std::string& path, const TakeSamples& take, const Fail& fail) {
   const RadsamplesHeader& a = file.header;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted;  // record of the base, of the overlay
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted;  // number of the record in the base and in the overlay
   for (std::uint32_t i = 0; i < file.records.size(); ++i)
     if (!is_own(file, i)) wanted.emplace_back(file.kept_from[i] - 1, i);
   std::sort(wanted.begin(), wanted.end());
@@ -178,7 +178,7 @@ RadsamplesFile read_radsamples(const std::string& path, const TakeSamples& take)
 RadsamplesFile load_radsamples(const std::string& path) {
   std::vector<RadianceSample> samples;
   std::vector<std::uint32_t> anchors;
-  // Of an overlay records come in another order than they stand.
+  // Samples of an overlay arrive in another order than that of the records.
   std::vector<std::pair<std::vector<RadianceSample>, std::vector<std::uint32_t>>> by_record;
   RadsamplesFile file =
       read_radsamples(path, [&](const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample> some,

@@ -9,36 +9,36 @@
 
 namespace tempolux::formats {
 
-/// Radiance of one cell, distance to what the ray met, age and what is known of it.
+/// The radiance of one cell, the distance to the hit, the age of the ray, and flags.
 struct RadianceSample {
   std::array<std::uint8_t, 4> rgbe{};  ///< three mantissas, exponent
-  std::uint16_t distance = 0;          ///< binary16 of 1024 d / diagonal; 0: nothing was met
-  std::uint16_t flags = 1;             ///< age in the low 11 bits, then SampleFlags
+  std::uint16_t distance = 0;          ///< binary16 of 1024 d / diagonal; 0: the ray hit nothing
+  std::uint16_t flags = 1;             ///< age in the lowest 11 bits, then SampleFlags
 
   bool operator==(const RadianceSample&) const = default;
 };
 static_assert(sizeof(RadianceSample) == 8);
 
 enum SampleFlags : std::uint16_t {
-  sample_valid = 1 << 11,     ///< a ray was sent; else it would have started below the surface
-  sample_dynamic = 1 << 12,   ///< it met what moves
-  sample_miss = 1 << 13,      ///< it met nothing
-  sample_near = 1 << 14,      ///< more came along it than its anchor's light times a constant
-  sample_anchored = 1 << 15,  ///< its column entry names the point that stands for its hit
+  sample_valid = 1 << 11,     ///< a ray was traced; not set if it would have started below the surface
+  sample_dynamic = 1 << 12,   ///< the ray hit a mover
+  sample_miss = 1 << 13,      ///< the ray hit nothing
+  sample_near = 1 << 14,      ///< a close hit: the radiance is not the anchor's light times a constant
+  sample_anchored = 1 << 15,  ///< the column `anchor` names the point that represents the hit
 };
 inline constexpr std::uint16_t kMaxAge = 2047;
 
 inline std::uint16_t age_of(const RadianceSample& s) { return s.flags & kMaxAge; }
 
-/// L = m 2^(e - 136) per channel, 0 if e < 10.
+/// Radiance of a sample: L = m 2^(e - 136) per channel, 0 if e < 10.
 inline std::array<float, 3> decode_rgbe(const std::array<std::uint8_t, 4>& rgbe) {
   const float scale = rgbe[3] < 10 ? 0.0f : std::bit_cast<float>(std::uint32_t(rgbe[3] - 9) << 23);
   return {float(rgbe[0]) * scale, float(rgbe[1]) * scale, float(rgbe[2]) * scale};
 }
 
-/// The largest mantissa is 128 to 255; each is floor(L 2^(136 - e) + u), u in [0, 1): with u uniform the mean of what
-/// is read is L. Values that a file holds come back for any u. What is not finite or below 0 counts as 0, what is above
-/// 2^126 as that.
+/// Encodes radiance. The largest mantissa is 128 to 255; each mantissa is floor(L 2^(136 - e) + u) with u in [0, 1).
+/// If u is random and uniform, the mean of the decoded value is L. A decoded value is encoded to the same bytes for
+/// any u. Values below 0 and NaN become 0, values above 2^126 become 2^126.
 inline std::array<std::uint8_t, 4> encode_rgbe(std::array<float, 3> radiance, const std::array<float, 3>& u) {
   for (float& x : radiance) x = x > 0 ? std::min(x, 0x1p126f) : 0.0f;  // NaN compares false
   const float largest = std::max({radiance[0], radiance[1], radiance[2]});
@@ -57,12 +57,13 @@ inline std::array<std::uint8_t, 4> encode_rgbe(std::array<float, 3> radiance, co
   }
 }
 
-/// A number from 2^-14 to 65504 as binary16, rounded to nearest, ties to even; nearer ends of that range for others.
+/// Converts a number to binary16, rounded to nearest, ties to even. Numbers outside 2^-14 to 65504 become the nearer
+/// end of this range.
 inline std::uint16_t encode_half(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(std::clamp(x, 0x1p-14f, 65504.0f)) - (112u << 23);
   return std::uint16_t((bits + 0xfff + ((bits >> 13) & 1)) >> 13);
 }
-/// What encode_half() wrote; 0 as about 0.
+/// Decodes encode_half(); 0 gives about 0.
 inline float decode_half(std::uint16_t h) { return std::bit_cast<float>((std::uint32_t(h) << 13) + (112u << 23)); }
 
 }  // namespace tempolux::formats

@@ -30,7 +30,7 @@ Format format_of(const RadsamplesHeader& header) {
   return format;
 }
 
-/// Blocks of kMaxBlockCount values.
+/// Writes values as blocks of at most kMaxBlockCount.
 template <class T>
 void write_blocks(ContainerWriter& out, std::string_view mark, std::span<const T> values) {
   for (std::size_t first = 0; first < values.size(); first += kMaxBlockCount) {
@@ -53,7 +53,7 @@ std::vector<RadsamplesRecord> with_their_base(const RadsamplesFile& file) {
 struct RadsamplesWriter::State {
   const RadsamplesFile& head;
   ContainerWriter out;
-  std::size_t next = 0;                 ///< record
+  std::size_t next = 0;                 ///< number of the next record
   std::vector<RadianceSample> samples;  ///< of the block that is being filled
   std::vector<std::uint32_t> anchors;
 

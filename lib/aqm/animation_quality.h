@@ -23,8 +23,9 @@ struct VisionOptions {
   vision::Gaze gaze = vision::Gaze::track;
   double frames_per_second = 24;
   double exposure_stops = 0;  ///< the display gets linear values times 2^stops
-  /// True if frame and reference are independent estimates of one picture with equal errors. Then each has an error of
-  /// their difference over sqrt(2) (root mean square), and this error around their mean is judged.
+  /// True if frame and reference are independent estimates of one picture with equal errors. The error of each is
+  /// then their difference divided by sqrt(2) (root mean square). The judged pair has this difference, and the same
+  /// mean as frame and reference.
   bool of_either = false;
 };
 

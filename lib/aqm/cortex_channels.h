@@ -42,10 +42,11 @@ struct ChannelName {
 /// All 31 channels: fine bands first, the base band last.
 std::vector<ChannelName> channel_names();
 
-/// One channel of two pictures, sampled over the whole padded grid, padded_width / step columns.
-/// An oriented channel is complex: its real part is the picture filtered by the cortex transform, its imaginary part
-/// the same shifted by a quarter of a period (one half plane of the spectrum, doubled). So its magnitude is the local
-/// amplitude, whatever the phase. The base band is real.
+/// One channel of two pictures, sampled over the whole padded grid, padded_width / step columns. The base band is
+/// real.
+/// An oriented channel is complex. Its spectrum is one half plane of the filtered picture's, doubled. So the real
+/// part is the picture filtered by the cortex transform, the imaginary part is the same shifted by a quarter of a
+/// period, and the magnitude is the local amplitude, whatever the phase.
 struct ChannelPair {
   FourierArray<std::complex<float>> first, second;
 };
@@ -57,8 +58,9 @@ class ChannelFilters {
  public:
   /// `still`: sensitivity of the eye to a frequency (cpd) of a still picture.
   ChannelFilters(const ChannelGrid& grid, double pixels_per_degree, const std::function<double(double)>& still);
-  /// Factor for a channel, by which a grating of band_frequency() that moves at `speed` deg/s gives contrast times
-  /// sensitivity. The speed is taken to change the sensitivity to all frequencies of the band alike.
+  /// Factor for a channel. The channel's response to a grating of band_frequency() that moves at `speed` deg/s, times
+  /// this factor, is the grating's contrast times the eye's sensitivity. Assumes that speed changes the sensitivity
+  /// to all frequencies of a band by the same factor.
   double sensitivity(int band, double speed) const;
   ChannelPair channel(const FourierTransform& transform, ChannelName name,
                       const FourierArray<std::complex<float>>& first,

@@ -73,9 +73,9 @@ class SquareMeans {
 /// Factors from a band's amplitude to multiples of the threshold, at each sample.
 using BandGains = std::array<std::vector<float>, kBands>;
 
-/// Thresholds per response: the sensitivity at the local speed, over the response that unit contrast gives, scaled so
-/// that a grating at its threshold is seen with probability 1/2. `speed` is the speed across the retina; empty: the
-/// sensitivity to still pictures.
+/// Factors from responses to multiples of the threshold: the sensitivity at the local speed, divided by the response
+/// to unit contrast, and scaled so that a grating at its threshold is seen with probability 1/2. `speed` is the speed
+/// across the retina; empty: the sensitivity to still pictures.
 BandGains band_gains(const ChannelGrid& grid, const ChannelFilters& filters, const std::vector<float>& speed,
                      double response_per_contrast) {
   BandGains gains;
@@ -104,7 +104,8 @@ std::vector<float> retinal_speeds(const std::vector<float>& speed, Gaze gaze) {
   return retinal;
 }
 
-/// threshold_elevation() in float; for `slope` 1 without powers: k1 k2 = W = 6.
+/// threshold_elevation() in single precision. Slope 1, the most frequent one, needs no powers: the elevation is then
+/// (1 + (6 contrast)^4)^(1/4) (docs/methods/vision.md).
 float elevation(float contrast, double slope) {
   if (slope != 1) return float(threshold_elevation(double(contrast), slope));
   const float masked = 6 * contrast, square = masked * masked;

@@ -4,7 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// Aborts with file, line and the condition. Never for input: input errors are InputError.
+/// Aborts with file, line and the condition. Only for errors of the program: an error in a file or an option is an
+/// InputError.
 #define TEMPOLUX_CHECK(condition)                                                          \
   do {                                                                                     \
     if (!(condition)) {                                                                    \

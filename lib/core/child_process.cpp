@@ -141,7 +141,8 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Sets the limits from outside, before the child gets input: until then a child does nothing that depends on a file.
+  /// Sets the limits of the running child from this process. The child waits for its input, so it has not yet read
+  /// anything from a file.
   void limit(const std::string& program, const ChildLimits& limits) const {
     const auto set = [&](__rlimit_resource resource, rlim_t soft, rlim_t hard) {
       const rlimit both{soft, hard};
@@ -224,7 +225,8 @@ class Exchange {
            const ChildLimits& limits)
       : input_(input.ours), output_(output.ours), words_(words.ours), to_write_(to_write), limits_(limits) {}
 
-  /// Runs until the child has closed its outputs. Returns "" then, else the reason to kill it.
+  /// Runs until the child has closed its outputs and returns "". If the child must be killed, returns the reason
+  /// instead.
   std::string run(const std::string& program, Clock::time_point deadline) {
     while (output_.number() >= 0 || words_.number() >= 0) {
       if (to_write_.empty()) input_.close();

@@ -7,14 +7,15 @@
 
 namespace tempolux {
 
-/// Guide table [Chen, Asau, "On generating random variates from an empirical distribution", AIIE Transactions 6, 1974]:
-/// for N equal parts of [0, 1), the first index that a number in the part can have. Searching a large table touches
-/// many cache lines, searching one part touches one.
+/// A guide table [Chen, Asau, "On generating random variates from an empirical distribution", AIIE Transactions 6,
+/// 1974] divides [0, 1) into N equal parts. For each part it stores the smallest index that a number in this part
+/// leads to. A search over the whole of a large table touches many cache lines; a search within one part touches
+/// about one.
 template <std::uint32_t N>
 class Guide {
  public:
   Guide() = default;
-  /// `answer(u)`: the table's index for u in [0, 1), which must not decrease as u grows. `last`: the largest index.
+  /// `answer(u)`: the table's index for u in [0, 1); it must not decrease as u grows. `last`: the largest index.
   template <class Answer>
   Guide(const Answer& answer, std::uint32_t last) {
     for (std::uint32_t part = 0; part < N; ++part) first_[part] = std::uint32_t(answer(double(part) / N));

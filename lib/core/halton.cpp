@@ -37,7 +37,7 @@ RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scra
     block_size_ *= base;
     ++block_digits_;
   }
-  // As many whole blocks as a 64-bit numerator can hold: 2^64 / block_size does not overflow.
+  // The largest number of blocks whose numerator, below block_size^block_count, fits into 64 bits.
   for (std::uint64_t power = 1; power <= ~0ull / block_size_; power *= block_size_) ++block_count_;
   scale_ = std::pow(double(block_size_), -block_count_);
   // 2^64 / block_size; the 1 is added only if block_size divides 2^64.

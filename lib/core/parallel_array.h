@@ -12,8 +12,8 @@
 
 namespace tempolux {
 
-/// `count` values T{}. The system clears a page of memory when it is first written; if one thread initialised the
-/// array, all others would wait for that.
+/// An array of `count` values T{}. All threads initialise it: the system clears a page of memory when it is first
+/// written, and if one thread wrote all pages, the other threads would wait.
 template <class T>
 class ParallelArray {
  public:

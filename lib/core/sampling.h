@@ -15,8 +15,8 @@ inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;  ///< the largest float below 1
 
-/// Sine and cosine of x in [-pi/4, pi/4], within 1.1 ulp: Taylor series up to terms below 2^-28. Plain arithmetic takes
-/// a third of the library's time and gives the same bits with any library.
+/// Sine and cosine of x in [-pi/4, pi/4], within 1.1 ulp: Taylor series up to terms below 2^-28. Plain arithmetic
+/// takes a third of the time of the C library's functions, and gives the same bytes with any C library.
 struct SinCos {
   float sin, cos;
 };
@@ -26,7 +26,7 @@ inline SinCos sin_cos_eighth(float x) {
           1 + y * (-0.5f + y * (1.0f / 24 + y * (-1.0f / 720 + y * (1.0f / 40320 - y * (1.0f / 3628800)))))};
 }
 
-/// c ? a : b without a branch, for random conditions, which processors cannot predict.
+/// c ? a : b without a branch. Use it where c is random, since processors cannot predict random branches.
 inline float select(bool c, float a, float b) {
   const std::uint32_t mask = 0 - std::uint32_t(c);
   return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a) & mask) | (std::bit_cast<std::uint32_t>(b) & ~mask));
@@ -42,12 +42,12 @@ inline Vec2 sample_disc_concentric(Vec2 u) {
   return {select(steep, across, along), select(steep, along, across)};
 }
 
-/// Direction about +z, density cos(theta)/pi per solid angle; z > 0 always.
+/// Draws a unit direction about +z with the pdf cos(theta) / pi [1/sr]; z > 0 always.
 inline Vec3 sample_hemisphere_cos(Vec2 u) {
   const Vec2 d = sample_disc_concentric(u);
   return {d.x, d.y, std::sqrt(std::max(1e-12f, 1 - d.x * d.x - d.y * d.y))};
 }
-/// The same for many numbers, eight at a time; `directions` has as many elements as u.
+/// Draws directions[i] for u[i], eight at a time; `directions` has as many elements as u.
 inline void sample_hemisphere_cos(std::span<const Vec2> u, Vec3* directions) {
   for (std::size_t i = 0; i < u.size(); ++i) directions[i] = sample_hemisphere_cos(u[i]);
 }
@@ -60,8 +60,9 @@ inline Vec2 sample_triangle(Vec2 u) {
   return {u.x - half, u.y - half};
 }
 
-/// Power heuristic with exponent 2 for one sample of each of two techniques. Veach 1997 (9.2). Both pdfs are in the
-/// same measure. Their quotient is squared, which cannot overflow to NaN; 0 if pdf_a is 0.
+/// The power heuristic with exponent 2, for one sample of each of two techniques: pdf_a^2 / (pdf_a^2 + pdf_b^2)
+/// [Veach 1997 (9.2)]. Both pdfs have the same measure. The function squares the quotient of the pdfs, so large pdfs
+/// do not overflow to NaN. Returns 0 if pdf_a is 0.
 inline float mis_power(float pdf_a, float pdf_b) {
   if (!(pdf_a > 0)) return 0;
   const float r = pdf_b / pdf_a;  // an infinite r correctly gives 0

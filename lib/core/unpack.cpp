@@ -46,7 +46,7 @@ ChildLimits limits_for(const std::vector<PackedPiece>& pieces) {
   return limits;
 }
 
-/// The piece on which the child was working after it had printed this many bytes.
+/// The piece on which the child was working when it had printed this many bytes.
 const PackedPiece& piece_at(const std::vector<PackedPiece>& pieces, std::uint64_t printed) {
   for (const PackedPiece& piece : pieces) {
     if (printed < piece.unpacked_bytes) return piece;

@@ -10,16 +10,17 @@
 
 namespace tempolux {
 
-/// The packer of a piece of data; below each, its settings in order. Unpacked data that differs from the sizes and
-/// counts in the settings is refused.
+/// The packer of a piece of data. Below, each packer lists its settings, in order, and the form of the unpacked data.
+/// Unpacked data that differs from the sizes and counts in the settings is refused.
 enum class Packer : std::uint32_t {
-  /// Bytes of an index (0: no indices), number of indices, number of vertices, number of attributes, and for each
-  /// attribute its id in the Draco data, glTF's component type (5120 to 5126) and the numbers per vertex. Unpacked: the
-  /// indices, then the attributes one after the other, all without padding.
+  /// Settings: bytes of an index (0: no indices), number of indices, number of vertices, number of attributes; then
+  /// for each attribute its id in the Draco data, glTF's component type (5120 to 5126) and the numbers per vertex.
+  /// Unpacked: the indices, then the attributes one after the other, all without padding.
   draco = 1,
-  /// MeshoptMode, MeshoptFilter, number of elements, bytes of an element. Unpacked: the elements.
+  /// Settings: MeshoptMode, MeshoptFilter, number of elements, bytes of an element. Unpacked: the elements.
   meshopt = 2,
-  /// Width and height in pixels, channels: 3 for RGB, 4 for RGB and alpha. Unpacked: 8 bits each, row 0 on top.
+  /// Settings: width and height in pixels, number of channels (3: R, G, B; 4: also alpha). Unpacked: 8 bits per
+  /// channel, the top row first.
   webp = 3,
 };
 enum class MeshoptMode : std::uint32_t { attributes, triangles, indices };

@@ -16,9 +16,10 @@ constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
 constexpr std::uint64_t kFreeDisplayBytes = 256ull << 20;
 constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800, kMultipartFlag = 0x1000;
 
-/// Compressions by their number in the file: lines per chunk, and the most bytes of samples that one byte of the file
-/// can expand to. Deflate: 1032; run lengths: 64; Pxr24 drops a quarter before deflate; Piz: 410 (a run of 256 16-bit
-/// values in 10 bits); B44: 11; both DWA: 64 times deflate (one coefficient for 8x8 pixels).
+/// Facts about a compression, by its number in the file: lines per chunk, and the largest number of bytes of samples
+/// that one byte of the file can expand to. Deflate: 1032. Run lengths: 64. Pxr24 drops a quarter before deflate.
+/// Piz: 410 (a run of 256 16-bit values in 10 bits). B44: 11. Both DWA: 64 times deflate (one coefficient for 8x8
+/// pixels).
 struct CompressionFacts {
   std::int32_t lines;
   std::uint64_t expansion;

@@ -38,7 +38,7 @@ std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_
     }
     line_bytes += (channel->type == kHalf ? 2 : 4) * width;
   }
-  // Two channels have one name: left to OpenEXR.
+  // If two channels have the same name, this reader gives up, and OpenEXR reads the file.
   return found.size() == image.channels.size() ? found : std::vector<Stretch>();
 }
 

@@ -15,8 +15,8 @@ inline constexpr std::string_view kIdentityPrefix = "tempolux:identity.";  ///< 
 /// text.
 void set_identity(Image& image, const formats::Identity& identity);
 
-/// Reads what set_identity() wrote; a missing attribute is unknown. Valid for frame 0 only, whatever tempolux:frame
-/// says; not known() if there is no hash.
+/// Reads what set_identity() wrote; the hash of a missing attribute is unknown. The result is valid for frame 0
+/// alone, whatever tempolux:frame contains. Without any hash it is not known().
 formats::Identity identity_in(const Image& image);
 
 }  // namespace tempolux

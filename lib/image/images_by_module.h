@@ -30,7 +30,7 @@ struct MaskPixels {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
 };
-/// Throws InputError and std::bad_alloc as above.
+/// nonzero_pixels() of the image at `path`. Throws as load_by_module.
 MaskPixels mask_by_module(const std::string& path, std::uint64_t max_pixels);
 
 }  // namespace tempolux

@@ -20,7 +20,7 @@ struct PixelsRequest {
   /// pixel together. bits is 8 or 16 for codes, 32 for floats. Null: no memory.
   void* (*allocate)(void* user, std::int32_t width, std::int32_t height, std::int32_t channels, std::int32_t bits);
   void (*say)(void* user, const char* message);  ///< reports the error
-  void* user;                                    ///< of both
+  void* user;                                    ///< first argument of both callbacks
 };
 
 enum PixelsResult : std::int32_t {

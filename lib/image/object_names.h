@@ -17,8 +17,9 @@ inline constexpr std::string_view kObjectNames = "tempolux:objects";
 /// Names of objects by id.object.
 using ObjectNames = std::map<std::uint32_t, std::string>;
 
-/// Writes the attribute: a line "ID NAME" for each of `ids` that `names`, by id, has a name for. Control characters in
-/// names become blanks. Ids beyond `names` and empty names are left out; without any line the attribute is, too.
+/// Writes the attribute: one line "ID NAME" for each of `ids` that has a name. `names` is indexed by id. Control
+/// characters become blanks. Ids without a name, or with an empty one, are left out; without any line the attribute
+/// is not written.
 void set_object_names(Image& image, const std::set<std::uint32_t>& ids, const std::vector<std::string>& names);
 
 /// What set_object_names() wrote. Lines of another form are left out: the attribute may be another program's.

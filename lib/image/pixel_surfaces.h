@@ -38,9 +38,10 @@ class PixelSurfaces {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  /// True if `pixel` and the pixel at offset (dx, dy) (right, down; inside the picture) show one surface: the same
-  /// object, normals within kSameNormal, and w off the plane through `pixel` by at most kSameDepth of w plus the
-  /// plane's own change: the slope of a curved surface may double.
+  /// True if `pixel` and the pixel at offset (dx, dy) (right, down; inside the picture) show one surface. They must
+  /// have the same object, and normals whose cosine is at least kSameNormal. The other pixel's w may differ from the
+  /// plane through `pixel` by kSameDepth w plus the plane's own change over the offset, so the slope of a curved
+  /// surface may double.
   bool same(std::size_t pixel, int dx, int dy) const;
   /// 1 for each pixel that is not on one surface with all of its eight neighbours, compared in both directions.
   std::vector<std::uint8_t> edges() const;

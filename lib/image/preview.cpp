@@ -55,8 +55,9 @@ Content find_content(const Image& image, const std::string& layer) {
   throw InputError("no layer or channel \"" + (layer.empty() ? "RGB" : layer) + "\"; the image has " + known);
 }
 
-/// Of signed layers the least share that values below 0 have in the sum of all magnitudes. Differences of noise have
-/// half; light has none but for rounding and the lobes of a sharp pixel filter.
+/// A layer counts as signed if values below 0 hold more than this share of the sum of all magnitudes. In differences
+/// of noise they hold half. In light they hold nothing, except through rounding and the lobes of a sharp pixel
+/// filter.
 constexpr double kSigned = 0.02;
 
 bool is_signed(const Planes& planes) {

@@ -16,7 +16,8 @@ constexpr double kLeastShare = 0.2;  ///< least share of the environment, and of
 
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 
-/// `weights` keeps the largest weight of each slot over the frames seen so far: joins those of one more frame.
+/// Updates `weights`, the largest weight of each slot over the frames seen so far, with the weights of one more
+/// frame.
 void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vector<double>& weights) {
   std::size_t slot = 0;
   const auto join = [&](Rgbd flux) {

@@ -50,8 +50,9 @@ EnvironmentLight::Corners EnvironmentLight::corners(std::uint32_t row, std::uint
   return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right]};
 }
 
-/// The mean over a row is that of its pixels whatever the latitude; over latitude the hat functions are integrated
-/// with the sine: int (1 - t) sin = cos a - (sin b - sin a) / (b - a), int t sin = (sin b - sin a) / (b - a) - cos b.
+/// Integrates radiance over the sphere. The mean over a row is the mean of its pixels at any latitude. Between two
+/// rows at the polar angles a and b, radiance is (1 - t) first + t second; its integral with the sine has the parts
+/// int (1 - t) sin = cos a - (sin b - sin a) / (b - a) and int t sin = (sin b - sin a) / (b - a) - cos b.
 void EnvironmentLight::integrate() {
   std::vector<double> weight(height_, 0.0);
   for (std::uint32_t row = 0; row <= height_; ++row) {
@@ -161,7 +162,8 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   const std::uint32_t column = column_for(row, u2, cell_guides_[row].range(u2));
   const double first = column > 0 ? ends[column - 1] : 0;
 
-  // The position along the row comes first, from the luminance of the cell's left and right side; then the one across.
+  // First draws the position along the row, from the luminances of the cell's left and right side; then the position
+  // across the row.
   const Corners pixels = corners(row, column);
   const Luminances at = luminances(pixels);
   Place place{row, column, 0, 0};

@@ -189,8 +189,9 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.weight[lane] = bounds.weight;
 }
 
-/// Where to cut [first, last), which holds at least two items: the cheapest of 15 planes per axis, by the sum of both
-/// sides' costs. If no plane separates the centres, the middle of the count.
+/// Returns the index at which to divide [first, last), which holds at least two items. Of 15 planes per axis it takes
+/// the plane with the least sum of both sides' costs. If no plane separates the centres, it takes the middle by
+/// count.
 std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost) {
   Box3 centres;
   for (std::size_t i = first; i < last; ++i) centres.add(items[i].centre);

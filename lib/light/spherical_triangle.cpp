@@ -10,10 +10,10 @@ namespace tempolux {
 namespace {
 
 Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); }
-/// Unit vector along v minus its projection on the unit vector w.
+/// The component of v perpendicular to the unit vector w, normalised.
 Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
 
-constexpr double kLeast = 0.01;  ///< least corner value, over the largest
+constexpr double kLeast = 0.01;  ///< smallest corner value, divided by the largest
 
 }  // namespace
 

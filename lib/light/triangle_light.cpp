@@ -12,7 +12,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kOffsetScale = 0x1p-20f;  // over the largest coordinate, as for rays that start on surfaces
+constexpr float kOffsetScale = 0x1p-20f;  // offset / largest coordinate; equals kOffsetScale of lib/trace/trees.h
 
 /// The triangle as seen from a point.
 struct View {
@@ -35,14 +35,15 @@ struct View {
   /// True if the triangle is large enough to be sampled by solid angle and the point is not so close to its plane that
   /// directions degenerate.
   bool large() const {
-    // tangent of half the smallest solid angle, and of its distance to the half sphere
+    // tan(0.02 sr / 2): the solid angle must be at least 0.02 sr, and at most 2 pi - 0.02 sr
     constexpr float kTangent = 0.01f;
     return adjacent > 0 ? opposite > kTangent * adjacent : opposite > -kTangent * adjacent;
   }
   /// Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
 
-  /// 1 / distance^3 at the corners, for samples by area: the triangle's own cosine is height / distance.
+  /// Corner values of the warp for samples by area: 1 / distance^3. Two powers are the inverse square of the
+  /// distance; one is the triangle's cosine, height / distance.
   BilinearWarp factors() const {
     const auto factor = [](double l) { return 1 / (l * l * l); };
     return BilinearWarp({factor(l0), factor(l1), factor(l2), factor(length((v1 + v2) * 0.5f))});

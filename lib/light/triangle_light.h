@@ -9,8 +9,8 @@
 
 namespace tempolux {
 
-/// The mean share of a material's emission that its textures and alpha let through, by triangle. The same at all frames
-/// at which the material's alpha is the same.
+/// For each triangle, the mean share of the material's emission that textures and alpha let through. Frames at which
+/// the material has the same alpha have the same shares.
 struct EmissionShares {
   float alpha = 1;
   std::vector<Rgb> of;  ///< by triangle; empty if nothing varies: all are 1

@@ -5,8 +5,8 @@
 
 namespace tempolux {
 
-/// Albedo E = F0 a + F90 b: the share of uniform light that the lobe reflects, with Schlick's Fresnel term split into
-/// its two linear parts. [1]
+/// Albedo of the lobe as E = F0 a + F90 b. E is the share of uniform light that the lobe reflects; Schlick's Fresnel
+/// term is linear in F0 and F90, so a and b do not depend on them. [1]
 struct AlbedoPair {
   float a = 0, b = 0;
 };
@@ -17,16 +17,17 @@ inline constexpr double kMinAlpha = 0.0004;
 }  // namespace albedo_table
 
 /// Albedo of the single-scattering lobe of ggx.h for one alpha. Bicubic interpolation in a table of 28 x 48 entries
-/// (albedo_table.cpp) over alpha^(1/4) and the square root of x = cos (1 + alpha) / (cos + alpha). a + b is within 5e-5
-/// and b within 8e-5 of the integrals over the whole domain (tested).
+/// (albedo_table.cpp). Rows are at equal steps of alpha^(1/4), columns at equal steps of the square root of x = cos
+/// (1 + alpha) / (cos + alpha). a + b is within 5e-5 of the integral and b within 8e-5, over the whole domain
+/// (tests/lib/material/albedo_table_test.cpp).
 class GgxAlbedo {
  public:
-  /// alpha is clamped to [0.0004, 1], the range of the table.
+  /// alpha of GGX, clamped to [0.0004, 1], the range of the table.
   explicit GgxAlbedo(float alpha);
-  /// For alpha 1: cheap, because every hit on a matte material makes one.
+  /// For alpha 1, without a search in the table: every hit on a matte material makes one.
   GgxAlbedo() = default;
 
-  /// Albedo for light towards cos_theta in (0, 1].
+  /// Albedo for light from a direction at this cosine to the normal, in (0, 1].
   AlbedoPair at(float cos_theta) const;
   /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu.
   AlbedoPair mean() const;
@@ -39,10 +40,10 @@ class GgxAlbedo {
 
 namespace albedo_table {
 extern const float kTotal[kRows][kColumns];   ///< E at F = 1: a + b
-extern const float kCosine[kRows][kColumns];  ///< m with b = E (1 - m (cos + alpha))^5
+extern const float kCosine[kRows][kColumns];  ///< m, from which b = E (1 - m (cos + alpha))^5
 extern const float kMeanA[kRows], kMeanB[kRows];
 
-/// Coordinates of rows and columns: position 0 is the first, 1 the last.
+/// alpha and cosine of a position in the table: 0 is the first row or column, 1 the last.
 inline double alpha_of_row(double position) {
   const double first = std::pow(kMinAlpha, 0.25), root = first + position * (1 - first);
   return root * root * root * root;

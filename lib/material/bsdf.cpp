@@ -16,18 +16,20 @@ float smooth_step(float x) {
   x = std::clamp(x, 0.0f, 1.0f);
   return x * x * (3 - 2 * x);
 }
-/// Mean loss of GGX below which multiple reflection is left out: f_ms is then concentrated at grazing angles, and
-/// cosine-distributed samples of it would have weights of more than ten times their mean. At three times this loss f_ms
-/// counts in full.
+/// Where GGX loses less than this on average, multiple reflection is left out. f_ms is then concentrated at grazing
+/// angles, and cosine-distributed samples of it would have weights of more than ten times their mean. From three
+/// times this loss on f_ms counts in full; between, it is faded in.
 constexpr float kLeastLost = 0.01f;
 
-/// Schlick's Fresnel term.
+/// Schlick's Fresnel term, F0 + (F90 - F0) (1 - cos_h)^5 [1]. Schlick, "An Inexpensive BRDF Model for
+/// Physically-based Rendering", CGF 13(3), 1994.
 Rgb fresnel(Rgb f0, float f90, float cos_h) {
   const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));
   return f0 * (1 - k) + Rgb(f90 * k);
 }
 
-/// F0 of glTF's dielectric: KHR_materials_ior, KHR_materials_specular.
+/// F0 [1] of a dielectric in glTF: ((ior - 1) / (ior + 1))^2 times KHR_materials_specular's colour, at most 1, times
+/// its factor.
 Rgb dielectric_f0(const MaterialValues& m) {
   const float r = (m.ior - 1) / (m.ior + 1), f = r * r;
   return Rgb{std::min(1.0f, f * m.specular_color.r), std::min(1.0f, f * m.specular_color.g),
@@ -46,7 +48,8 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
-    // An index close to 1 hardly refracts: a lobe narrower than float32 resolves goes straight through.
+    // If the index is close to 1, light is hardly refracted. A lobe narrower than float32 resolves is a smooth
+    // boundary.
     const float alpha = material.roughness * material.roughness;
     if (material.roughness >= kMirrorRoughness && (material.thin_walled || alpha * (ior - 1) > 2e-5f)) {
       rough_.emplace(ior, alpha, material.thin_walled, front);
@@ -120,7 +123,7 @@ Rgb Bsdf::diffuse_reflectance(float cos_o) const {
 
 float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
 
-/// P(D): the Lambert lobe's share of the uniform light that is reflected towards wo.
+/// P(D): of the uniform light that is reflected towards wo, the share that the Lambert lobe reflects.
 float Bsdf::diffuse_probability(const Reflection& r) const {
   if (!diffuse_) return 0;
   if (!specular_) return 1;
@@ -170,7 +173,7 @@ float Bsdf::pdf_diffuse(Vec3 wi, const Direction& wo) const {
   return diffuse_probability(wo.reflected) * pdf_hemisphere_cos(wi.z) * (1 - transmission_);
 }
 
-/// The share of event S that is reflected more than once.
+/// The share of event S's light that several microfacets reflect. [1]
 float Bsdf::multiple_share(const Reflection& r) {
   const float multiple = channel_mean(r.multiple), total = multiple + channel_mean(r.single);
   return total > 0 ? multiple / total : 0;

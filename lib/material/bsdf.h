@@ -46,33 +46,37 @@ namespace tempolux {
 /// scale (photon_trace.h).
 class Bsdf {
  public:
-  /// front: wo is on the triangle's front side, which is outside a solid of glass.
+  /// material: values at the hit (scene.h lists their ranges). front: true if wo is on the triangle's front side,
+  /// which is outside a solid of glass. An unlit material scatters nothing.
   explicit Bsdf(const MaterialValues& material, bool front = true);
 
-  /// True if the material has a Lambert lobe, also a black one: the light that a black lobe receives can be measured.
+  /// True if the material has a Lambert lobe, including a black one: the light that arrives at a black lobe can be
+  /// measured.
   bool has_lambert() const { return lambert_; }
-  bool has_diffuse() const { return diffuse_; }  ///< a Lambert lobe that reflects
+  bool has_diffuse() const { return diffuse_; }  ///< true if the Lambert lobe reflects any light
   bool has_specular() const { return specular_ || transmission_ > 0; }
-  bool specular_is_delta() const { return !rough_ && (delta_ || !specular_); }  ///< all S lobes
-  /// The share of light samples to be taken on the side z < 0, where eval_specular transmits light from. 1 inside a
-  /// solid of rough glass, because the light is outside; 0 outside a solid, because light that crosses it meets its
-  /// other side.
+  bool specular_is_delta() const {
+    return !rough_ && (delta_ || !specular_);
+  }  ///< true if all S lobes are mirrors or smooth glass, or there is none
+  /// The share of light samples to be taken on the side z < 0, from where eval_specular transmits light. Inside a solid
+  /// of rough glass it is 1, because the lights are outside. Outside a solid it is 0: a straight line into the solid
+  /// meets the solid's other side before it reaches a light. For a thin wall it is 1/2.
   float light_share_behind() const { return light_share_behind_; }
-  /// rho of the Lambert lobe, without coupling.
+  /// Reflectance rho of the Lambert lobe, without coupling. [1]
   Rgb diffuse_albedo() const { return rho_; }
-  /// c(w) above; 1 for a matte material; cos_theta > 0.
+  /// c(w) of the head of this class [1]; 1 for a matte material; cos_theta > 0.
   float diffuse_coupling(float cos_theta) const;
-  /// A_S(wo): the share of uniform light that the S lobes reflect towards wo, from the albedo table; 0 for a matte
-  /// material.
+  /// A_S(wo) [1]: the share of uniform light that the S lobes reflect towards wo, from the albedo table; 0 for a
+  /// matte material. Glass is not included.
   Rgb specular_albedo(float cos_o) const;
-  /// The share of uniform light that the Lambert lobe reflects towards wo: rho (1 - A_S(wo)); rho for a matte material.
+  /// The share of uniform light that the Lambert lobe reflects towards wo [1]: (1 - transmission) rho (1 - A_S(wo)).
   Rgb diffuse_reflectance(float cos_o) const;
-  /// Weight of light from wi in an irradiance E, such that f_D's radiance is exactly diffuse_reflectance(cos_o) E / pi:
-  /// (1 - A_S(wi)) / (1 - A_S,mean); 1 for a matte material.
+  /// Weight [1] of light from wi in an irradiance E: (1 - A_S(wi)) / (1 - A_S,mean), 1 for a matte material. With
+  /// this weight diffuse_reflectance(cos_o) E / pi is exactly the radiance that f_D reflects.
   float arrival_weight(float cos_i) const;
 
-  /// A direction with the shares of uniform light that are reflected towards it: one look-up in the table serves
-  /// several calls.
+  /// A direction with the shares of uniform light that are reflected towards it. Callers that use a direction several
+  /// times look them up once.
   struct Direction {
     Vec3 w{};
     struct Reflection {
@@ -82,7 +86,8 @@ class Bsdf {
   };
   Direction along(Vec3 w) const { return {w, w.z > 0 ? reflection(w.z) : Reflection{}}; }
 
-  /// f_D and f_S [1/sr], without the cosine. Delta lobes evaluate to 0.
+  /// f_D and f_S [1/sr], without the cosine. wi and wo are in the local frame. Mirrors and smooth glass evaluate to
+  /// 0.
   Rgb eval_diffuse(const Direction& wi, const Direction& wo) const;
   Rgb eval_specular(const Direction& wi, const Direction& wo) const;
   Rgb eval_diffuse(Vec3 wi, Vec3 wo) const { return eval_diffuse(along(wi), along(wo)); }
@@ -90,15 +95,16 @@ class Bsdf {
 
   struct Sample {
     Vec3 wi{};                  ///< unit, away from the surface
-    Rgb weight{0.0f};           ///< f cos / pdf of the chosen lobe's component, divided by its choice probability
-    float pdf_solid_angle = 0;  ///< of wi by all non-delta lobes [1/sr]; for a delta lobe its choice probability
+    Rgb weight{0.0f};           ///< f cos / pdf of the drawn lobe alone, divided by the probability of the event [1]
+    float pdf_solid_angle = 0;  ///< pdf of wi over all non-delta lobes [1/sr]; for a mirror or smooth glass the
+                                ///< probability of its choice [1]
     bool diffuse = false;       ///< event D, else S
     bool delta = false;
     bool transmitted = false;  ///< wi is on the other side, z < 0
   };
-  /// Draws wi for wo: u_lobe chooses the lobe, u the direction. The weight is that of the chosen event alone: f_D cos /
-  /// (P(D) pdf_D) or f_S cos / (P(S) pdf_S), so that light paths can be sorted by events. The weight is zero if wo is
-  /// below the surface or nothing is reflected.
+  /// Draws wi for wo: u_lobe chooses the lobe, u the direction; all numbers are in [0, 1). The weight is that of the
+  /// chosen event alone, f_D cos / (P(D) pdf_D) or f_S cos / (P(S) pdf_S), so that light paths can be sorted by
+  /// events. The weight is zero if wo is below the surface or nothing is reflected.
   Sample sample(const Direction& wo, float u_lobe, Vec2 u) const;
   Sample sample(Vec3 wo, float u_lobe, Vec2 u) const { return sample(along(wo), u_lobe, u); }
   /// True if the material is a reflecting Lambert lobe and nothing else: sample() is then sample_matte(wo,
@@ -111,12 +117,14 @@ class Bsdf {
             .pdf_solid_angle = pdf_hemisphere_cos(cosine_direction.z),
             .diffuse = true};
   }
-  /// pdf with which sample() draws wi by event D, by event S [1/sr], including the probability of the event.
+  /// pdf [1/sr] with which sample() draws wi by event D, and by event S, including the probability of the event.
+  /// Mirrors and smooth glass count as 0.
   float pdf_diffuse(Vec3 wi, const Direction& wo) const;
   float pdf_specular(Vec3 wi, const Direction& wo) const;
   float pdf_diffuse(Vec3 wi, Vec3 wo) const { return pdf_diffuse(wi, along(wo)); }
   float pdf_specular(Vec3 wi, Vec3 wo) const { return pdf_specular(wi, along(wo)); }
-  /// pdf of wi for a given event S [1/sr]; infinite for mirrors and for all materials with glass.
+  /// pdf [1/sr] of wi under the condition that event S is drawn; infinite for mirrors and for all materials with
+  /// glass.
   float gloss_density(Vec3 wi, const Direction& wo) const;
   /// True if events D and S can be sampled separately: a Lambert lobe under a reflection, without glass.
   bool forks() const { return diffuse_ && specular_ && !(transmission_ > 0); }
@@ -142,7 +150,7 @@ class Bsdf {
   void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
 
   Rgb rho_{0.0f}, f0_{0.0f};
-  Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean)
+  Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean), faded in as described above
   float f0_max_ = 0, f90_ = 0;
   float alpha_ = 1, alpha2_ = 1;
   GgxAlbedo albedo_;
@@ -150,7 +158,7 @@ class Bsdf {
   float mean_albedo_ = 0;     ///< A_mean of the channel with the largest F0
   float coupling_scale_ = 1;  ///< 1 / sqrt(1 - A_mean)
   Rgb transmission_tint_{0.0f};
-  float transmission_ = 0;   ///< share of glass, event S; the rest scatters as above
+  float transmission_ = 0;   ///< share of glass, which is event S; the remainder scatters as described above
   float eta_ = 1;            ///< index on wo's side / index on the other side; 1 for transmission through a thin wall
   float eta_reflected_ = 1;  ///< the same for the Fresnel term
   float light_share_behind_ = 0;

@@ -7,9 +7,9 @@
 
 namespace tempolux {
 
-/// Reflectance of a smooth boundary for unpolarised light. cos_o in (0, 1]: cosine of the angle on wo's side; eta =
-/// (index on that side) / (index on the other side). Returns 1 from the critical angle on. cos_t receives the cosine on
-/// the other side, 0 if there is no refraction.
+/// Reflectance [1] of a smooth boundary for unpolarised light, by Fresnel's equations. cos_o in (0, 1]: cosine of the
+/// angle on wo's side. eta = (index on that side) / (index on the other side). Returns 1 from the critical angle on.
+/// cos_t receives the cosine on the other side, 0 if there is total reflection.
 inline float fresnel_dielectric(float cos_o, float eta, float& cos_t) {
   const float sin2_t = eta * eta * std::max(0.0f, 1 - cos_o * cos_o);
   if (sin2_t >= 1) {
@@ -22,8 +22,8 @@ inline float fresnel_dielectric(float cos_o, float eta, float& cos_t) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-/// Direction on the other side of the boundary z = 0 from which refracted light reaches wo (z > 0); unit, away from the
-/// surface, z < 0.
+/// Snell's law: the direction on the other side of the boundary z = 0 from which refracted light reaches wo (z > 0).
+/// Unit, away from the surface, z < 0. cos_t is that of fresnel_dielectric, above 0.
 inline Vec3 refract(Vec3 wo, float eta, float cos_t) { return normalize(Vec3{-eta * wo.x, -eta * wo.y, -cos_t}); }
 
 }  // namespace tempolux

@@ -1,8 +1,9 @@
-// lib/material/ggx.h -- the GGX microfacet lobe with Smith's height-correlated masking, local frame, z = normal.
+// lib/material/ggx.h -- the GGX microfacet lobe with Smith's height-correlated masking; local frame, z = normal.
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007; Heitz, "Understanding the
-// Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014. alpha in (0, 1], isotropic. Cosines are
-// positive. No divisor can be 0.
+// Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014. The lobe is isotropic. In all functions
+// alpha is in (0, 1], alpha2 is its square, directions are unit and away from the surface, and cosines are positive.
+// No divisor can be 0.
 #pragma once
 
 #include <algorithm>
@@ -18,21 +19,24 @@ inline float smith_root(float cos_theta, float alpha2) {
   return std::sqrt(alpha2 + (1 - alpha2) * cos_theta * cos_theta);
 }
 
-/// D(h) [1/sr] for the unit half vector. Uses h.x and h.y, which keep their digits when h is close to z.
+/// Density D(h) of microfacet normals [1/sr] at the unit half vector h. The function uses h.x and h.y, which keep
+/// their digits when h is close to z.
 inline float distribution(Vec3 h, float alpha2) {
-  const float slope = std::max(1.0f, (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z);  // zero h: wi = -wo
+  const float slope =
+      std::max(1.0f, (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z);  // at least 1, also for h = 0 (wi = -wo)
   return kInvPi / (alpha2 * slope * slope);
 }
 
-/// G2 / (4 cos_i cos_o), without unit; clamped to 5e19 where both directions are within 1e-20 of grazing.
+/// G2 / (4 cos_i cos_o) [1]: the lobe is f = F D times this. At most 5e19, which only directions within 1e-20 of
+/// grazing reach.
 inline float visibility(float cos_i, float cos_o, float alpha2) {
   return 0.5f / std::max(1e-20f, cos_o * smith_root(cos_i, alpha2) + cos_i * smith_root(cos_o, alpha2));
 }
 
-/// Draws a half vector with the density of visible normals, D(h) G1(wo) max(0, wo h) / cos_o: a uniform point of the
-/// spherical cap of directions into which the stretched view reflects. Heitz, "Sampling the GGX Distribution of Visible
-/// Normals", JCGT 7(4), 2018, with the mapping of Dupuy & Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
-/// CGF 42(8), 2023.
+/// Draws a half vector with the pdf of visible normals, D(h) G1(wo) max(0, wo h) / cos_o [1/sr]; u in [0, 1)^2.
+/// Method: a uniform point of the spherical cap of directions into which the stretched view reflects. Heitz,
+/// "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), 2018, with the mapping of Dupuy & Benyoub,
+/// "Sampling Visible GGX Normals with Spherical Caps", CGF 42(8), 2023.
 inline Vec3 sample_visible_normal(Vec3 wo, float alpha, Vec2 u) {
   const Vec3 stretched = normalize(Vec3{wo.x * alpha, wo.y * alpha, wo.z});
   const float phi = 2 * kPi * u.x;
@@ -42,8 +46,8 @@ inline Vec3 sample_visible_normal(Vec3 wo, float alpha, Vec2 u) {
   return normalize(Vec3{h.x * alpha, h.y * alpha, std::max(h.z, 1e-7f)});
 }
 
-/// pdf by solid angle of the direction wi = 2 (wo h) h - wo if h is drawn by sample_visible_normal: D G1(wo) / (4
-/// cos_o) = D / (2 (cos_o + smith_root(cos_o))).
+/// pdf [1/sr] of the direction wi = 2 (wo h) h - wo if h is drawn by sample_visible_normal: D G1(wo) / (4 cos_o) = D
+/// / (2 (cos_o + smith_root(cos_o))).
 inline float pdf_reflected(Vec3 h, float cos_o, float alpha2) {
   return distribution(h, alpha2) * 0.5f / (cos_o + smith_root(cos_o, alpha2));
 }

@@ -1,4 +1,5 @@
-// lib/material/glass_albedo.h -- the energy that a rough glass boundary loses if each ray meets a single microfacet.
+// lib/material/glass_albedo.h -- the share of light that a rough glass boundary loses if each ray meets a single
+// microfacet.
 #pragma once
 
 #include <algorithm>
@@ -6,14 +7,15 @@
 
 namespace tempolux {
 
-/// 1 - E for the lobe of rough_glass.h. E is the share of uniform light that is reflected and transmitted, for one
-/// alpha and index, seen from outside or inside. Cubic interpolation in a table (glass_albedo_table.cpp) over sqrt(1 -
-/// 1/index), sqrt(alpha) and a column; within 3e-3 of the integrals (tested). Outside, the column is the square root of
-/// x = cos (1 + alpha) / (cos + alpha). Inside, the critical angle, where the loss has a bend, lies in the middle, and
-/// columns are denser close to it.
+/// 1 - E for the lobe of rough_glass.h [1]. E is the share of uniform light that is reflected and transmitted, for
+/// one alpha and index, seen from outside or inside. Cubic interpolation in a table (glass_albedo_table.cpp) with
+/// planes at equal steps of sqrt(1 - 1/index), rows at equal steps of sqrt(alpha), and columns by cosine; within 3e-3
+/// of the integrals (tests/lib/material/glass_albedo_test.cpp).
+/// Outside, the column is the square root of x = cos (1 + alpha) / (cos + alpha). Inside, the loss has a bend at the
+/// critical angle. That angle lies in the middle column, and columns are denser close to it.
 class GlassLoss {
  public:
-  /// index >= 1 and alpha are clamped to the table's range. Sides: 0 outside, 1 inside.
+  /// index >= 1 and alpha of GGX are clamped to the table's range. Side 0 is outside of the glass, side 1 inside.
   GlassLoss(float index, float alpha);
   /// 1 - E for light towards cos_theta in (0, 1]; at least 0.
   float at(int side, float cos_theta) const;
@@ -26,7 +28,7 @@ class GlassLoss {
   float alpha_;
   float critical_;      ///< cosine of the critical angle
   int first_[2];        ///< first of the four planes and of the four rows used for interpolation
-  float weight_[2][4];  ///< weights of these
+  float weight_[2][4];  ///< weights of these four planes and rows
 };
 
 namespace glass_table {
@@ -34,7 +36,7 @@ inline constexpr int kPlanes = 11, kRows = 15, kColumns = 24;
 extern const float kLoss[2][kPlanes][kRows][kColumns];
 extern const float kMean[2][kPlanes][kRows];
 
-/// Coordinates of planes, rows and columns: position 0 is the first, 1 the last.
+/// index, alpha and cosine of a position in the table: 0 is the first plane, row or column, 1 the last.
 inline double index_of_plane(double position) { return position < 1 ? 1 / (1 - position * position) : 1e4; }
 inline double alpha_of_row(double position) { return position * position > 4e-4 ? position * position : 4e-4; }
 inline double cos_of_column(int side, double index, double position, double alpha) {

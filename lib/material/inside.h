@@ -22,26 +22,28 @@ inline Rgb transmittance(const MaterialValues& m, float distance) {
           std::pow(m.attenuation_color.b, lengths)};
 }
 
-/// The solids that a path is inside, from the sides of the boundaries it crosses: crossing a front enters the solid,
-/// crossing a back leaves it. Solids may be nested kDeepest deep (with more, the outermost is forgotten), and only the
-/// innermost absorbs. If a path starts inside a solid, this is noticed when it meets a back without having entered: its
-/// way there was inside. A path that meets nothing more is outside of all solids (an open solid does not absorb light
-/// that escapes). Solids are identified by their materials; leaving by a back of another material leaves the innermost
-/// solid.
+/// The solids that a path is inside, from the sides of the boundaries that it crosses: a crossed front enters the
+/// solid, a crossed back leaves it. Solids are identified by their materials; crossing a back of another material
+/// leaves the innermost solid. Only the innermost solid absorbs. Up to kDeepest solids may be nested; if there are
+/// more, the outermost is forgotten.
+/// A path may start inside a solid. This shows when it meets a back without having entered: the last distance is then
+/// inside. A path that meets nothing more counts as outside of all solids, so an open solid does not absorb light
+/// that escapes.
 class Inside {
  public:
   bool any() const { return count_ > 0; }
-  /// Transmittance of the last `distance` m before a surface of material `met`, seen from its front or back.
+  /// Transmittance [1] of the last `distance` m before a surface of material `met`. front: the path arrives at the
+  /// front.
   Rgb transmittance_to(std::span<const Material> materials, std::uint32_t met, bool front, float distance) const {
     if (count_ > 0) return transmittance(materials[within_[count_ - 1]], distance);
     return !front && is_solid_glass(materials[met]) ? transmittance(materials[met], distance) : Rgb(1.0f);
   }
-  /// Transmittance of `distance` m in the innermost solid.
+  /// Transmittance [1] of `distance` m in the innermost solid; 1 outside of all solids.
   Rgb transmittance_over(std::span<const Material> materials, float distance) const {
     return count_ > 0 ? transmittance(materials[within_[count_ - 1]], distance) : Rgb(1.0f);
   }
-  /// Product of n^2 of the solids: the factor by which irradiance from photons, in watts, is too high for radiance that
-  /// is kept as L / n^2.
+  /// Product of n^2 over the solids. Paths carry radiance as L / n^2, and photons carry watts, so irradiance from
+  /// photons must be divided by this factor.
   float index_squared(std::span<const Material> materials) const {
     float product = 1;
     for (int i = 0; i < count_; ++i) product *= materials[within_[i]].ior * materials[within_[i]].ior;

@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-/// Mean of the Fresnel term over the hemisphere outside, n >= 1: fit by Kulla & Conty 2017.
+/// Mean over the hemisphere outside of the Fresnel term for the index n >= 1 [1]: the fit of Kulla & Conty 2017.
 float mean_fresnel(float n) { return (n - 1) / (4.08567f + 1.00071f * n); }
 
 }  // namespace
@@ -31,12 +31,12 @@ RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
     const float b = std::min(through, through > 0 ? 1 / std::max(1.0f, ratio) : 0.0f);
     share_behind_ = side_ == 0 ? b : b * ratio;
   }
-  // From grazing angles on, 1 - E falls about as 1 / (cos^2 + alpha^2).
+  // Towards grazing angles 1 - E falls about as 1 / (cos^2 + alpha^2), so f_ms is sampled by this density.
   spread2_ = std::max(alpha2_, 1e-6f);
   log_spread_ = std::log1p(1 / spread2_);
 }
 
-/// 1 - E for cos_theta on wo's side or on the other side.
+/// 1 - E for cos_theta on wo's side, or with `behind` on the other side.
 float RoughGlass::loss(bool behind, float cos_theta) const {
   if (!thin_) return loss_.at(behind ? 1 - side_ : side_, cos_theta);
   const AlbedoPair e = wall_.at(cos_theta);
@@ -49,7 +49,8 @@ float RoughGlass::mean_loss(bool behind) const {
   return std::max(1e-7f, 1 - (e.a + e.b));
 }
 
-/// pdf [1/sr] of cos = sqrt(spread^2 ((1 + 1/spread^2)^u - 1)) with uniform azimuth, on one side.
+/// pdf [1/sr] of a direction on one side: cos = sqrt(spread^2 ((1 + 1/spread^2)^u - 1)) for u in [0, 1), with uniform
+/// azimuth.
 float RoughGlass::multiple_density(float cos_i) const {
   return cos_i * kInvPi / ((cos_i * cos_i + spread2_) * log_spread_);
 }

@@ -26,17 +26,20 @@ namespace tempolux {
 /// - E_mean,in) / (1 - E_mean,out). b = 1 - F_mean as long as d is below 1. The rest is reflected. No light is lost.
 class RoughGlass {
  public:
-  /// index >= 1: of the solid; alpha of GGX in (0, 1]; outside: wo is outside the solid (any value for a thin wall).
+  /// index >= 1: of the solid. alpha in (0, 1]: of GGX. outside: true if wo is outside the solid; without effect for
+  /// a thin wall.
   RoughGlass(float index, float alpha, bool thin, bool outside);
 
   float eval(Vec3 wi, Vec3 wo) const;  ///< f [1/sr], without a tint
-  float pdf(Vec3 wi, Vec3 wo) const;   ///< of sample() [1/sr]
-  /// Draws a direction wi above or below the surface with the weight eval |cos| / pdf. In rare cases the result is not
-  /// a unit vector or lies in the surface: the sample is lost.
+  float pdf(Vec3 wi, Vec3 wo) const;   ///< pdf with which sample() draws wi [1/sr]
+  /// Draws a direction wi above or below the surface; all numbers are in [0, 1). The weight of the sample is eval
+  /// |cos_i| / pdf. A result with wi.z = 0 is a lost sample: a microfacet has sent light to the wrong side of the
+  /// surface.
   Vec3 sample(Vec3 wo, float u_lobe, Vec2 u) const;
 
  private:
-  struct Pair {  ///< for a pair of directions: f of single scattering, and the pdf of sample() for it
+  struct Pair {  ///< for a pair of directions: f of single scattering [1/sr], and the pdf with which sample() draws it
+                 ///< [1/sr]
     float f = 0, pdf = 0;
   };
   Pair single(Vec3 wi, Vec3 wo) const;
@@ -51,7 +54,7 @@ class RoughGlass {
   bool thin_;
   int side_;                    ///< side of wo: 0 outside, 1 inside
   float share_behind_;          ///< share of f_ms on the other side
-  float spread2_, log_spread_;  ///< of multiple_density
+  float spread2_, log_spread_;  ///< spread^2 and log(1 + 1 / spread^2) of multiple_density()
 };
 
 }  // namespace tempolux

@@ -1,4 +1,4 @@
-// lib/material/seen_side.h -- a surface point with its normals turned to the viewer.
+// lib/material/seen_side.h -- a surface point whose normals are turned to the side from which it is seen.
 #pragma once
 
 #include "lib/core/frame.h"
@@ -6,11 +6,11 @@
 
 namespace tempolux {
 
-/// smallest cosine between a shading normal and a direction that it faces
+/// A shading normal faces a direction if their cosine is above this.
 inline constexpr float kLooksAway = 1e-4f;
 
-/// Normals on the side of wo (unit, away from the surface), and wo in the local frame of the Bsdf. The geometric normal
-/// replaces a shading normal that faces away from wo.
+/// Normals on the side of wo (unit, away from the surface), and wo in the local frame of the Bsdf. If the shading
+/// normal faces away from wo, the geometric normal replaces it.
 struct SeenSide {
   Vec3 normal_geometric, normal;
   Frame frame;  ///< z = normal

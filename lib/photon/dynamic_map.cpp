@@ -16,7 +16,7 @@ struct Piece {
   std::string bytes;
 };
 
-/// The photons of each path in a batch: those of path i have the numbers first[i] to first[i + 1], by bounce.
+/// The photons of a batch sorted by path: path i has the photons first[i] to first[i + 1] - 1, in order of bounce.
 struct ByPath {
   std::vector<std::uint32_t> first, photons;
 
@@ -31,7 +31,7 @@ struct ByPath {
   }
 };
 
-/// 0 - x instead of -x, so that a flux of 0 stays +0.
+/// The photon with negative flux. 0 - x is computed instead of -x, so that a flux of 0 stays +0.
 formats::Photon negative(formats::Photon photon) {
   for (float& flux : photon.flux) flux = 0 - flux;
   return photon;

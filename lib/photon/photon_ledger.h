@@ -27,7 +27,7 @@ inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats:
   if (!batch.pilots.empty()) group.pilots = batch.pilots;
 }
 
-/// Russian roulette may leave the absorbed flux slightly negative: 0 then.
+/// Sets a slightly negative absorbed flux, which Russian roulette may leave, to 0.
 inline void close_ledger(formats::GroupFlux& group) {
   for (double& flux : group.absorbed) flux = std::max(flux, 0.0);
 }

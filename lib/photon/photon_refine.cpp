@@ -35,7 +35,8 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
   std::vector<double> wanted(n);
   const bool dark = std::ranges::all_of(moments, [](double m) { return !(m > 0); });
   for (std::size_t g = 0; g < n; ++g) wanted[g] = dark ? 1 : std::sqrt(std::max(0.0, moments[g]));
-  // Groups in the order in which a rising level reaches them, and the level at which `extra` paths are used up.
+  // A level of paths / sqrt(moment) rises, and a group gets further paths once the level is above its own. Sorts the
+  // groups by their own levels, and finds the level at which `extra` paths are used up.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t(0));
   const auto begins = [&](std::size_t g) { return wanted[g] > 0 ? double(paths[g]) / wanted[g] : INFINITY; };
@@ -127,7 +128,8 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   for (const formats::GroupFlux& entry : groups.ledger) {
     const auto n = double(std::max<std::uint64_t>(1, entry.paths));
     groups.paths.push_back(entry.paths);
-    // Flux is divided by n; as the only path of the group a path would have n times as much.
+    // The moment belongs to a path that is the only one of its group. Stored flux is divided by n, so each square
+    // becomes n^2 times as large; the mean over n paths divides by n.
     groups.moments.push_back(squares[entry.group] * n);
   }
   groups.moments = neighbour_means(groups.moments, tracer.seed());

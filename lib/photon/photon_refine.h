@@ -14,9 +14,10 @@
 
 namespace tempolux {
 
-/// Number of paths for each group, `extra` more in all, so that the variance (the sum of moment / paths) is least and
-/// no group loses paths: paths are in proportion to the square root of the moment where that is more than there are
-/// (Neyman 1934). If all moments are 0, evenly. Both spans are by group; the whole numbers add up exactly.
+/// Distributes `extra` further paths over the groups and returns the number of paths of each group. The numbers
+/// minimise the variance, which is the sum of moment / paths, without taking paths from a group: a group gets paths
+/// in proportion to the square root of its moment, if that is more than it has (Neyman 1934). If all moments are 0,
+/// each group gets the same share. Both spans are by group; the whole numbers add up exactly.
 std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::span<const std::uint64_t> paths,
                                         std::uint64_t extra);
 
@@ -40,10 +41,10 @@ struct GroupMoments {
 /// media.
 GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer);
 
-/// Writes the map at `path` with `extra` further paths. A photon of group g then has the flux Phi / (N_g n_g), with n_g
-/// the group's paths: existing photons are scaled by n_g before / after, new paths continue the group's Halton
-/// sequence. Flux is divided among the groups first, so a group with many paths is not brighter. `header` is the new
-/// map's.
+/// Writes the map at `path` with `extra` further paths. A photon of group g then has the flux Phi / (N_g n_g), with
+/// Phi the flux of its light path if it were the only one, N_g the number of groups and n_g the paths of the group.
+/// Existing photons are scaled by n_g before / n_g after; new paths continue the group's Halton sequence. Every group
+/// carries 1 / N_g of the flux, so a group with many paths is not brighter. `header` is the new map's.
 PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options,
                                   formats::PhotonHeader header, const std::string& path, const GroupMoments& groups,
                                   std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink);

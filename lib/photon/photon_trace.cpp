@@ -19,8 +19,8 @@ namespace {
 
 using formats::PathKind;
 
-/// A light this close to a surface's plane counts as in the plane; a multiple of the offset of rays that leave the
-/// surface, which is a few float steps.
+/// Largest distance of a light from a surface's plane at which the light counts as in the plane, as a multiple of the
+/// offset of rays that leave the surface (a few float steps).
 constexpr float kInPlane = 0.25f;
 constexpr int kMostPlanes = 8;           ///< number of coincident planes in which a light may lie
 constexpr float kStepsPerCrossing = 10;  ///< least number of tentative collisions in a mean crossing of the media's box

@@ -24,9 +24,9 @@ struct PhotonOptions {
   std::uint64_t photon_count = 1'000'000;  ///< paths to start; rounded up to a multiple of group_count
   std::uint32_t group_count = 0;           ///< N_g, number of groups; 0: automatic
   bool store_direct = true, store_caustic = true, store_indirect = true;
-  /// Records tentative collisions in media; those of direct light only with store_direct. A share volume_share is kept
-  /// at random, with the flux divided by the share: of ten collisions per crossing four, which is what a radiance
-  /// volume can resolve (docs/methods/volume_photons.md).
+  /// True to record tentative collisions in media; direct light only if store_direct is set. Each collision is kept
+  /// with probability volume_share, and its flux is divided by volume_share. With ten collisions per crossing, 0.4
+  /// keeps four, which is what a radiance volume can resolve (docs/methods/volume_photons.md).
   bool store_volume = false;
   float volume_share = 0.4f;
   std::uint32_t pilots = 0;  ///< number of first paths in each group that are pilots: what they meet is recorded
@@ -93,7 +93,7 @@ class PhotonTracer {
   /// Batches are in file order: groups ascending, each cut into pieces of kBatch paths. Photons of a batch are sorted
   /// by waves of kWave paths, in a wave by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
-  /// The batches [first, last) of a group.
+  /// First batch of a group, and the first batch after the group.
   std::pair<std::size_t, std::size_t> batches_of(std::uint32_t group) const {
     return {std::size_t(group * batches_per_group_), std::size_t((group + 1) * batches_per_group_)};
   }
@@ -101,8 +101,8 @@ class PhotonTracer {
   const Media* media() const { return media_ ? &*media_ : nullptr; }
   /// The majorants in use, with the lower bound; empty without media.
   const MajorantGrid& majorants() const;
-  /// True if photons store their direction: if a phase function is anisotropic, or caustic light may fall on normal
-  /// maps.
+  /// True if photons store their direction. They do if a phase function is anisotropic, or if caustic light may fall
+  /// on normal maps.
   bool stores_directions() const { return directions_; }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;

@@ -29,8 +29,8 @@ struct UpdateOptions {
 /// paths, kinds, columns, majorants, emission table and origin must be equal.
 std::string why_not_updatable(const formats::PhotonHeader& previous, const formats::PhotonHeader& header);
 
-/// The groups to trace again at `frame`, ascending. None if `same` (nothing that light depends on has changed), except
-/// for `all`. Ties are broken by a hash of frame and group, so that no group is favoured.
+/// The groups to trace again at `frame`, ascending. If `same` (nothing that light depends on has changed) no group is
+/// chosen, except by the strategy `all`. Ties are broken by a hash of frame and group, so that no group is favoured.
 std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame, bool same,
                                          const UpdateOptions& options);
 

@@ -1,5 +1,5 @@
-// lib/photon/pilot_signature.h -- hashes of what a pilot path met: equal if it met the same, otherwise different (with
-// probability 1 - 2^-64).
+// lib/photon/pilot_signature.h -- hashes of what a pilot path met. Equal paths have equal hashes; different paths
+// have different hashes with probability 1 - 2^-64.
 #pragma once
 
 #include <bit>

@@ -32,7 +32,8 @@ constexpr bool sends_pilots(UpdateStrategy s) {
 /// The data of an earlier map from which groups are chosen.
 struct PreviousMap {
   formats::PhotonHeader header;
-  /// Of the whole map; of a map kept in memory, the digest at reading: an overlay on an overlay needs none.
+  /// Digest of the whole map; not updated for a map kept in memory. An overlay on an overlay takes the digest of its
+  /// base from the header instead.
   std::string digest;
   std::vector<formats::GroupFlux> ledger;  ///< every group
   /// One number for each group, by strategy. census: sum over its tentative photons of flux x |extinction now - then|,

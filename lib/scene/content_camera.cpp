@@ -13,7 +13,7 @@
 namespace tempolux {
 namespace {
 
-// docs/methods/content-camera.md has the reason of each.
+// docs/methods/content-camera.md gives the reason for each of these constants.
 constexpr int kTimes = 8;  ///< times of an animation, evenly spaced, that are evaluated
 constexpr std::size_t kMostTriangles = 400'000;
 /// A triangle belongs to a ground if it is longer than this many diagonals of all smaller triangles.
@@ -128,9 +128,9 @@ std::array<Vec3d, 3> axes_of(Vec3d backward) {
   return {right, cross(backward, right), backward};
 }
 
-/// The nearest point from which a picture of aspect kAspect contains all corners. Each corner requires |y - ey| <= t
-/// (ez - z) in the camera's axes, where t is the tangent of half the view angle. So ey + t ez and t ez - ey have lower
-/// limits; x likewise.
+/// The nearest point from which a picture of aspect kAspect contains all corners. In the camera's axes a corner (x,
+/// y, z) is visible from the eye (ex, ey, ez) if |y - ey| <= t (ez - z), with t the tangent of half the view angle.
+/// So each corner gives lower limits for ey + t ez and for t ez - ey; x likewise.
 Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes) {
   const double ty = std::tan(kYfov_rad / 2) / kMargin, tx = ty * kAspect;
   constexpr double kNone = -1e300;

@@ -118,7 +118,7 @@ std::string name_of(const tinygltf::Animation& source, std::size_t index) {
   return source.name.empty() ? "animation " + std::to_string(index) : source.name;
 }
 
-/// Throws if the user asked for an animation that no animation of the file has as name.
+/// Throws if the user asked for an animation and no animation of the file has this name.
 void check_name(const Import& import, const std::string& asked) {
   std::string names;
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {

@@ -188,7 +188,7 @@ Elements open_accessor(Import& import, int index, int components, const std::str
   return elements;
 }
 
-/// Calls put(element, component, value) for all numbers; `scale` turns normalised integers into numbers.
+/// Calls put(element, component, value) for all numbers. `scale` is the factor from normalised integers to numbers.
 template <class Stored, class Put>
 void convert(const Elements& elements, double scale, Put put) {
   for (std::uint64_t i = 0; i < elements.count; ++i) {
@@ -201,8 +201,9 @@ void convert(const Elements& elements, double scale, Put put) {
   }
 }
 
-/// Reads components of any type except 32-bit integers (which glTF keeps for indices) as numbers: calls put(element,
-/// component, value). Elements with NaN or infinity are listed once each; the caller must overwrite them.
+/// Reads components of any type as numbers and calls put(element, component, value); 32-bit integers are refused,
+/// since glTF keeps them for indices. Returns the elements with NaN or infinity, each once, ascending: the caller
+/// must replace their values.
 template <class Put>
 std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, const std::string& place, int index,
                                     Put put_value) {

@@ -131,7 +131,8 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   return uvs;
 }
 
-/// glTF 2.0, 3.7.2.1: RGB or RGBA, linear. Colours that are all white are left out. Marks the material.
+/// Reads vertex colours (glTF 2.0, 3.7.2.1: RGB or RGBA, linear) and marks the material. Colours that are all white
+/// are dropped.
 void read_colors(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("COLOR_0");
   if (found == source.attributes.end()) return;

@@ -49,13 +49,15 @@ struct Import {
   /// Takes `bytes` from the budget before they are allocated; fails if a file asks for far more memory than its size
   /// can explain.
   void take_memory(std::uint64_t bytes, const std::string& place);
-  /// `place`: where the user finds it, as 'materials[3] "Oak"'; "": that would not help.
+  /// Lists something that is ignored. `place` is where the user finds it, as 'materials[3] "Oak"'; "" if a place
+  /// would not help.
   void ignore(const std::string& what, std::size_t count = 1, const std::string& place = "") {
     Mended& of = ignored[what];
     if (of.count == 0) of.first_place = place;
     of.count += count;
   }
-  /// `what`: things in the plural and what was done, as "weights below 0 are left out"; `count` of them at `place`.
+  /// Lists something that was repaired. `what` names the things in the plural and what was done, as "weights below 0
+  /// are left out"; `count` of them are at `place`.
   void mend(const std::string& place, const std::string& what, std::size_t count);
 };
 

@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// cd or lux. Multiplied by 683 this is a lamp of 9.2 W or a sun of .73 W/m^2; else a lamp of 6.3 kW or a sun of
-/// 500.
+/// cd or lux. A lamp of 500 cd has 9.2 W, and a sun of 500 lux has .73 W/m^2, if the exporter multiplied it by 683.
+/// Otherwise the lamp has 6.3 kW and the sun 500 W/m^2, which is doubtful.
 constexpr float kDoubtful = 500;
 
 bool is_from_blender(const std::string& generator) {

@@ -34,7 +34,7 @@ struct MaterialValues {
   float ior = 1.5f;             ///< >= 1, or 0
   float transmission = 0;       ///< KHR_materials_transmission, [0, 1]: replaces this share of the Lambert lobe
   bool thin_walled = true;      ///< false: the boundary of a refracting solid (KHR_materials_volume)
-  Rgb attenuation_color{1.0f};  ///< KHR_materials_volume: share of light left inside a solid ...
+  Rgb attenuation_color{1.0f};  ///< KHR_materials_volume: share of light that remains inside a solid ...
   float attenuation_distance = std::numeric_limits<float>::infinity();  ///< ... after this distance, m, > 0
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
@@ -101,8 +101,9 @@ struct Primitive {
   std::vector<Vec2> uvs, uvs1;  ///< TEXCOORD_0, TEXCOORD_1; empty: none
   /// COLOR_0, linear, in [0, 1]: multiplies base colour and alpha, interpolated linearly. Empty: 1.
   std::vector<std::array<float, 4>> colors;
-  /// The tangent along the normal map's x, and the sign of its y axis: +1 along normal x tangent, -1 against. Empty:
-  /// from the texture coordinates. Only for primitives with normals and a normal map.
+  /// The tangent along the normal map's x, and the sign of its y axis: +1 if y is along normal x tangent, -1 if
+  /// against. Empty: texture lookups take the directions of the texture coordinates. Only for primitives with normals
+  /// and a normal map.
   std::vector<Vec3> tangents;
   std::vector<float> tangent_sides;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front

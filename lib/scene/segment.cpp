@@ -190,7 +190,8 @@ void add_moving_bounds(const Scene& scene, const Animator& animator, double fps,
   }
 }
 
-/// Multiples of a power of two, about four diagonals, so that small edits do not move the origin.
+/// The origin of scene space. Its coordinates are multiples of a power of two, about four diagonals, so that small
+/// edits do not move it.
 Vec3d scene_origin(const Box3d& bounds) {
   const Vec3d centre = bounds.centre();
   const double diagonal = bounds.diagonal();

@@ -93,7 +93,8 @@ void MovingBoxes::add(const MovingBoxes& other) {
     surfaces[i].add(other.surfaces[i]);
     const std::span<const Box3> more = other.pieces_of(i);
     if (i >= known) pieces[i].assign(more.begin(), more.end());
-    // If one frame has no pieces, the surface's box must do.
+    // The pieces of two frames can only be joined one by one. If their numbers differ, the surface keeps its own box
+    // only.
     else if (pieces[i].size() != more.size()) pieces[i].clear();
     else
       for (std::size_t k = 0; k < more.size(); ++k) pieces[i][k].add(more[k]);

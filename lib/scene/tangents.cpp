@@ -149,7 +149,8 @@ void TangentGroups::grow(Corner first) {
     if (here == 0) here = turns;  // a triangle without area takes the orientation of the first group that reaches it
     if (group_[c] != kNone || here != turns) continue;
     group_[c] = group;
-    // The edge before this corner starts at the neighbour's corner here; the edge after it ends there.
+    // Two neighbours share an edge at this vertex. In the neighbour, the edge before this corner starts at this
+    // vertex, and the edge after this corner ends at it.
     if (const Corner over = across_[previous(c)]; over != kNone) open.push_back(over);
     if (const Corner over = across_[c]; over != kNone) open.push_back(next(over));
   }

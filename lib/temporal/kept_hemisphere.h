@@ -31,7 +31,7 @@ struct KeptHemisphere {
 struct KeptHemispheres {
   std::vector<KeptHemisphere> records;
   std::vector<Rgb> point_light;  ///< W/m^2, all kinds together, by point; anchors name points
-  /// Hash of the bright points' explicit shares: samples leave that light out; "": samples hold all light
+  /// Hash of the explicit shares of bright points, whose light the samples leave out; "": samples hold all light
   std::string high_hash;
   bool changed = false;  ///< true if anything changed in the last frame that records follow; not stored in files
   std::shared_ptr<SampleShelf> shelf;  ///< stores samples for which there is no memory; nullptr: all stay in memory

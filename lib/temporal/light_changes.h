@@ -9,16 +9,16 @@
 
 namespace tempolux {
 
-/// What happens to a cell: it stays, its radiance is scaled with its anchor's light, or the reason for which it is
-/// traced again.
+/// What happens to a cell in this frame: nothing, its radiance is scaled with its anchor's light, or it is traced
+/// again. The further marks name the reason for tracing (TemporalCounts).
 enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, near, aged, all };
 inline bool is_traced(std::uint8_t mark) { return mark > scaled; }
 
 /// The differences between the kept frame and the present one.
 struct LightChanges {
   std::vector<Box3> boxes;  ///< m; around both places of each surface that has moved
-  /// For each point that may be an anchor: unmarked, scaled or lost. `ratios` holds the change of its light; a separate
-  /// array, since few cells read it.
+  /// By point that may be an anchor: unmarked, scaled or lost. `ratios` holds the factor by which its light changed.
+  /// It is a separate array, since few cells read it.
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
   bool anything = false, materials = false;

@@ -12,8 +12,8 @@ constexpr double kStandsOut =
     2;  ///< over the sum of the neighbouring steps: where motion starts or ends, one neighbour has the size of the step
 constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are compared
 
-/// Power of all lights, without textures [W for lights given in W/sr or W/m^2/sr; directional lights count with their
-/// irradiance].
+/// Power of all lights, without textures, to compare two frames. Unit: W for lights given in W/sr or W/m^2/sr;
+/// directional lights count with their irradiance.
 double lamp_power(const SceneFrame& frame) {
   double power = 0;
   for (const PlacedLight& lamp : frame.lights) power += 4 * std::numbers::pi * double(luminance(lamp.light.intensity));

@@ -46,8 +46,8 @@ struct Sides {
   bool any() const { return before || after; }
 };
 
-/// Visits the steps in which a window grows on one side: single frames first, then blocks; passes the distance of each
-/// step's last frame from the middle.
+/// Visits the steps by which a window grows on one side, first single frames, then blocks. `visit` receives the
+/// distance of the step's last frame from the window's middle.
 template <class Visit>
 void each_step(int reach, const Visit& visit) {
   for (int start = 0; start < reach; start = block_end(start)) {
@@ -80,9 +80,9 @@ class Grower {
     threshold_ = thresholds.of(tests);
   }
 
-  /// On which sides the added frames may join the window. If both sides together differ from the window, a side may
-  /// join that does not differ by itself. If neither side differs by itself, light passes through an extreme, and
-  /// neither side may join.
+  /// On which sides the added frames may join the window. If both sides together do not differ from the window, both
+  /// may. Otherwise a side may join that does not differ by itself, but only if the other side does: if neither side
+  /// differs by itself, light passes through an extreme, and neither may join.
   Sides sides(const Window& window, const Added& added) const {
     if (added.frames() == 0 || !differs(window, added)) return {true, true};
     const bool before = added.before > 0 && differs(window, {added.before, 0});
@@ -116,7 +116,8 @@ class Grower {
     if ((old.photons + added.photons) * p < kPhotonsInBlock) return false;
     return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
   }
-  /// True if joining the frames shifts the region's mean by more than the noise that the kernel's mean loses.
+  /// True if joining the frames would shift the region's mean by more than the noise that the kernel's mean would
+  /// lose.
   bool matters(const HitSeries& s, const Window& w, const Added& a, const HitBlock& kernel) const {
     const double old_frames = w.before + 1 + w.after, frames = old_frames + a.frames();
     const HitBlock all = all_of(s, w, a);

@@ -47,15 +47,17 @@ struct HitBlock {
   }
 };
 
-/// Number of standard deviations by which the light of the added frames differs from the light of the old ones. Each
-/// photon of both falls into an added frame with probability p = added / (old + added). So the flux there has mean p S
-/// and variance p (1 - p) Q, with S and Q the sums over both, and skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S,
-/// exact for photons of equal power. The deviation z becomes a Gaussian's by z - g (z^2 - 1) / 6 (Cornish and Fisher).
-/// 0 if there are no photons.
+/// How much the light of the added frames differs from the light of the old ones, in standard deviations. If the
+/// light is equal, each photon of both falls into an added frame with probability p = added / (old + added). With S
+/// the flux of both and Q the sum of squares of both, the flux of the added frames has the mean p S, the variance p
+/// (1 - p) Q, and, exactly for photons of equal power, the skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S. The
+/// deviation z is corrected to z - g (z^2 - 1) / 6, which is nearly Gaussian (Cornish and Fisher). 0 if there are no
+/// photons.
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames);
 
-/// Thresholds, in standard deviations, at which a test rejects. All tests of a window together reject constant light
-/// with probability `false_alarms`; each of n independent tests does with 1 - (1 - false_alarms)^(1/n).
+/// Thresholds, in standard deviations, above which a test rejects. The n tests of a window are independent, and each
+/// rejects constant light with probability 1 - (1 - false_alarms)^(1/n), so all together do with probability
+/// `false_alarms`.
 class WindowThresholds {
  public:
   explicit WindowThresholds(const WindowOptions& options);

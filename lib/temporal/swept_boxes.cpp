@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kMargin = 0x1p-18f;  ///< over the largest coordinate: rounding of rays and boxes
+constexpr float kMargin = 0x1p-18f;  ///< share of the largest coordinate: rounding of rays and boxes
 constexpr float kAngle = 1e-3f;      ///< radians: rounding of angles
 
 void widen(Box3& box) {

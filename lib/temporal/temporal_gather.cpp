@@ -18,7 +18,7 @@ constexpr int kSteps = 15;  ///< numbers of strata: up to 9 times the rays, in s
 /// Step of 2^(1/4): with equally many rays noise is 9 % more, as with 19 % fewer rays (docs/methods/temporal.md)
 constexpr int kStepForEvenness = 1;
 constexpr int kFadingFrames = 4;
-constexpr float kLeastOfHidden = 1.0f / 64;  ///< over the smallest radius: radii stay above 0
+constexpr float kLeastOfHidden = 1.0f / 64;  ///< share of the smallest radius, so that radii stay above 0
 constexpr std::uint32_t kAhead = 12;         ///< cells whose light is prefetched into the processor's cache
 /// Share of `refresh` that is always drawn by age, however many cells are traced for another reason.
 constexpr float kLeastAged = 0.25f;
@@ -140,9 +140,9 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   }
 }
 
-/// True if a record must lose the smallest radius (the radius that covers pixels around a record) because a mover came
-/// close and hides the record from the camera. Behind a lamp that glides along a ceiling a record is dark, and would
-/// darken the visible ceiling around the lamp.
+/// True if the record must not have the smallest radius (which covers the pixels around a record) because a mover
+/// came close and hides the record from the camera. Example: a lamp glides along a ceiling. A record behind the lamp
+/// is dark, and with the smallest radius would darken the visible ceiling around the lamp.
 bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before,
                               const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
@@ -191,8 +191,9 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set
                                                              : formats::SurfaceSet::dynamic_set;
   r.footprint = seen.footprint;
-  // As many cells as FinalGather::gather traces rays, so that each cell can be redrawn alone. One step more makes up
-  // for FinalGather's further rays, which go to uneven cells and reduce noise more than even rays do.
+  // Chooses as many cells as FinalGather::gather traces rays, so that each cell can be traced again alone.
+  // FinalGather's further rays go to cells with uneven light and reduce noise more than uniform rays do; one more
+  // step of cells makes up for this.
   const double steps = kStepForEvenness + 4 * std::log2(1 + double(further_share));
   const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
   r.rings = std::uint16_t(strata.rings);
@@ -253,8 +254,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   finish(place, kept, &changes, counts.update);
 }
 
-/// First marks the cells of all records, then updates the records that change: the number of cells drawn by age depends
-/// on the number traced anyway.
+/// First marks the cells of all records, then updates the records that change: how many cells are drawn by age
+/// depends on how many are traced for other reasons.
 void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone,
                                 TemporalCounts& counts) const {
   std::vector<Marked> marked(kept.records.size());

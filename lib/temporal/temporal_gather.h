@@ -15,8 +15,9 @@
 
 namespace tempolux {
 
-/// How many cells are drawn by age. adaptive: so many that they and the cells traced for another reason make up the
-/// share `refresh`, but at least a quarter of the share. fixed: the share of the cells without a reason.
+/// How many cells are drawn by age. adaptive: as many as are missing for the cells traced for any reason to be the
+/// share `refresh`, but at least a quarter of that share. fixed: the share `refresh` of the cells without another
+/// reason.
 enum class RefreshRule { adaptive, fixed };
 
 struct TemporalOptions {

@@ -37,11 +37,12 @@ class StaticTree {
   std::shared_ptr<const Kept> kept_;
 };
 
-/// Two search trees: static surfaces, and surfaces that move in the segment. The nearer hit counts; at equal distance
-/// the static one. Surfaces of alpha mode MASK are cut out where alpha is below the cut-off. A surface of mode BLEND is
-/// hit with probability alpha, decided by the bits of ray and triangle: so on average a share 1 - alpha of all light
-/// passes straight through, and callers need not handle alpha. Thread-safe once built. A ray that is not finite counts
-/// as a miss and is counted; it never aborts.
+/// Finds the nearest hit of a ray. There are two search trees: static surfaces, and surfaces that move in the
+/// segment; at equal distance the static surface is hit.
+/// Surfaces of alpha mode MASK have holes where alpha is below the cut-off. A surface of mode BLEND is hit with
+/// probability alpha, decided by a hash of ray and triangle: on average a share 1 - alpha of all light passes
+/// straight through, and callers need not handle alpha.
+/// Thread-safe once built. A ray that is not finite counts as a miss; refused_ray_count() counts such rays.
 class Tracer {
  public:
   explicit Tracer(const SceneFrame& frame);
@@ -54,10 +55,10 @@ class Tracer {
 
   /// Nearest hit in (t_min, t_max). False, with `hit` unchanged, if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
-  /// The same for many rays: hits[i] belongs to rays[i] (surface kNone: no hit). Takes a third to a half of the time if
-  /// neighbours in the list start close together in similar directions. Of two equally near hits it may report another
-  /// one than intersect(); the same list gives the same hits. alike: false if neighbours differ, which is then no
-  /// slower than single rays.
+  /// The same for many rays: hits[i] belongs to rays[i] (surface kNone: no hit). Takes a third to a half of the time
+  /// if neighbours in the list start close together in similar directions. If they do not, pass alike = false: the
+  /// call is then no slower than single rays. If two surfaces are equally near, it may report another one than
+  /// intersect(); the same list always gives the same hits.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike = true) const;
   /// True if a surface lies between the ray's ends.
   bool occluded(const Ray& ray) const;

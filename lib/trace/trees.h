@@ -17,8 +17,8 @@
 
 namespace tempolux {
 
-/// Distance between a ray's start and its surface, over the largest coordinate of the triangle: 16 ulp of float32, four
-/// times the rounding of a point from barycentric coordinates and of Embree's arithmetic.
+/// Distance between a ray's start and its surface, divided by the largest coordinate of the triangle: 16 ulp of
+/// float32, four times the rounding of a point from barycentric coordinates and of Embree's arithmetic.
 inline constexpr float kOffsetScale = 0x1p-20f;
 
 struct Tree {

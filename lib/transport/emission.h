@@ -16,8 +16,8 @@ struct LastScatter {
 };
 
 /// Radiance [W/m^2/sr] that the surface emits at the hit towards wo, times the power heuristic's weight [Veach 1997,
-/// 9.2.4]. Textures are averaged over `width` m; after a scattering with light samples at their finest level, which
-/// light samples read, too.
+/// 9.2.4]. Textures are averaged over `width` m. If light samples were drawn at the last scattering, textures are
+/// read at their finest level instead, as light samples read them.
 Rgb weighed_emission(const Lights& lights, const SurfacePoint& hit, Vec3 wo, const LastScatter& last, float width);
 
 /// The same for the environment, where the path leaves the scene. Needs an environment.

@@ -21,7 +21,7 @@ struct WayBits {
 };
 enum Way : std::uint32_t { way_path = 0, way_shadow = 1, way_shadow_of_medium = 2 };  ///< < 16
 
-/// Estimate (estimate_transmittance) of the transmittance of the media along a ray, whose direction need not be unit.
+/// Estimate of the transmittance of the media along a ray (estimate_transmittance). The direction need not be unit.
 float media_transmittance(const Media& media, const Ray& ray, const WayBits& bits);
 
 /// The same for a shadow ray; 0 if a surface is in the way. Without media the result is exactly 0 or 1.

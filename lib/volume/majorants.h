@@ -16,7 +16,7 @@ class MajorantGrid {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 21;
 
-  MajorantGrid() = default;  ///< of nothing
+  MajorantGrid() = default;  ///< a grid without cells
   /// All majorants are zero. Counts are at least 1; throws std::invalid_argument for an empty box or more than
   /// kMostCells.
   MajorantGrid(const Box3& box, const std::array<std::int32_t, 3>& counts);

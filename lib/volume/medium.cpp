@@ -196,7 +196,7 @@ MajorantGrid majorant_cells(const Box3d& box, double finest_voxel) {
 void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants) {
   if (majorants.empty()) return;
   const auto [nx, ny, nz] = majorants.counts();
-  // Rounding may assign a point on a border to either cell, so both cells are widened by a small margin.
+  // Rounding may assign a point on a border to either of two cells, so every cell is widened by a small margin.
   const double hair =
       1e-5 * double(max_component(majorants.box().upper - majorants.box().lower)) / std::max({nx, ny, nz});
   parallel_chunks(std::size_t(nx) * std::size_t(ny), 16, [&, ny = ny, nz = nz](std::size_t first, std::size_t last) {

@@ -22,7 +22,7 @@ constexpr std::uint64_t kSlowest = 10u << 20;  ///< bytes per second that the pr
 constexpr std::size_t kMostTogether = 16;      ///< files read by one process, whose start then costs 3 ms per file
 constexpr std::uint64_t kMostAhead =
     16u << 20;  ///< bytes of files read by one process; in memory up to kExpansion times as many
-/// Voxels: within half of it float32 resolves positions to 1/256 of a voxel.
+/// Voxels. Within half of this distance from index 0, float32 resolves positions to 1/256 of a voxel.
 constexpr std::int32_t kFarStep = 1 << 16;
 
 std::uint64_t size_of(const std::string& path) {
@@ -49,9 +49,9 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
-/// Gives voxels far from index 0 numbers close to 0, and shifts the transform accordingly: from 2^24 on float32 does
-/// not resolve positions between voxels. The shift is a multiple of kFarStep, so that the numbers of a sequence stay
-/// the same while its smoke moves.
+/// Renumbers voxels that are far from index 0, and shifts the transform accordingly: from 2^24 on float32 does not
+/// resolve positions between voxels. The shift is a multiple of kFarStep, so that the numbers of a sequence stay the
+/// same while its smoke moves.
 void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   if (blocks.empty()) return;
   GridIndex low = blocks.front().origin;

@@ -26,7 +26,8 @@ void mean_of(const KeyFrame& key, const Taps& taps, std::size_t stride, float* m
 Compositor::Compositor(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options)
     : target_(target), keys_(keys), options_(options), stride_(keys[0].view->key().stride()) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    // Weight by distance in time, linear between two keys: each key's weight is the other key's distance over the sum.
+    // The weight by distance in time is linear between two keys: the weight of a key is the other key's distance
+    // divided by the sum of both distances.
     const double other = keys.size() < 2 ? 1 : keys[1 - k].frames_away, sum = keys.size() < 2 ? 1 : both_away();
     nearness_[k] = float(sum > 0 ? other / sum : 0.5);
     stays_[k] = !keys[k].cut_off && keys[k].view->same_camera();

@@ -17,9 +17,9 @@ inline constexpr std::size_t kMostChannels = 64;  ///< colour channels in a key
 /// A key's colour and surfaces, laid out for look-ups.
 class KeyFrame {
  public:
-  /// Takes the image's colour layers (RGBA and LAYER.R .G .B), depth and, if there, objects and normals. Albedo is not
-  /// taken, since it belongs to the surface, and variance is not, since an interpolated value has another. Throws
-  /// InputError, beginning with `name`.
+  /// Takes the image's colour layers (RGBA and LAYER.R .G .B), its depth and, if there, objects and normals. Albedo
+  /// is not taken: the target computes it from its own surfaces. Variance is not taken: an interpolated value has
+  /// another variance. Throws InputError, beginning with `name`.
   KeyFrame(const Image& image, const std::string& name, const FrameCamera& camera);
 
   const std::string& name() const { return name_; }

@@ -56,10 +56,10 @@ class KeyView {
   KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target,
           const ObjectMotions& key_from_target);
 
-  /// Finds the colour of target points. Only whole pixels that show the same face count. Between pixel centres colour
-  /// is interpolated linearly. If some of the four surrounding pixels do not count, the others share their weight; if
-  /// none counts, the nearest of the 16 surrounding pixels that does is taken. A position within kSamePixel of a centre
-  /// is that pixel.
+  /// Finds the colour of target points. A pixel of the key counts only if it is whole and shows the same face.
+  /// Between pixel centres colour is interpolated linearly. If some of the four surrounding pixels do not count, the
+  /// others share their weight. If none of the four counts, the nearest counting pixel of the 16 surrounding ones is
+  /// taken. A position within kSamePixel of a centre is that pixel.
   void find(const WantedPoints& wanted, FoundPoints& found) const;
 
   /// True if the target sees this object's pixels exactly as the key does: the same camera, and the object has not

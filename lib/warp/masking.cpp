@@ -8,9 +8,9 @@
 namespace tempolux {
 namespace {
 
-// Number of standard errors above which a difference is not noise: 3, times 1.5 since interpolated pixels share the
-// noise of their neighbours. Linear interpolation leaves each pixel (2/3)^2 of the variance on average, but the
-// variance of a mean over many pixels stays.
+// Number of standard errors above which a difference is not noise. The factor 1.5 on the usual 3 is for interpolated
+// pixels: linear interpolation leaves each pixel (2/3)^2 of its variance on average, while the variance of a mean
+// over many pixels stays, because neighbouring pixels share noise.
 constexpr double kStandardErrors = 3 * 1.5;
 constexpr int kReach = 2;  // pixels on each side over which light is averaged
 

@@ -38,11 +38,13 @@ class Masking {
     std::array<float, 3> mean{}, square{};  ///< R, G, B
   };
   Spread spread(const float* mean, const float* square) const;
-  /// Number of positions at which a pixel composed of several surfaces must be looked up so that its error is
-  /// WarpOptions::edge_share of its light. n positions that share no row and no column err by sigma n^(-5/6)
-  /// (docs/pixels.md), where sigma is the standard deviation of the colours. `at`: spread of the `count` positions
-  /// tried. A surface that all of them missed has a share of about 1 / (2 count); its difference in colour is estimated
-  /// from the centres of the 3 x 3 pixels (`around`), of which an edge leaves a third on its other side.
+  /// Number of positions at which a pixel composed of several surfaces is looked up, so that its error is
+  /// WarpOptions::edge_share of its light. n positions of which no two share a row or a column have the error sigma
+  /// n^(-5/6) (docs/pixels.md), with sigma the standard deviation of the colours.
+  /// `at`: spread of the colours at the `count` positions tried. A surface that all of these missed covers a share of
+  /// about 1 / (2 count) of the pixel. `around`: spread of the colours at the centres of the 3 x 3 pixels. An edge
+  /// leaves a third of these centres on its other side, so `around` gives the difference in colour of the missed
+  /// surface.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 
   /// True if the light may differ on any surface that a key shows; else mark_changed_light() has nothing to do.

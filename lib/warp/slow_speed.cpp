@@ -19,7 +19,8 @@ double sensitivity(double frequency, double speed) {
 }  // namespace
 
 double highest_visible_frequency(double retinal_speed) {
-  // Sensitivity falls above its peak and is below 1 at some multiple of the peak's frequency.
+  // Sensitivity falls above its peak, so it is below 1 at some multiple of the peak's frequency. Doubling finds an
+  // upper end of the interval, bisection the frequency.
   double low = 45.9 / (2 * std::numbers::pi * 0.67 * (1.7 * retinal_speed + 2)), high = low;
   while (sensitivity(high, retinal_speed) > 1) high *= 2;
   for (int i = 0; i < 60; ++i) {

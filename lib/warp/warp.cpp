@@ -11,8 +11,8 @@
 namespace tempolux {
 namespace {
 
-/// Positions inside a pixel from which an edge is composed: kParts at first, up to kMostParts if its surfaces differ
-/// much.
+/// Number of positions inside a pixel from which an edge is composed: kParts at first, and up to kMostParts if the
+/// surfaces differ much.
 constexpr std::size_t kParts = 8, kMostParts = 64;
 
 /// n positions (n a power of two from 8 to 64) with one in each of n rows and n columns: Hammersley's points.

@@ -54,7 +54,8 @@ struct Chain {
         gather(tracer, lights, lookup, with_rays(rays)),
         store() {}
 
-  /// Records for a picture whose pixel i sees `at(i)`, seen from the side of the normal given.
+  /// Places records for a picture. at(i) is the place that pixel i sees, and the normal of the side from which it is
+  /// seen.
   template <class At>
   void place(int width, int height, float footprint, const At& at) {
     GatherCounts counts;
@@ -65,9 +66,9 @@ struct Chain {
       return SeenPoint{seen->first, seen->second, footprint, false};
     });
     place_records(gather, views, width, height, {}, store, counts);
-    EXPECT_LT(counts.unanswered, counts.rays / 20);  // next to walls and where surfaces bend
+    EXPECT_LT(counts.unanswered, counts.rays / 20);  // near walls and bends of a surface some hits have no point
   }
-  /// The surface under `position`, met from h above it.
+  /// The surface that a ray meets which starts h above `position` and runs against `normal`.
   std::optional<std::pair<SurfacePoint, Vec3>> surface_at(Vec3 position, Vec3 normal, float h) const {
     Hit hit;
     if (!tracer.intersect({position + normal * h, -normal}, hit)) return std::nullopt;

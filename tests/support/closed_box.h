@@ -1,8 +1,9 @@
 // tests/support/closed_box.h -- closed rooms with a point light, whose light is known on paper.
 //
-// With reflectance rho everywhere, an emitter of flux F inside and surface S, every reflection keeps the
-// fraction rho of the flux: the surfaces receive F (1 + rho + rho^2 + ...) = F / (1 - rho) in all, in the mean
-// F / (S (1 - rho)) per area, of which F rho / (S (1 - rho)) after at least one reflection.
+// All surfaces have the reflectance rho. A lamp of flux F is inside, and S is the area of all surfaces. Every
+// reflection keeps the share rho of the flux. So the surfaces receive F (1 + rho + rho^2 + ...) = F / (1 - rho) in
+// all, and F / (S (1 - rho)) per area on average. The part after at least one reflection is F rho / (S (1 - rho)) per
+// area.
 #pragma once
 
 #include "lib/light/lights.h"

@@ -1,4 +1,4 @@
-// tests/support/filter_frames.h -- frames made in the test for the filter: what they see, their light, noise and flow.
+// tests/support/filter_frames.h -- makes frames for tests of the filter: surfaces, light, noise and flow.
 #pragma once
 
 #include <functional>
@@ -35,12 +35,12 @@ inline Image wall(int width, int height) {
   image.add_ids("id.object");
   return image;
 }
-/// Of each pixel's mean; known of 16 samples.
+/// Adds the variance of each pixel's mean, and 16 as the number of samples.
 inline void set_variance(Image& image, float variance) {
   grey(image, "variance", everywhere(variance));
   plane(image, "samples", everywhere(16));
 }
-/// +u right, +v up, in pixels per frame, everywhere.
+/// Adds a uniform flow in pixels per frame: +u right, +v up.
 inline void moves(Image& image, float u, float v) {
   plane(image, "forward.u", everywhere(u));
   plane(image, "forward.v", everywhere(v));
@@ -48,12 +48,12 @@ inline void moves(Image& image, float u, float v) {
   plane(image, "backward.v", everywhere(-v));
 }
 
-/// Half the difference of the halves of a layer; where the frame says so its noise is known.
+/// Adds the noise channels of a layer: half the difference of its halves.
 inline void set_noise(Image& image, const std::string& layer, const OfPixel& noise) {
   grey(image, layer + ".noise", noise);
 }
 
-/// The frame in the middle, filtered; flow is that of the frames themselves.
+/// Filters the middle frame, with the flow in the frames' own channels.
 inline Image filtered(const std::vector<Image>& frames, const FilterOptions& options = {}) {
   std::vector<WindowLight> light;
   std::vector<FlowFrame> flow(frames.size());
@@ -71,7 +71,7 @@ inline float at(const Image& image, const std::string& channel, int x, int y) {
   return image.find(channel)->values[std::size_t(y * image.width + x)];
 }
 
-/// Gaussian noise, another in every call.
+/// Gaussian noise: each call gives another number.
 class Noise {
  public:
   explicit Noise(float deviation) : normal_(0, deviation) {}

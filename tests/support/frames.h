@@ -1,4 +1,4 @@
-// tests/support/frames.h -- what tests of whole frames render: the example's room, a camera above the origin.
+// tests/support/frames.h -- scenes and cameras for tests of whole frames.
 #pragma once
 
 #include "lib/render/frame_renderer.h"
@@ -8,7 +8,7 @@
 
 namespace tempolux::test {
 
-/// pipelines/scenes/S2_cornell_moving.glb: matte boxes, one of them moving.
+/// The scene pipelines/scenes/S2_cornell_moving.glb at a frame: matte boxes, one of which moves.
 struct Cornell {
   Scene scene = load_gltf("../pipelines/scenes/S2_cornell_moving.glb");
   TimeOptions time;
@@ -27,7 +27,8 @@ struct Cornell {
   RenderScene render_scene() const { return {tracer, lights}; }
 };
 
-/// 64 x 36 pixels of 1/32 m, seen from z = 1, the middle at the origin.
+/// A camera at z = 1 above the origin, looking down. 64 x 36 pixels of 1/32 m; the origin is in the middle of the
+/// picture.
 inline CameraView from_above() {
   PlacedCamera camera;
   camera.camera.kind = Camera::Kind::orthographic;
@@ -36,7 +37,7 @@ inline CameraView from_above() {
   return CameraView(camera, {}, 64, 36);
 }
 
-/// Direct light alone: a photon map without photons says that no other light arrives.
+/// An empty photon map: all light but direct light is 0.
 struct NoLight {
   PhotonLight photons;
   KnownLight known;

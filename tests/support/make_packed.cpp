@@ -1,5 +1,5 @@
-// make-packed FOLDER -- writes tests/data/packed: scenes/ with a square packed by Draco, by meshopt and with a WebP as
-// its colour, webp/ with that image. The fuzz replay changes them byte by byte.
+// make-packed FOLDER -- writes the test data tests/data/packed. In scenes/: a square packed by Draco, by meshopt, and
+// with a WebP as its colour. In webp/: that image. The fuzz replay changes these files byte by byte.
 #include <filesystem>
 #include <fstream>
 #include <string>

@@ -1,12 +1,12 @@
-// make-vdb -- write an OpenVDB file from plain voxels, for tests and for scenes made by scripts.
+// make-vdb -- writes an OpenVDB file from plain voxels, for tests and for scenes made by scripts.
 //
-//     make-vdb OUT.vdb NX NY NZ VOXEL X Y Z [NAME [fog|level-set|unknown [BACKGROUND [float|half|double|vector|tiles
-//     [FIRST [M]]]]]]  < VALUES
+//     make-vdb OUT.vdb NX NY NZ VOXEL X Y Z [NAME [CLASS [BACKGROUND [TYPE [FIRST [M]]]]]]  < VALUES
 //
-// VALUES: NX NY NZ numbers of float32, z fastest. The first voxel has its centre at (X, Y, Z) in metres, voxels are
-// VOXEL m apart. Zeros are left out. An existing file gets the grid as one more. tiles: even blocks are kept as one
-// value. FIRST: x, y and z of the first voxel in index space (0). M: three rows of three numbers, metres along each
-// axis of the world for a step along each of index space, instead of VOXEL.
+// VALUES: NX NY NZ numbers of float32, z fastest; zeros are left out. X, Y, Z: centre of the first voxel, m. VOXEL:
+// edge of a voxel, m. CLASS: fog, level-set or unknown. TYPE: float, half, double or vector; or tiles, which stores
+// uniform blocks as one value. FIRST: x, y and z of the first voxel in index space (0). M: three rows of three numbers
+// in place of VOXEL, the metres along each world axis for a step along each axis of index space. If OUT.vdb exists,
+// the grid is added to it.
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
                      : kind == "level-set" ? openvdb::GRID_LEVEL_SET
                                            : openvdb::GRID_UNKNOWN);
   if (type == "tiles") grid->pruneGrid();
-  openvdb::Mat4d place = openvdb::Mat4d::identity();  // of row vectors
+  openvdb::Mat4d place = openvdb::Mat4d::identity();  // for row vectors
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) place(c, r) = argc > 22 ? std::atof(argv[14 + 3 * r + c]) : r == c ? voxel : 0;
   const openvdb::Vec3d moved = place.transform3x3(openvdb::Vec3d(first));

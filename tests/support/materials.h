@@ -1,4 +1,4 @@
-// tests/support/materials.h -- glass, and directions about a normal, for tests of scattering.
+// tests/support/materials.h -- materials of glass, and directions around a normal, for tests of scattering.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace tempolux::test {
 
-/// Clear glass that lets through what it does not reflect.
+/// Clear glass: it transmits all light that it does not reflect.
 inline Material glass(float roughness, bool thin = false, float index = 1.5f) {
   Material m;
   m.metallic = 0;
@@ -19,7 +19,7 @@ inline Material glass(float roughness, bool thin = false, float index = 1.5f) {
   return m;
 }
 
-/// In the local frame of a surface, normal +z.
+/// A unit direction in the local frame of a surface, whose normal is +z.
 inline Vec3 direction(float cos_theta, float phi) {
   const float s = std::sqrt(std::max(0.0f, 1 - cos_theta * cos_theta));
   return {s * std::cos(phi), s * std::sin(phi), cos_theta};

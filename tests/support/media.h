@@ -9,7 +9,8 @@
 
 namespace tempolux::test {
 
-/// Density 1 in 16^3 voxels: a cube of `edge` m about `centre`, ramps of a voxel at its borders.
+/// A cube of density 1: 16^3 voxels, `edge` m long, around `centre`. At its borders the density falls to 0 over one
+/// voxel.
 inline std::shared_ptr<const Media> cube_of_medium(Vec3d centre, double edge, const MediumOptions& options) {
   std::vector<VoxelBlock> blocks;
   for (int b = 0; b < 8; ++b) {

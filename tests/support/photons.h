@@ -1,4 +1,4 @@
-// tests/support/photons.h -- all photons of a map in one array, in file order.
+// tests/support/photons.h -- reads all photons of a map into one array, in file order.
 #pragma once
 
 #include <vector>

@@ -1,12 +1,12 @@
-// tests/support/pixel_views.h -- what a picture sees, told pixel by pixel.
+// tests/support/pixel_views.h -- describes what a picture shows by a function of raster position.
 #pragma once
 
 #include "lib/gather/place_records.h"
 
 namespace tempolux::test {
 
-/// seen(x, y, random): what raster position (x, y) sees, an optional SeenPoint; random: null, or what the way is drawn
-/// from.
+/// A picture from the function seen(x, y, random), which returns what is visible at the raster position (x, y), an
+/// optional SeenPoint. `random` draws the path to the visible place; null: the most probable path.
 template <class Seen>
 PixelView pixel_by_pixel(Seen seen) {
   return [seen](const Look& look) { return seen(look.x, look.y, look.random ? &*look.random : nullptr); };

@@ -1,11 +1,11 @@
-// tests/support/places.h -- surface points that belong to no surface.
+// tests/support/places.h -- makes surface points that belong to no surface.
 #pragma once
 
 #include "lib/scene/surface_point.h"
 
 namespace tempolux::test {
 
-/// A place with this normal (unit), 10 um off which rays start.
+/// A surface point with this unit normal; rays start 10 um above it.
 inline SurfacePoint place_at(Vec3 position, Vec3 normal) {
   SurfacePoint place;
   place.position = position;

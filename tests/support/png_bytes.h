@@ -1,4 +1,4 @@
-// tests/support/png_bytes.h -- PNG files in memory, made without any library: one stored block.
+// tests/support/png_bytes.h -- makes PNG files in memory, without a library: one stored block.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline std::uint32_t png_crc(const std::string& bytes) {
   return ~crc;
 }
 
-/// 8-bit pixels, row 0 on top; 1 to 4 channels. At most 65535 bytes with a filter byte for each row.
+/// A PNG of 8-bit pixels, row 0 on top, 1 to 4 channels; at most 65535 bytes, including one filter byte per row.
 inline std::string png_bytes(int width, int height, int channels, const std::vector<std::uint8_t>& pixels) {
   const auto big = [](std::uint32_t v) {
     return std::string{char(v >> 24), char(v >> 16 & 255), char(v >> 8 & 255), char(v & 255)};
@@ -41,7 +41,7 @@ inline std::string png_bytes(int width, int height, int channels, const std::vec
   const std::uint32_t n = std::uint32_t(rows.size());
   const std::string stored = std::string("\x78\x01\x01", 3) + char(n & 255) + char(n >> 8 & 255) + char(~n & 255) +
                              char(~n >> 8 & 255) + rows + big(b << 16 | a);
-  const char types[] = {0, 0, 4, 2, 6};  // by channels
+  const char types[] = {0, 0, 4, 2, 6};  // by number of channels
   return "\x89PNG\r\n\x1a\n" +
          chunk("IHDR", big(std::uint32_t(width)) + big(std::uint32_t(height)) + '\x08' + types[channels] +
                            std::string(3, '\0')) +
@@ -53,7 +53,7 @@ inline EncodedImage png_image(int width, int height, int channels, const std::ve
   return {"test.png", {bytes.begin(), bytes.end()}, width, height, "digest"};
 }
 
-/// Image 0 with the coordinates as they are; without interpolation if `nearest`.
+/// A texture of image number `image`, with untransformed coordinates; without interpolation if `nearest`.
 inline Texture texture_of_image(std::uint32_t image = 0, bool nearest = true) {
   Texture texture;
   texture.image = image;

@@ -1,4 +1,4 @@
-// tests/support/scenes.h -- small scenes made by hand, for tests that need no file.
+// tests/support/scenes.h -- builds small scenes by hand, for tests that need no file.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 
 namespace tempolux::test {
 
-/// A scene of triangles with one material each group, at one frame. Keep it alive as long as what uses it.
+/// A scene at one frame: groups of triangles, each with its own material. It must outlive everything that refers to
+/// it.
 class HandMadeScene {
  public:
   /// Adds triangles as one surface with a material of its own; returns its index.
@@ -33,11 +34,11 @@ class HandMadeScene {
     for (Vec3 p : positions) frame_.bounds.add(p);
     return surface.object;
   }
-  /// A quad a, b, c, d, counter-clockwise seen from its front.
+  /// Adds a quad a, b, c, d, counter-clockwise seen from its front.
   std::uint32_t add_quad(Vec3 a, Vec3 b, Vec3 c, Vec3 d, const Material& material, bool moving = false) {
     return add({a, b, c, d}, {{0, 1, 2}, {0, 2, 3}}, material, moving);
   }
-  /// The six faces of a box, fronts outwards; returns the object's number.
+  /// Adds the six faces of a box, fronts outwards; returns the object's number.
   std::uint32_t add_box(Vec3 lower, Vec3 upper, const Material& material, bool moving = false) {
     const Vec3 l = lower, u = upper;
     return add({{l.x, l.y, l.z},
@@ -62,7 +63,7 @@ class HandMadeScene {
                 {1, 6, 5}},
                material, moving);
   }
-  /// The six faces of a box, fronts inwards.
+  /// Adds the six faces of a box, fronts inwards.
   void add_room(Vec3 lower, Vec3 upper, const Material& material) {
     const Vec3 l = lower, u = upper;
     const std::vector<Vec3> p{{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z},
@@ -82,11 +83,11 @@ class HandMadeScene {
          {1, 5, 6}},
         material);
   }
-  /// A sphere of subdivided octahedron faces, fronts inwards.
+  /// Adds a sphere of subdivided octahedron faces, fronts inwards.
   void add_hollow_sphere(Vec3 centre, float radius, int subdivisions, const Material& material) {
     add_sphere(centre, radius, subdivisions, material, true, false);
   }
-  /// The same, fronts inwards or outwards, shaded flat or smoothly.
+  /// The same with fronts inwards or outwards, and flat or smooth shading.
   void add_sphere(Vec3 centre, float radius, int subdivisions, const Material& material, bool inwards, bool smooth,
                   bool moving = false) {
     std::vector<Vec3> p;
@@ -116,11 +117,11 @@ class HandMadeScene {
     add(p, t, material, moving, normals);
   }
   void set_media(std::shared_ptr<const Media> media) { frame_.media = std::move(media); }
-  /// Texture coordinates of the surface added last, by vertex.
+  /// Sets the texture coordinates of the surface added last, by vertex.
   void set_uvs(const std::vector<Vec2>& uvs) { primitives_.back()->uvs = uvs; }
   void set_colors(const std::vector<std::array<float, 4>>& colors) { primitives_.back()->colors = colors; }
   const std::vector<Vec3>& last_positions() const { return primitives_.back()->positions; }
-  /// The images that materials' textures name by number.
+  /// Sets the images to which the materials' textures refer by number.
   void set_images(std::vector<EncodedImage> images) {
     frame_.images = std::make_shared<const TextureImages>(std::move(images));
   }
@@ -132,7 +133,7 @@ class HandMadeScene {
     light.node = std::uint32_t(frame_.lights.size());
     frame_.lights.push_back(light);
   }
-  /// The finished frame: static surfaces first.
+  /// Returns the finished frame, static surfaces first.
   const SceneFrame& frame() {
     frame_.surfaces = fixed_;
     frame_.static_count = fixed_.size();
@@ -157,7 +158,7 @@ inline Material matte(Rgb reflectance, Rgb emission = Rgb(0.0f)) {
   return material;
 }
 
-/// A uniform point on all surfaces of a frame, and its front normal.
+/// Draws points uniformly by area on all surfaces of a frame, with their front normals.
 struct AreaSampler {
   struct Triangle {
     Vec3 a, b, c;

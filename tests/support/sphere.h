@@ -1,4 +1,4 @@
-// tests/support/sphere.h -- uniform directions.
+// tests/support/sphere.h -- uniform directions on the sphere.
 #pragma once
 
 #include <algorithm>

@@ -55,8 +55,8 @@ void append_item(std::string_view item, std::string_view whole, std::vector<int>
   }
 }
 
-/// The number field of a printf pattern at pattern[at] == '%': its end and minimal width; end == at if there is no
-/// field.
+/// The number field of a printf pattern that begins with the '%' at pattern[at]: where the field ends, and its least
+/// width. end == at if there is no field.
 struct Field {
   std::size_t end = 0;
   int width = 0;

@@ -1,4 +1,4 @@
-// tools/common/file_head.h -- the first bytes of a file, from which its type follows.
+// tools/common/file_head.h -- reads the first bytes of a file, which determine its type.
 #pragma once
 
 #include <string>

@@ -20,8 +20,8 @@ std::string after_colon(const std::string& type) {
   return colon == std::string::npos ? "" : type.substr(colon + 1);
 }
 
-/// Checks for numbers in [least, most], or in (least, most] if `above`. Its text is made on demand, since every start
-/// of a tool creates dozens of checks.
+/// Checks for numbers in [least, most], or in (least, most] if `above` is set. The text of the check is made on
+/// demand, since every start of a tool creates dozens of checks.
 class NumberCheck : public CLI::Validator {
  public:
   NumberCheck(double least, double most, bool above) {

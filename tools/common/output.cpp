@@ -56,7 +56,8 @@ const std::vector<std::string>& temporaries_found(const std::string& folder) {
   return entry->second;
 }
 
-/// Removes temporary files of killed runs for the same target: the same host, no such process, lock free.
+/// Removes temporary files that killed runs have left for the same target: files of this host, whose process does not
+/// exist and whose lock is free.
 void remove_stale(const std::filesystem::path& stem) {
   const std::string folder = stem.has_parent_path() ? stem.parent_path().string() : ".";
   const std::string prefix = stem.filename().string();

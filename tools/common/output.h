@@ -9,13 +9,13 @@
 
 namespace tempolux::tools {
 
-/// An output under construction. A temporary file in the same folder (".NAME.tmp.HOST.PID") is created at once, so that
-/// an unwritable place is reported before the work; commit() syncs and renames it. An output that is not committed is
-/// removed, also after an exception or a signal. Files that a killed run left for the same target on this host are
-/// removed by the next run.
+/// An output under construction. The constructor creates a temporary file in the same folder (".NAME.tmp.HOST.PID"),
+/// so that an unwritable place is reported before the work. commit() syncs the file and gives it its final name. An
+/// output that is not committed is removed, also after an exception or a signal. Temporary files that a killed run
+/// has left for the same target on this host are removed by the next run.
 ///
-/// "-" is standard output; binary data is not written to a terminal. Devices and named pipes are written in place; of a
-/// symbolic link the target is replaced.
+/// "-" is standard output; binary data is not written to a terminal. Devices and named pipes are written in place. If
+/// `path` is a symbolic link, the file that it points to is replaced.
 class Output {
  public:
   enum class Kind { binary, text };  ///< text may go to a terminal

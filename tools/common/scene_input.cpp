@@ -66,8 +66,8 @@ bool SceneInput::has_distant_light() const {
 }
 
 /// Distant light enters through a sphere around all surfaces and media of the frame. So with distant light and media
-/// each frame has its own bounds, the same whether it is made alone or in a range. With frozen majorants their box
-/// replaces the media's, so that photons of all frames of the segment start alike.
+/// each frame has its own bounds, whether it is made alone or in a range. With frozen majorants the majorants' box
+/// replaces the media's boxes: photons of all frames of a segment then start from the same sphere.
 void SceneInput::enter_segment(int frame, bool read_volumes) {
   const bool inside = segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last;
   const bool adds_media = read_volumes && volumes_->any() && has_distant_light();

@@ -33,7 +33,8 @@ class SceneInput {
   /// asked for such a frame. Media are read if `asked`; for neighbouring frames, of which only positions are needed,
   /// they are left out.
   SceneFrame at(int frame, bool asked = true);
-  /// True if the scene or the command line names media; and the hash of the media at a frame, as in SceneHashes.
+  /// True if the scene or the command line names media. media_hash() is the media's hash at a frame, as in
+  /// SceneHashes.
   bool has_media() const { return volumes_->any(); }
   std::string media_hash(int frame);
   FrozenMajorants frozen_majorants(int first, int last) { return volumes_->freeze(first, last); }

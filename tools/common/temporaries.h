@@ -8,8 +8,8 @@
 
 namespace tempolux::tools {
 
-/// Marks a path for removal by the signal handler; create it before the file. Must not be used for the user's files.
-/// May be a folder if its content is marked afterwards: the last mark is removed first.
+/// Marks a path for removal by the signal handler. Create the mark before the file. Never mark a file of the user.
+/// The path may be a folder whose content is marked afterwards: marks are removed in reverse order.
 class Temporary {
  public:
   explicit Temporary(const std::string& path);

@@ -64,7 +64,7 @@ void flush_stdout() {
   if (std::fflush(stdout) == 0 && std::cout) return;
   int error = errno ? errno : EIO;
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
-  // The write failed earlier, so errno is of another call.
+  // A write failed earlier, and errno may belong to a later call.
   if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR)) error = EPIPE;
   if (error == EPIPE) end_by_broken_pipe();
   throw ResourceError(std::string("standard output: write failed: ") + std::strerror(error));

@@ -3,12 +3,12 @@
 // A main looks like this:
 //
 //     int main(int argc, char** argv) {
-//     tools::Tool tool("photon-trace", "Trace photons through a scene.", argc, argv);
-//     std::string scene, output;
-//     tool.app().add_option("scene", scene, "glTF scene")->required();
-//     tool.output_option(output, "the photons")->required();
-//     tool.common_options(tools::uses_scene | tools::uses_seed);
-//     return tool.run([&] { ...; return tools::exit_ok; });
+//       tools::Tool tool("photon-trace", "Trace photons through a scene.", argc, argv);
+//       std::string scene, output;
+//       tool.app().add_option("scene", scene, "glTF scene")->required();
+//       tool.output_option(output, "the photons")->required();
+//       tool.common_options(tools::uses_scene | tools::uses_seed);
+//       return tool.run([&] { ...; return tools::exit_ok; });
 //     }
 #pragma once
 

@@ -27,7 +27,7 @@ struct Sum {
   bool biased() const { return std::abs(mean()) > kLimit && std::abs(mean()) > kErrors * error(); }
 };
 
-/// With the decimals that the error's first digit has.
+/// A percentage with as many decimals as the error needs to show its first digit.
 std::string percent(double value, double error) {
   const double digit = error > 0 ? std::floor(std::log10(100 * error)) : 0;
   const int decimals = int(std::clamp(-digit, 0.0, 6.0));

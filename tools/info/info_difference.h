@@ -28,7 +28,7 @@ inline Facts difference_of_headers(const char* type, const ComparedFile& a, cons
   return facts;
 }
 
-/// The records that both files have under one number and that differ.
+/// Number of records that both files have and that differ.
 template <class Records>
 std::size_t count_differing(const Records& a, const Records& b) {
   const std::size_t both = std::min(a.size(), b.size());

@@ -87,10 +87,10 @@ struct PictureOptions {
   std::vector<std::string> marked;       ///< of a contact sheet: files whose pictures get a border
   std::function<void(double)> progress;  ///< of a contact sheet, [0, 1]; may be empty
 };
-/// Elements of a .meshirrad file as an image, orthographic along -(1, 1, 1), 640 pixels on its longer side: those that
-/// photons arrived at and whose side faces the eye, as discs; nearer ones hide others, black elsewhere. layer "":
-/// irradiance, W/m^2; "window": frames of the element's window as a share of 33; "age": frames that the middle of the
-/// window lies after its own frame, / 16. Throws InputError.
+/// An orthographic image of the elements of a .meshirrad file, seen along -(1, 1, 1), 640 pixels on its longer side.
+/// Elements with photons whose side faces the eye are drawn as discs; nearer discs hide others; the rest is black.
+/// layer "": irradiance, W/m^2; "window": number of frames in the element's window, divided by 33; "age": frames from
+/// the element's own frame to the middle of its window, divided by 16. Throws InputError.
 Image mesh_picture(const std::string& path, const std::string& layer);
 /// An image, or a .meshirrad file by mesh_picture(), as PNG.
 void write_picture(const std::string& path, const PictureOptions& options, Output& output);

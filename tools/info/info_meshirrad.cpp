@@ -21,7 +21,8 @@ Facts header_facts(const MeshirradHeader& header) {
   return facts;
 }
 
-/// Number of frames in the windows of elements with photons, and the mean offset of a window's middle from its frame.
+/// Number of frames in the windows of elements with photons, and how many frames the middle of a window lies after
+/// its own frame, on average.
 Facts window_facts(const MeshirradFile& file) {
   Spread frames, age;
   for (const MeshElement& e : file.elements) {

@@ -1,4 +1,4 @@
-// tempolux-info --png of .meshirrad: its elements, seen from a corner above.
+// tools/info/mesh_picture.cpp -- tempolux-info --png of a .meshirrad file: its elements, seen from a corner above.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +19,8 @@ using formats::MeshElement;
 
 constexpr int kSide = 640;        ///< pixels of the longer side
 constexpr double kMargin = 4;     ///< pixels
-constexpr double kOverlap = 1.4;  ///< radius of a disc over that of the element's area, so that discs leave no gaps
+constexpr double kOverlap = 1.4;  ///< radius of a drawn disc, divided by the radius of a disc of the element's area;
+                                  ///< above 1, so that no gaps remain
 
 /// What is shown of an element: R, G, B.
 Rgb shown(const MeshElement& e, const std::string& layer) {

@@ -1,4 +1,5 @@
-// tools/stages/build_points.h -- irradcache-build: its options, and irradiance points: of a frame, static, or updated.
+// tools/stages/build_points.h -- irradcache-build: options, and irradiance points of a frame, of the static scene, or
+// updated.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +36,7 @@ struct CacheOptions {
   }
 };
 
-/// Points from a file of photons, in two phases, of which only the second uses all threads.
+/// Estimates points from a file of photons. Only the second of the two phases, the estimate, uses all threads.
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
                                const PointOptions& options);
 /// The same from a divided map: the low part options.photons and the high part options.high.

@@ -43,7 +43,7 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   return header;
 }
 
-/// By pixel of the frame; 0: the pixel needs no records. Empty without --mask.
+/// By pixel of the frame: 0 if the pixel needs no records. Empty without --mask.
 std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options, int number) {
   if (options.mask.empty()) return {};
   const std::string name = frame_name(options.mask, number);
@@ -91,8 +91,8 @@ void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
   tool.stats().count("unanswered", double(counts.unanswered));
 }
 
-/// Points made from photons, or read, or read as two parts: then high_shares receives the high part's share of each
-/// point.
+/// Points made from photons, or read from a file, or read as two parts. With two parts high_shares receives the high
+/// part's share of each point.
 GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights,
                            std::vector<float>& high_shares) {
   if (options.high.empty())

@@ -8,8 +8,8 @@
 
 namespace tempolux::tools {
 
-/// Writes the records for the cameras of all frames as one cache, which is valid while only the camera changes; of the
-/// static scene if options.map is "static".
+/// Writes the records for the cameras of all frames as one cache, which is valid as long as only the camera changes.
+/// If options.map is "static", the records are those of the static scene.
 void build_records(Tool& tool, SceneInput& input, CacheOptions options, const std::vector<int>& frames);
 /// Writes localised records: the static records, updated, and new records where movers change the light that the
 /// cameras of `frames` see. The frames must have the same light.

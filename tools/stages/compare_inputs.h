@@ -31,7 +31,7 @@ class LoadedFrame {
   /// The flow's file, and the flow in it; nullptr without one.
   const Image* flow_image() const { return flow_ ? &flow_image_ : nullptr; }
   const PixelFlow* flow() const { return flow_ ? &*flow_ : nullptr; }
-  /// What the test frame says it is, "tempolux:frame"; 0 if it does not.
+  /// Frame number of the test frame, from "tempolux:frame"; 0 if the attribute is missing.
   int frame_number() const;
 
  private:

@@ -74,8 +74,8 @@ class SegmentFrames {
   std::map<int, SceneFrame> others_;
 };
 
-/// Widths for windows: the same in all frames of a segment, so they are computed from the number of paths and not from
-/// the stored photons.
+/// Widths for windows. They follow from the number of light paths and not from the stored photons, so they are equal
+/// in all frames of a segment.
 MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& first, std::uint64_t paths) {
   MeshOptions mesh = window_widths(surface_area(first), double(paths) * options.frames);
   if (options.mesh.filter.width > 0) {

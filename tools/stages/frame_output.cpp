@@ -13,7 +13,7 @@ std::string half_name(const std::string& path, char letter) {
   return path.substr(0, end) + '_' + letter + path.substr(end);
 }
 
-/// Objects that the frame speaks of: in id.object, and as those whose light is farthest off.
+/// Objects whose names the frame stores: those in id.object, and those that the account names.
 std::set<std::uint32_t> objects_of(const Image& data, const FrameDescription& description) {
   std::set<std::uint32_t> objects;
   if (const Channel* ids = data.find("id.object")) objects.insert(ids->ids.begin(), ids->ids.end());

@@ -26,7 +26,7 @@ std::string hash_of(const formats::RadsamplesRecord& record, const SeenSamples& 
   return hasher.hex();
 }
 
-/// What in the records does not fit the scene; "" if all does.
+/// Checks the records against the scene: returns the fault, or "" if all match.
 std::string fault_of(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points) {
   if (kept.point_light.size() != points.anchored)
     return "it has the light of " + std::to_string(kept.point_light.size()) + " points, of " +
@@ -96,7 +96,7 @@ void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHead
   for (std::uint32_t i = 0; i < hashes.size(); ++i) records_.emplace(hashes[i], i);
 }
 
-/// Writes an overlay of the base. False, and nothing is written, if less than half of the samples are the base's.
+/// Writes an overlay on the base. If less than half of the samples are the base's, writes nothing and returns false.
 bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::string>& hashes,
                               formats::RadsamplesFile& file) const {
   if (path_.empty() || !same_folder(path, path_) || segment_ != file.header.segment ||

@@ -8,9 +8,9 @@
 
 namespace tempolux::tools {
 
-/// For each segment of the table, by its first frame, the fewest photons with which a viewer sees errors in at most
-/// `share` of the pixels; where none of those tried reach that, those with the least. Throws InputError naming the
-/// place.
+/// The photons for each segment of the table, by the segment's first frame: the fewest photons with which a viewer
+/// sees errors in at most `share` of the pixels. If no tried number reaches this, the number with the least share.
+/// Throws InputError naming the place.
 std::map<int, Measured> measured_photons(const std::string& path, double share);
 
 }  // namespace tempolux::tools

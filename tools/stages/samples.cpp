@@ -22,8 +22,8 @@ constexpr double kWidth = 128;  ///< width in pixels of the larger sample, at mo
 constexpr int kFewerRays = 4;   ///< of a record
 constexpr std::array kSamples{"small", "large"};
 
-/// How often a stage runs for the frames asked for, and the mean factors by which its work and bytes exceed a sample's,
-/// apart from the size of the picture.
+/// How often a stage runs for the requested frames, and the mean factors by which its work and bytes exceed those of
+/// a sample; picture size is not included.
 struct Runs {
   double count = 0, work = 0, bytes = 0;
 };

@@ -1,5 +1,5 @@
-// tools/stages/samples.h -- make estimate: two small plans that make runs, from whose statistics the whole run's cost
-// follows.
+// tools/stages/samples.h -- `make estimate`: two small plans that make runs; their statistics give the cost of the
+// whole run.
 #pragma once
 
 #include <string>

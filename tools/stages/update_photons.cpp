@@ -45,7 +45,8 @@ std::string previous_name(const UpdateArguments& arguments, int frame) {
   return frame_name(arguments.update, parse_count(arguments.refine) > 0 ? frame : frame - 1);
 }
 
-/// Groups that fit into the share besides `spent` paths of pilots; with corrective photons a group counts twice.
+/// Number of groups that fit into the share besides `spent` paths of pilots. With corrective photons a group costs
+/// two traces.
 std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& photons, std::uint64_t spent) {
   if (arguments.share.empty()) return arguments.max_groups;
   const double paths = share_of(arguments.share, "--share") * double(photons.photon_count()) - double(spent);

@@ -22,7 +22,8 @@ struct UpdateArguments {
 };
 
 void add_update_options(CLI::App& app, UpdateArguments& arguments);
-/// Refuses options that contradict each other; sets `how`. `static_or_dynamic`: --map is not global.
+/// Refuses options that contradict each other, and sets `how`. `static_or_dynamic`: true if --map is "static" or
+/// "dynamic".
 void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments);
 
 /// Pilots per group of the new map; for an update those of the earlier map.

@@ -121,7 +121,7 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     const SceneFrame& there = frames.at(*key.frame);
     if (!is_foreign(key)) check_identity(tool, key.file, key.identity, there);
     const bool same = same_attributes(key.key->camera(), frames.camera(*key.frame), key.points);
-    // The scene's camera in double; the attributes are its rounded values.
+    // The scene's camera has double precision; the attributes hold its rounded values.
     const FrameCamera& camera = same ? frames.camera(*key.frame) : key.key->camera();
     if (!same) {
       const std::string message =
