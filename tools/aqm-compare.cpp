@@ -51,19 +51,20 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")->type_name("NAME");
   app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")->type_name("FILE");
   app.add_option("--except", o.except,
-                 "EXR; pixels where one of its channels is not 0 do not count: a mask of ibr-warp")
+                 "EXR, such as a mask of ibr-warp; pixels where one of its channels is not 0 do not count")
       ->type_name("FILE");
   app.add_option("--relative-to", o.smooth,
                  "EXR; replaces the reference in relMSE's denominator, where the reference's noise would matter")
       ->type_name("FILE");
-  app.add_option("--metric", o.metric,
-                 "error: RMSE, relMSE, bias, PSNR, flicker; aqm: the share of pixels seen to differ, too")
+  app.add_option(
+         "--metric", o.metric,
+         "error: RMSE, relMSE, bias, PSNR, flicker; aqm: also the share of pixels in which a viewer sees a difference")
       ->type_name("{error,aqm}")
       ->capture_default_str();
   tools::declare_vision(tool, o.vision);
   app.add_flag("--either", o.either,
-               "the two frames have equal, independent errors, as one frame warped from two keys: AQM of the error of "
-               "either, their difference / sqrt 2");
+               "the two frames have equal, independent errors, such as one frame warped from two keys: AQM judges the "
+               "error of one of them, their difference / sqrt 2");
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
@@ -233,8 +234,8 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("aqm-compare", "Say how wrong a frame or a sequence is, and whether a viewer would see it.", argc,
-                   argv);
+  tools::Tool tool("aqm-compare", "Measure the error of a frame or a sequence, and predict whether a viewer sees it.",
+                   argc, argv);
   Options options;
   declare(tool, options);
   return tool.run([&] { return compare(tool, options, tool.app().get_option("--frames")->count() > 0); });

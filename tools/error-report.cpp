@@ -36,7 +36,8 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("WHAT STATS COMPARISON");
   tool.output_option(o.folder, "folder of report.csv, report.md, index.html, plots")->capture_default_str();
   app.add_option("--title", o.title, "title of the report")->type_name("TEXT");
-  app.add_option("--baseline", o.baseline, "curve that speed-ups are over; each scene's first without")
+  app.add_option("--baseline", o.baseline,
+                 "curve to which speed-ups refer; if not given: the first curve of each scene")
       ->type_name("CURVE");
   app.add_option("--time", o.time, "cpu: processor seconds; wall: elapsed seconds")
       ->type_name("KIND")

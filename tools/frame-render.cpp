@@ -290,12 +290,12 @@ void add_light_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("--integrator", options.integrator,
                  "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by "
-                 "what is given")
+                 "the given files")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
   app.add_option("--photons", options.light.photons,
-                 ".photons file, or a pattern: indirect and caustic light; with --irradcache, or of a map of --kinds "
-                 "caustic, caustic light alone")
+                 ".photons file, or a pattern: indirect and caustic light; with --irradcache, or if the map has only "
+                 "caustic photons, caustic light alone")
       ->type_name("FILE");
   app.add_option("--dynamic", options.light.dynamic,
                  ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the "
@@ -306,17 +306,16 @@ void add_light_options(tools::Tool& tool, Options& options) {
   app.add_option("--meshirrad", options.light.meshirrad,
                  ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache")
       ->type_name("FILE");
-  app.add_option(
-         "--points", options.light.points,
-         ".irradpoints file, or a pattern: paths end where a point stands for what they meet; with --irradcache those "
-         "that find no record")
+  app.add_option("--points", options.light.points,
+                 ".irradpoints file, or a pattern: a path ends at a hit that a point represents; with --irradcache "
+                 "only paths that find no record do")
       ->type_name("FILE");
   app.add_option("--high", options.light.high,
-                 "the high part of photonmap-split, or a pattern: --points is then the low one; without --irradcache "
-                 "bright points are sampled "
-                 "explicitly. Without --points, that of photons: --photons is then the low one")
+                 "high part from photonmap-split, or a pattern; --points (without --points: --photons) is then the low "
+                 "part. Without --irradcache bright points are sampled explicitly")
       ->type_name("FILE");
-  app.add_option("--high-samples", options.light.high_samples, "explicit samples of --high for each sample of a pixel")
+  app.add_option("--high-samples", options.light.high_samples,
+                 "explicit samples of bright points (--high) for each sample of a pixel")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 16));
   app.add_option("--neighbours", options.light.photon_light.neighbours,
@@ -324,7 +323,7 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--max-radius", options.light.photon_light.max_radius,
-                 "farthest photon used for it, m; 0: from the photons' spacing")
+                 "largest radius of a density estimate of indirect light, m; 0: from the photons' spacing")
       ->capture_default_str()
       ->check(tools::number_between(0));
   app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
@@ -332,7 +331,7 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
-                 "farthest caustic photon used, m; 0: from the photons' spacing")
+                 "largest radius of a density estimate of caustic light, m; 0: from the photons' spacing")
       ->capture_default_str()
       ->check(tools::number_between(0));
   tools::influence_options(tool, options.light.influence);
@@ -343,52 +342,50 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   tool.size_option("--size", options.width, options.height, "picture size in pixels");
   app.add_option("--spp", options.frame.samples,
-                 "samples per pixel: all, or with --pixel-error or --target-error the first")
+                 "samples per pixel; with --pixel-error or --target-error the number of first samples")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
-                 "more samples where pixels are uncertain: n = 12 (sigma / (12 x this x radiance))^0.875; 0: none; -1: "
-                 "0.01 with photons or a cache, else none")
+                 "relative error X that a pixel may have: noisy pixels get n = 12 (sigma / (12 X radiance))^0.875 "
+                 "samples; 0: no further samples; -1: 0.01 with photons or a cache, else 0")
       ->capture_default_str()
       ->check(tools::number_between(-1.0, 1.0));
-  app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
+  app.add_option("--pixel-limit", options.frame.adaptive_limit,
+                 "largest number of samples of a pixel for --pixel-error")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--seen-error", options.frame.seen_error,
-                 "more samples until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that "
-                 "puts its median at .18; --pixel-error then "
-                 "only shares them out; 0: off")
+                 "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "
+                 "the picture's median to .18; --pixel-error then only distributes the samples; 0: off")
       ->capture_default_str()
       ->check(tools::number_between(0.0, 255.0));
   app.add_flag("--for-filter", options.frame.for_filter,
-               "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which "
-               "passes it");
+               "for frames that st-filter will filter: --pixel-error counts only the noise of the layer specular, "
+               "which passes the filter");
   app.add_flag("--keep-outliers", options.keep_outliers,
-               "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels "
-               "around, which keeps each layer's sum; "
-               "so does --integrator path");
+               "do not spread light that a single sample found; without this option --pixel-error spreads it over the "
+               "surrounding pixels, which keeps each layer's sum; --integrator path never spreads");
   add_light_options(tool, options);
   app.add_option("--audit", options.audit,
-                 "say how far direct, caustic and indirect light are off, measured by photons and paths of the audit's "
-                 "own, which take about this share of the frame's rays; 0: off")
+                 "report the bias of direct, caustic and indirect light, measured with separate photons and paths that "
+                 "take about this share of the frame's rays; 0: off")
       ->capture_default_str()
       ->check(tools::number_between(0.0, 100.0));
   app.add_flag("--learn-lights", options.learn_lights,
-               "first trace rays to learn from where sky, suns and lamps reach the visible places, and aim light "
-               "samples accordingly; with -o FILE.lightgrid learn for the cameras of all named frames and write a file "
-               "instead of a frame");
+               "before the frame, learn which lights and parts of the sky reach the visible places, and draw light "
+               "samples accordingly; with -o FILE.lightgrid: learn for the cameras of all named frames, and write a "
+               "file instead of a frame");
   app.add_option("--lights", options.lights,
                  ".lightgrid file from --learn-lights, or a pattern: read it instead of learning for each frame")
       ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
-               "also write NAME_a.exr and NAME_b.exr: halves of spp/2 samples each, independent of each other and of "
-               "frames without "
-               "--halves, of the same --seed too");
+               "also write NAME_a.exr and NAME_b.exr, halves of spp/2 samples each; the halves are independent of each "
+               "other, and of a frame with the same --seed but without --halves");
   app.add_option("--target-error", options.frame.target_error,
                  "double the samples until the estimated RMSE is below this fraction of the mean; 0: off")
       ->capture_default_str()
       ->check(tools::number_between(0));
-  app.add_option("--max-spp", options.frame.max_samples, "never more samples than this for --target-error")
+  app.add_option("--max-spp", options.frame.max_samples, "largest number of samples of a pixel for --target-error")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 24));
   app.add_option(
@@ -400,7 +397,8 @@ void add_options(tools::Tool& tool, Options& options) {
       ->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
       ->type_name("FILE");
-  app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit")
+  app.add_option("--base", options.base,
+                 "EXR file, or a pattern, from which the pixels outside --mask are copied, bit for bit")
       ->type_name("FILE");
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   app.add_option("--compression", options.compression, "EXR compression")

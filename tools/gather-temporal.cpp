@@ -58,7 +58,7 @@ struct Chain {
 void check_points(const Chain& chain, const std::string& file, const tools::FramePoints& points) {
   if (!chain.before || chain.places_hash.empty() || chain.places_hash == points.places_hash) return;
   throw InputError(file + ": its " + std::to_string(points.anchored) +
-                   " points on what stands still lie elsewhere than those of frame " +
+                   " points on static surfaces lie elsewhere than those of frame " +
                    std::to_string(chain.before->frame) +
                    " before it; make the points of all frames of a segment with the same options");
 }
@@ -218,9 +218,8 @@ void add_options(tools::Tool& tool, Options& options) {
       ->required()
       ->type_name("FILE");
   app.add_option("--high", options.high,
-                 ".irradpoints file of photonmap-split, the high part, or a pattern; --points is then the low one: "
-                 "samples hold what rays bring of it, bright points are "
-                 "sampled explicitly in each frame")
+                 "high part from photonmap-split, .irradpoints, or a pattern; --points is then the low part. Samples "
+                 "hold the light that rays contribute; bright points are sampled explicitly in each frame")
       ->type_name("FILE");
   app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
       ->capture_default_str()
@@ -231,13 +230,13 @@ void add_options(tools::Tool& tool, Options& options) {
                      "without it the frame is gathered anew")
           ->type_name("FILE"));
   app.add_option("--rays", options.gather.rays,
-                 "gather rays per record, one a cell; up to 9 times as many cells where neighbours found light uneven")
+                 "gather rays per record, one per cell; a record has up to 9 times as many cells where its neighbours "
+                 "found uneven light")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--refresh", options.temporal.refresh,
-                 "share of the cells of records whose light changed that get a ray in a frame: what moves comes first, "
-                 "the others are drawn by age, "
-                 "a quarter of this share at least (--refresh-rule)")
+                 "share of the cells that are traced in a frame, in records whose light changed: first the cells that "
+                 "motion concerns, then cells drawn by age, at least a quarter of this share (--refresh-rule)")
       ->capture_default_str()
       ->check(tools::number_between(0, 1));
   app.add_option("--refresh-rule", options.refresh_rule,
@@ -246,24 +245,28 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"adaptive", "fixed"}));
   app.add_option("--age-weight", options.age_weight,
-                 "cells get new rays with probability as their age, 1, or its square, 2; or the oldest first")
+                 "probability with which a cell gets a new ray: in proportion to its age (1) or to the square of its "
+                 "age (2); oldest: the oldest cells first")
       ->capture_default_str()
       ->check(CLI::IsMember({"1", "2", "oldest"}));
   app.add_option("--error-bound", options.placement.error_bound,
-                 "radius of a record / harmonic mean distance to what it sees: smaller is finer")
+                 "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
+                 "values give more records")
       ->capture_default_str()
       ->check(tools::number_between(1e-3, 2.0));
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()
       ->check(tools::number_above(0));
-  app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
+  app.add_option("--min-weight", options.placement.min_weight,
+                 "sum of records' weights from which on a pixel needs no further record")
       ->capture_default_str()
       ->check(tools::number_between(1e-6, 0.99));
-  tool.leave_out_of_history(app.add_flag("--resume", options.resume,
-                                         "take frames that an earlier run of this command has finished as they are"));
+  tool.leave_out_of_history(
+      app.add_flag("--resume", options.resume, "keep frames that an earlier run of this command has finished"));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
-  tool.output_option(options.output, ".radsamples file, or a pattern: what the next frame needs")->required();
+  tool.output_option(options.output, ".radsamples file, or a pattern: the samples from which the next frame follows")
+      ->required();
 }
 
 }  // namespace

@@ -218,39 +218,41 @@ void add_options(tools::Tool& tool, Options& options) {
                  "one or two rendered frames, EXR with RGBA, Z and their camera; with N and id better")
       ->type_name("KEY")
       ->required();
-  app.add_option("--scene", options.scene, "glTF 2.0 scene of the keys: the frame to make is --frame of it")
+  app.add_option("--scene", options.scene, "glTF 2.0 scene of the keys; --frame is the frame to make")
       ->type_name("FILE");
   app.add_option("--view", options.view, "EXR file whose camera and Z define the picture to make")->type_name("FILE");
   tool.output_option(options.flow, "pixel flow, EXR, or a pattern", "--flow");
-  tool.output_option(options.mask, "which pixels must be traced and why, EXR, or a pattern", "--mask");
+  tool.output_option(options.mask, "pixels that must be traced, with causes, EXR, or a pattern", "--mask");
   app.add_flag("--separate", options.warp.separate,
                "also write NAME_1.exr and NAME_2.exr: the frame from each key alone");
-  app.add_option("--channels", options.channels, "data beside the keys' colour: Z, N, P, id, albedo, motion")
+  app.add_option("--channels", options.channels, "data channels besides the keys' colour: Z, N, P, id, albedo, motion")
       ->delimiter(',')
       ->type_name("NAMES")
       ->default_str("Z,N,id");
   app.add_option("--specular-share", options.warp.specular_share,
-                 "mirrors, glass and gloss that one key alone shows are masked where they give more than this share of "
-                 "the light; where both do, a viewer decides")
+                 "specular light that only one key shows is masked if it is more than this share of the pixel's light; "
+                 "if both keys show it, it is masked where a viewer would see their difference")
       ->capture_default_str()
       ->check(tools::number_between(0, 1));
   app.add_option("--edge-share", options.warp.edge_share,
-                 "edges are masked where the keys differ by more than this share of the light")
+                 "edge pixels are masked if the keys differ by more than this share of the light")
       ->capture_default_str()
       ->check(tools::number_between(0));
-  app.add_option("--light-share", options.warp.light_share, "changed light is masked from this share of the light on")
+  app.add_option("--light-share", options.warp.light_share,
+                 "pixels are masked if the keys' light differs by more than this share")
       ->capture_default_str()
       ->check(tools::number_between(0));
-  app.add_option("--slow", options.warp.slow_deg_per_s,
-                 "pixels that move slower are masked, degrees/s; -1: as --pixels-per-degree says")
+  app.add_option(
+         "--slow", options.warp.slow_deg_per_s,
+         "moving pixels slower than this are masked, degrees/s; -1: the speed that follows from --pixels-per-degree")
       ->capture_default_str()
       ->check(tools::number_between(-1));
   app.add_option("--pixels-per-degree", options.pixels_per_degree,
-                 "of the display: at 30, slow is below 1.41 degrees/s")
+                 "pixels per degree of the display; 30 gives --slow 1.41")
       ->capture_default_str()
       ->check(tools::number_between(1, 1000));
   app.add_option("--magnified", options.warp.most_magnified,
-                 "masked where every key shows a surface so many times smaller, by area")
+                 "a pixel is masked if every key shows its surface this many times smaller, by area")
       ->capture_default_str()
       ->check(tools::number_between(1, 64));
   app.add_option("--compression", options.compression, "EXR compression")
@@ -263,7 +265,7 @@ void add_options(tools::Tool& tool, Options& options) {
 
 int main(int argc, char** argv) {
   tools::Tool tool("ibr-warp",
-                   "Make a frame from key frames by depth, with pixel flow and a mask of what must be traced.", argc,
+                   "Make a frame from key frames by depth, with pixel flow and a mask of the pixels to trace.", argc,
                    argv);
   Options options;
   add_options(tool, options);

@@ -55,7 +55,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
     throw InputError("--dynamic: points take one map, that of their frame");
   tools::check_influence(options.influence);
   if (options.update.empty() != options.dynamic.empty())
-    throw InputError("--update and --dynamic go together: points of what stands, and what movers change");
+    throw InputError("--update and --dynamic go together: static points, and the change that movers make");
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
@@ -75,7 +75,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
 
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
-  app.add_option("scene", options.inputs, "glTF 2.0 scene, after the word points or records if only that is wanted")
+  app.add_option("scene", options.inputs, "glTF 2.0 scene; the word points or records before it makes only these")
       ->required()
       ->expected(1, 2)
       ->type_name("[points|records] SCENE");
@@ -84,9 +84,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
       ->type_name("FILE");
   app.add_option("--high", options.high,
-                 "the high part of photonmap-split, --points or --photons then the low one and this of the same "
-                 "format: records sample what is "
-                 "bright explicitly; points are those of both parts together")
+                 "high part from photonmap-split; --points or --photons is then the low part, in the same format. "
+                 "Records sample bright points explicitly; points hold the light of both parts")
       ->type_name("FILE");
   app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
       ->capture_default_str()
@@ -96,20 +95,18 @@ void add_options(tools::Tool& tool, Options& options) {
                     "irradiance points per side of all static surfaces; movers get as many per area");
   app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("--map", options.map,
-                 "global, or static: points and records of the scene without what moves in the frame's segment, from "
-                 "its static "
-                 "map and points")
+                 "global: the scene at the frame; static: points and records of the static scene of the frame's "
+                 "segment, from its static map and points")
       ->capture_default_str()
       ->check(CLI::IsMember({"global", "static"}));
-  app.add_option(
-         "--update", options.update,
-         "file of --map static: .irradpoints, from which with --photons (that static map) and --dynamic points of this "
-         "frame follow; .irradcache, from which with --points and --dynamic records of this frame follow")
+  app.add_option("--update", options.update,
+                 "static file to update to this frame: .irradpoints, with --photons (the static map) and --dynamic; or "
+                 ".irradcache, with --points and --dynamic")
       ->type_name("FILE");
-  app.add_option("--dynamic", options.dynamic,
-                 "of --update: .photons file of this frame, photon-trace --map dynamic; records take those of the "
-                 "frames before "
-                 "after it, where they mattered records are made anew, too")
+  app.add_option(
+         "--dynamic", options.dynamic,
+         "with --update: .photons file of this frame from photon-trace --map dynamic. For records the files of earlier "
+         "frames may follow: where movers changed the light in those frames, records are gathered anew, too")
       ->type_name("FILE...");
   tools::influence_options(tool, options.influence);
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
@@ -122,20 +119,21 @@ void add_options(tools::Tool& tool, Options& options) {
                  "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
-  app.add_option(
-         "--error-bound", options.placement.error_bound,
-         "radius of a record / harmonic mean distance to what it sees: smaller is finer; records count where normals "
-         "differ by less than 50 degrees times this, from 5 to 20")
+  app.add_option("--error-bound", options.placement.error_bound,
+                 "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
+                 "values give more records. A record counts where normals differ by less than 50 degrees times this "
+                 "value, but at least 5 and at most 20 degrees")
       ->capture_default_str()
       ->check(tools::number_between(1e-3, 2.0));
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()
       ->check(tools::number_above(0));
-  app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
+  app.add_option("--min-weight", options.placement.min_weight,
+                 "sum of records' weights from which on a pixel needs no further record")
       ->capture_default_str()
       ->check(tools::number_between(1e-6, 0.99));
   app.add_option("--mask", options.mask,
-                 "EXR file, or a pattern: records only where pixels look at which a channel is not 0, as of ibr-warp")
+                 "EXR file, or a pattern, such as a mask of ibr-warp: records only for pixels where a channel is not 0")
       ->type_name("FILE");
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");

@@ -326,7 +326,7 @@ int main(int argc, char** argv) {
          "--kinds", options.kinds,
          "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")
       ->capture_default_str();
-  app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")
+  app.add_option("--groups", options.groups, "number N_g of photon groups (photon i is in group i mod N_g), or auto")
       ->capture_default_str();
   app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
@@ -336,8 +336,8 @@ int main(int argc, char** argv) {
                  "difference, for touched paths")
       ->capture_default_str()
       ->check(CLI::IsMember({"global", "static", "dynamic"}));
-  tool.output_option(options.paths, "of --map static: also write which paths movers can touch, .paths", "--paths");
-  app.add_option("--static", options.static_paths, "of --map dynamic: the .paths file of the segment's static map")
+  tool.output_option(options.paths, "with --map static: also write the paths that movers can touch, .paths", "--paths");
+  app.add_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map")
       ->type_name("FILE");
   tools::add_update_options(app, options.updating);
   app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
@@ -356,7 +356,7 @@ int main(int argc, char** argv) {
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | camera);
     if (options.map != "global" && input.has_media())
       throw InputError(options.scene + ": has media, which all light meets: --map " + options.map +
-                       " cannot be told from the rest; trace the global map");
+                       " cannot be separated from the remaining light; trace the global map");
     StaticTree standing;
     tools::Importance importance(tool, input, options.importance);
     tools::KeptMap kept;

@@ -303,22 +303,24 @@ int main(int argc, char** argv) {
   app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")
       ->required()
       ->type_name("FILE");
-  tool.output_option(options.low, "light of bright cells up to their limit, and all other cells", "--low");
-  tool.output_option(options.high, "light of bright cells above their limit", "--high");
+  tool.output_option(options.low, "the low part: light of bright cells up to their limit, and all light of other cells",
+                     "--low");
+  tool.output_option(options.high, "the high part: light of bright cells above their limit", "--high");
   app.add_option("--energy", options.energy,
                  "a cell keeps at most this multiple of the mean irradiance in the low part")
       ->capture_default_str()
       ->check(tools::number_between(0));
   app.add_option("--cell", options.cell,
-                 "edge of a cell, metres; auto: four mean distances of points, 16 of photons (256 photons in the mean)")
+                 "edge of a cell, metres; auto: four mean distances of points, or 16 of photons (256 photons per cell "
+                 "on average)")
       ->capture_default_str()
       ->type_name("METRES");
-  app.add_option("--limit", options.limit, "instead of --energy: a cell keeps at most the energy of N mean records")
+  app.add_option("--limit", options.limit, "instead of --energy: a cell keeps at most the flux of N mean records")
       ->type_name("N");
   app.add_option("--kind", options.kinds, "divide by kind of light instead: some of direct,caustic,indirect,volume")
       ->type_name("KINDS");
-  tool.output_option(options.output, "of --kind: light of these kinds; - for standard output");
-  tool.output_option(options.rest, "of --kind: light of all other kinds", "--rest");
+  tool.output_option(options.output, "with --kind: light of these kinds; - for standard output");
+  tool.output_option(options.rest, "with --kind: light of all other kinds", "--rest");
   tool.common_options(0);
   return tool.run([&] {
     run(tool, options);

@@ -107,33 +107,30 @@ void add_wishes(tools::Tool& tool, Options& options) {
   const auto words = [&](const char* name, std::string& value, const char* help) {
     app.add_option(name, value, help)->type_name("WORDS");
   };
-  choice("--quality", options.quality, "draft: rougher, in less than half of the time; final", {"draft", "final"});
+  choice("--quality", options.quality, "draft: more noise, in less than half of the time; final", {"draft", "final"});
   choice("--method", options.method,
-         "frames: each rendered; walkthrough: key frames, those between warped; auto: where it pays; preview: quick, "
-         "indirect light by light textures from the photons of many frames",
+         "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
+         "walkthrough where it pays; preview: fast, with light textures from the photons of many frames",
          {"frames", "walkthrough", "auto", "preview"});
-  choice(
-      "--filter", options.filter,
-      "filter frames where the halves of their samples show that it helps: frames of the window, 1: each alone; none; "
-      "auto: 1, unless --pixel-words are given",
-      {"auto", "none", "1", "3", "5", "7", "9"});
+  choice("--filter", options.filter,
+         "number of frames in the filter's window, 1: each frame alone; a frame is filtered where the halves of its "
+         "samples show that it helps; none: no filter; auto: 1, or none with --pixel-words",
+         {"auto", "none", "1", "3", "5", "7", "9"});
   choice("--indirect", wish.indirect,
          "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
          {"auto", "records", "gather", "paths"});
-  choice(
-      "--moving", wish.moving,
-      "what of a frame's light follows from that of what stands: anew (nothing), light (photons and points), records "
-      "(they, too), "
-      "time (photons and points; records keep their incoming light from frame to frame); auto: the cheapest by a pilot",
-      {"auto", "anew", "light", "records", "time"});
-  choice("--split", wish.split,
-         "are bright points divided from the others and sampled explicitly; auto: where a pilot finds that it pays",
+  choice("--moving", wish.moving,
+         "what a frame takes from the static light of its segment: anew: nothing; light: photons and points; records: "
+         "photons, points and records; time: photons and points, and records keep their incoming light from frame to "
+         "frame; auto: the cheapest by a pilot",
+         {"auto", "anew", "light", "records", "time"});
+  choice("--split", wish.split, "on: bright points are sampled explicitly; auto: where a pilot finds that it pays",
          {"auto", "on", "off"});
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
   app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")
       ->capture_default_str();
   tool.count_option("--photons", wish.photons,
-                    "paths of light of a photon map (preview: of a frame), up to 16 times as many where few of them "
+                    "light paths of a photon map (preview: of a frame); up to 16 times as many where few of them "
                     "arrive; 0: the preset's");
   app.add_option("--measured", options.measured,
                  "preview: photons of each segment by what `make measure` has written into this file")
@@ -142,10 +139,10 @@ void add_wishes(tools::Tool& tool, Options& options) {
                  "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
-  app.add_option("--rays", wish.rays, "gather rays of a record at most; 0: the preset's")
+  app.add_option("--rays", wish.rays, "largest number of gather rays of a record; 0: the preset's")
       ->capture_default_str()
       ->check(tools::number_between(0, 1 << 20));
-  app.add_option("--pixel-error", wish.pixel_error, "of the frames, as frame-render --pixel-error; 0: the preset's")
+  app.add_option("--pixel-error", wish.pixel_error, "as frame-render --pixel-error; 0: the preset's")
       ->capture_default_str()
       ->check(tools::number_between(0, 10));
   words("--point-words", wish.points, "options of irradcache-build points instead of the preset's");
@@ -153,23 +150,22 @@ void add_wishes(tools::Tool& tool, Options& options) {
   words("--pixel-words", wish.pixels, "options of frame-render instead of the preset's");
   words("--texture-words", wish.texture_words, "options of st-filter mesh");
   words("--smoke-words", wish.smoke_words, "options of volume-compose");
-  app.add_flag("--textures", wish.textures, "in smoke: indirect light of surfaces by light textures");
+  app.add_flag("--textures", wish.textures, "with smoke: indirect light of surfaces from light textures");
   app.add_option("--update", wish.update,
-                 "in smoke: trace this share of each photon map anew, keep the rest, such as 10%")
+                 "with smoke: trace this share of each photon map anew, such as 10%, and keep the remainder")
       ->type_name("SHARE");
-  app.add_option(
-         "--refine", wish.refine,
-         "in smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%")
+  app.add_option("--refine", wish.refine,
+                 "with smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, "
+                 "such as 5%")
       ->type_name("SHARE");
-  app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")
+  app.add_option("--strategy", wish.strategy, "groups of photons that --update traces, as photon-trace --strategy")
       ->capture_default_str();
   app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")
       ->capture_default_str()
       ->check(tools::number_between(2, 1000));
-  app.add_option(
-         "--halve-above", wish.threshold,
-         "an interval between keys is halved if a viewer sees in more than this share of its pixels, such as 5%, that "
-         "they are wrong (AQM)")
+  app.add_option("--halve-above", wish.threshold,
+                 "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
+                 "(AQM), such as 5%")
       ->capture_default_str()
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
@@ -183,11 +179,12 @@ void add_wishes(tools::Tool& tool, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("scene-plan", "Decide what a range of frames needs, and say from which files each picture is made.",
-                   argc, argv);
+  tools::Tool tool("scene-plan",
+                   "Decide which stages a range of frames needs, and from which files each picture is made.", argc,
+                   argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; needed but for --tidy and --estimate");
+  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; not needed for --tidy and --estimate");
   tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")
       ->capture_default_str();
   add_wishes(tool, options);
@@ -196,20 +193,21 @@ int main(int argc, char** argv) {
     return option;
   };
   add(app.add_option("--recipes", options.recipes,
-                     "files that hold the rules: a change of theirs is a change of all that they make"))
+                     "files with the rules of make: if one of them changes, all files are made again"))
       ->type_name("FILE");
   add(app.add_option("--samples", options.samples,
-                     "instead of a plan: two small ones in this folder, for make to make and --estimate to read"))
+                     "write two small plans into this folder instead of a plan; make runs them, and --estimate reads "
+                     "their statistics"))
       ->type_name("FOLDER");
   add(app.add_option("--estimate", options.estimate,
-                     "instead: print the estimated cost of a run, CPU seconds and bytes of each stage, from the "
-                     "samples in this folder (make -f Makefile.example estimate)"))
+                     "print the estimated cost of a run instead of planning: CPU seconds and bytes of each stage, from "
+                     "the samples in this folder (make -f Makefile.example estimate)"))
       ->type_name("FOLDER");
   add(app.add_option("--tidy", options.tidy_folder,
-                     "instead: remove unfinished files of killed runs from this folder and those in it"))
+                     "remove unfinished files of killed runs from this folder and its subfolders instead of planning"))
       ->type_name("FOLDER");
   add(app.add_option("--tidy-hours", options.tidy_hours,
-                     "unfinished files of other hosts count as left over after so many hours"))
+                     "age in hours from which on unfinished files of other hosts are removed"))
       ->type_name("HOURS")
       ->capture_default_str()
       ->check(tools::number_between(0));

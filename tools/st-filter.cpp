@@ -166,11 +166,11 @@ class FilterRun {
       warn("direction", (names.flow.empty() ? names.frame : names.flow) +
                             ": flow in one direction only; the other is taken for its opposite");
     if (!knows_noise(loaded.image))
-      warn("noise",
-           names.frame +
-               ": no noise, variance or albedo; noise cannot be told from texture, so the light stays as it is");
+      warn("noise", names.frame +
+                        ": no noise, variance or albedo; noise cannot be distinguished from texture, so the light "
+                        "stays as it is");
     if (!loaded.image.find("Z") && !loaded.image.find("id.object"))
-      warn("surfaces", names.frame + ": neither Z nor id.object; surfaces cannot be told apart");
+      warn("surfaces", names.frame + ": neither Z nor id.object; surfaces cannot be distinguished");
     if (!identity_in(loaded.image).known())
       warn("identity", names.frame + ": does not say which scene it shows; taken as it is");
   }
@@ -230,7 +230,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
   tools::Tool tool("st-filter",
-                   "Filter frames in space and along the pixel flow; by halves of their samples, where that pays.",
+                   "Filter frames in space and along the pixel flow, where halves of their samples show that it helps.",
                    argc, argv);
   Options options;
   CLI::App& app = tool.app();
@@ -239,24 +239,26 @@ int main(int argc, char** argv) {
       ->required()
       ->type_name("FILE");
   app.add_option("--flow", options.flow,
-                 "their pixel flow, EXR, as many, or a pattern; without: the frames' own forward and backward")
+                 "pixel flow of the frames, EXR, one file per frame, or a pattern; if not given: the frames' own "
+                 "channels forward and backward")
       ->type_name("FILE");
   app.add_option("--frames", options.range, "filter these frames, each with its neighbours in this range: 0-47")
       ->type_name("SPEC");
-  app.add_option("--width", options.width, "with --frames: frames that a frame is filtered with, itself included; odd")
+  app.add_option("--width", options.width,
+                 "with --frames: number of frames with which a frame is filtered, including itself; odd")
       ->capture_default_str()
       ->check(tools::number_between(1, 63));
   app.add_option("--position", options.position,
-                 "which of the frames named is filtered, 1: the first; 0: the one in the middle")
+                 "number of the input frame that is filtered; 1: the first; 0: the middle one")
       ->capture_default_str()
       ->check(tools::number_between(0, 1 << 20));
   app.add_option("--scales", options.filter.scales,
-                 "windows of 5 and of 15 pixels: how many of them, the smallest first; 0: filter in time alone")
+                 "number of fits: 1: over 5x5 pixels; 2: also over 15x15 pixels; 0: filter in time alone")
       ->capture_default_str()
       ->check(tools::number_between(0, kMostScales));
   app.add_option("--channels", options.channels,
-                 "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; without: all that the "
-                 "frame has")
+                 "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; if not given: all "
+                 "channels of the frame")
       ->delimiter(',')
       ->type_name("NAMES");
   app.add_option("--compression", options.compression, "EXR compression")

@@ -118,19 +118,18 @@ int answer(tools::Tool& tool, Request& request) {
 
 int main(int argc, char** argv) {
   tools::Tool tool("tempolux-info",
-                   "Tell what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
+                   "Show what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
                    argc, argv);
   Request request;
   CLI::App& app = tool.app();
-  app.add_option("files", request.files,
-                 "files; - is one of ours on standard input: .photons, .irradpoints or .irradcache")
+  app.add_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
       ->type_name("FILE")
       ->required();
   CLI::Option* check = app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
   CLI::Option* digest = app.add_flag("--digest", request.digest, "hash of the data, without header and history");
-  CLI::Option* diff = app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
-  CLI::Option* account = app.add_flag("--account", request.account,
-                                      "of frames together: how far their light is off, as their audits have it");
+  CLI::Option* diff = app.add_flag("--diff", request.diff, "differences of two files; exit 1 if their data differ");
+  CLI::Option* account =
+      app.add_flag("--account", request.account, "bias of the light of several frames together, from their audits");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* format =
       app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
@@ -138,20 +137,19 @@ int main(int argc, char** argv) {
           ->check(CLI::IsMember({"ply", "csv"}));
   CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
   CLI::Option* groups = tool.output_option(
-      request.groups, "of .photons: a line of CSV for each group: frame, paths, photons; - is standard output",
+      request.groups, "a line of CSV for each group of a .photons file: frame, paths, photons; - is standard output",
       "--groups");
   CLI::Option* png = tool.output_option(
-      request.png, "the image as a picture; of .meshirrad its elements, seen from a corner above", "--png");
+      request.png, "write the image as PNG; for a .meshirrad file its elements, seen from a corner above", "--png");
   CLI::Option* sheet = tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
   app.add_option("--layer", request.picture.layer,
-                 "layer or channel to show, such as indirect, Z, N; none: R, G, B; of .meshirrad window (33 frames: "
-                 "white) or age "
-                 "(red: later frames, blue: earlier ones)")
+                 "layer or channel to show, such as indirect, Z, N; none: R, G, B; for a .meshirrad file: window (33 "
+                 "frames: white) or age (red: later frames, blue: earlier ones)")
       ->type_name("NAME");
   app.add_option("--exposure", request.exposure, "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
       ->type_name("STOPS")
       ->capture_default_str();
-  app.add_option("--columns", request.picture.columns, "of --sheet; 0: about square")
+  app.add_option("--columns", request.picture.columns, "columns of --sheet; 0: about square")
       ->type_name("N")
       ->capture_default_str()
       ->check(tools::number_between(0, 1000));
@@ -159,7 +157,7 @@ int main(int argc, char** argv) {
       ->type_name("PX")
       ->capture_default_str()
       ->check(tools::number_between(1, 65536));
-  app.add_option("--mark", request.picture.marked, "of --sheet: files whose pictures get a border, such as key frames")
+  app.add_option("--mark", request.picture.marked, "files whose pictures get a border in --sheet, such as key frames")
       ->type_name("FILES")
       ->delimiter(',')
       ->allow_extra_args(false)

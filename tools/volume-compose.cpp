@@ -229,14 +229,14 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--photons", options.photons, ".photons file with photons in media, or a pattern")
       ->type_name("FILE")
       ->required();
-  app.add_option("--points", options.points,
-                 ".irradpoints file, or a pattern: what lies in a peak of the phase function is found by rays from the "
-                 "eye, which end at these points; "
-                 "without them by photons, with more noise. Read only for |g| from about .7")
+  app.add_option(
+         "--points", options.points,
+         ".irradpoints file, or a pattern: rays from the eye find light in a peak of the phase function and end at "
+         "these points; without points photons give this light, with more noise. Read only if |g| is above about .7")
       ->type_name("FILE");
   app.add_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")->type_name("FILE");
   app.add_option("--direct", options.direct,
-                 "light straight from lamps: rays: sampled, with shadows; photons: by density, as all other light")
+                 "direct light: rays: lamps are sampled, with shadows; photons: by density, as all other light")
       ->capture_default_str()
       ->check(CLI::IsMember({"rays", "photons"}));
   app.add_option("--spp", options.compose.samples, "rays per pixel")
@@ -260,16 +260,16 @@ void add_options(tools::Tool& tool, Options& options) {
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr");
   tool.output_option(
       options.radiance,
-      "OpenVDB file, or a pattern: instead of a frame the light in the smoke, grid `radiance`, W/m^2/sr scattered "
-      "towards the camera over extinction; of photons alone, with --direct photons all",
+      "OpenVDB file, or a pattern, instead of a frame: grid `radiance`, the light that smoke scatters towards the "
+      "camera divided by its extinction, W/m^2/sr; light of photons only, so all light with --direct photons",
       "--radiance-only");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("volume-compose", "Put the smoke of a scene into a frame, lit by photons and sampled lamps.", argc,
-                   argv);
+  tools::Tool tool("volume-compose", "Composite the smoke of a scene over a frame, lit by photons and sampled lamps.",
+                   argc, argv);
   Options options;
   add_options(tool, options);
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);

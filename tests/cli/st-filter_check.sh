@@ -27,7 +27,7 @@ expect 2 'need a pattern' st-filter f.##.exr --frames 8-12 -o made.exr
 expect 2 'by one pattern each' st-filter f.10.exr f.11.exr --frames 8-12 -o m.##.exr
 # Another program's frames: no noise, no motion, no surfaces; one warning for each, once.
 st-filter plain.exr plain.exr plain.exr -o p.exr 2>err.txt || bad 'a plain frame is refused'
-[ "$(grep -c 'noise cannot be told from texture' err.txt)" = 1 ] && [ "$(grep -c 'as if nothing moved' err.txt)" = 1 ] || bad "$(cat err.txt)"
+[ "$(grep -c 'noise cannot be distinguished from texture' err.txt)" = 1 ] && [ "$(grep -c 'as if nothing moved' err.txt)" = 1 ] || bad "$(cat err.txt)"
 [ "$(wc -l <err.txt)" -le 4 ] || bad "more warnings than reasons: $(cat err.txt)"
 # Halves: the same bytes for any number of threads, single still or window; noise without its layer is refused.
 frame-render "$scene" -q --frames 9-11 --size 48x27 --spp 2 --integrator path --seed-mode frame --channels RGBA,layers,Z,N,id,albedo,motion,coverage,halves,seen -o h.##.exr

@@ -24,7 +24,8 @@ int take_frame(std::string_view& rest, std::string_view whole) {
   int value = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
   if (error == std::errc::invalid_argument) bad(whole, "not a range of frames; write 12, 0-47, 0-47x2 or 1,5,9");
-  if (error != std::errc{} || value < -kFrameLimit || value > kFrameLimit) bad(whole, "a frame number is beyond 10^8");
+  if (error != std::errc{} || value < -kFrameLimit || value > kFrameLimit)
+    bad(whole, "a frame number is outside +-10^8");
   rest.remove_prefix(std::size_t(end - rest.data()));
   return value;
 }
@@ -125,7 +126,7 @@ std::vector<int> parse_frames(const std::string& text) {
   }
   std::unordered_set<int> seen;
   std::erase_if(frames, [&](int frame) { return !seen.insert(frame).second; });
-  if (frames.empty()) bad(text, "no frame is left");
+  if (frames.empty()) bad(text, "no frame remains");
   if (frames.size() > kMaxFrames) bad(text, "more than 10^6 frames");
   return frames;
 }
@@ -243,7 +244,7 @@ std::vector<std::string> parse_list(const std::string& text, const std::vector<s
     const auto found = std::ranges::find(allowed, word);
     if (found == allowed.end()) bad(text, "'" + std::string(word) + "' is none of " + known);
     const std::size_t index = std::size_t(found - allowed.begin());
-    if (wanted[index]) bad(text, "'" + std::string(word) + "' stands there twice");
+    if (wanted[index]) bad(text, "'" + std::string(word) + "' is given twice");
     wanted[index] = true;
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);

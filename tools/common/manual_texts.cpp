@@ -14,7 +14,7 @@ constexpr ManualText kTexts[] = {
      "follow from the static light (--moving).",
      "plan/plan.mk: make variables (formats/plan/plan.md)\n"
      "plan/plan.json: the same for people and scripts\n"
-     "state/*: view files, majorants, what was decided for each segment, and what files of others looked like",
+     "state/*: view files, majorants, the decisions for each segment, and the state of input files",
      "scene-plan room.glb --frames 0-47 -o plan\n"
      "less plan/plan.json",
      "photon-trace irradcache-build frame-render"},
@@ -30,12 +30,12 @@ constexpr ManualText kTexts[] = {
      "photon-trace room.glb --frame 12 --photons 200k --kinds caustic,indirect -o 12.photons\n"
      "# A map for each frame of a range; the scene is read once.\n"
      "photon-trace room.glb --frames 0-47 -o map.####.photons\n"
-     "# A house in a wide land: sun and sky where the cameras of the plan look.\n"
+     "# A house in wide country: photons of sun and sky are aimed where the cameras of the plan look.\n"
      "photon-trace house.glb --frame 0 --importance out/state/0000-*.view -o 0.photons\n"
-     "# The light of a segment without what moves, and what that changes at each frame.\n"
+     "# The static light of a segment, and the change that movers make at each frame.\n"
      "photon-trace room.glb --frame 0 --map static -o s.photons --paths s.paths\n"
      "photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons\n"
-     "# Smoke: frame 0 anew, of each frame after it a tenth of the paths; 30k more for frame 12\n"
+     "# Smoke: all of frame 0, then a tenth of the paths of each frame; then 30k further paths for frame 12.\n"
      "photon-trace room.glb --frame 0 --kinds indirect,volume --majorants out/state/0000-*.majorants -o "
      "p.0000.photons\n"
      "photon-trace room.glb --frames 1-23 --kinds indirect,volume --majorants out/state/0000-*.majorants --update "
@@ -54,7 +54,7 @@ constexpr ManualText kTexts[] = {
      ".irradpoints: read and written (formats/irradpoints/irradpoints.md)",
      "photonmap-split 12.irradpoints --low low.irradpoints --high high.irradpoints\n"
      "photon-trace room.glb --photons 200k -o - | photonmap-split - --low low.photons --high high.photons --energy 8\n"
-     "# One kind of light, for a stage that wants no other.\n"
+     "# One kind of light, for a stage that needs no other.\n"
      "photonmap-split 12.photons --kind caustic -o caustic.photons --rest others.photons",
      "photon-trace irradcache-build tempolux-info"},
     {"irradcache-build",
@@ -65,7 +65,7 @@ constexpr ManualText kTexts[] = {
      ".irradpoints: irradiance by kind at points (formats/irradpoints/irradpoints.md)\n"
      ".irradcache: irradiance records with gradients (formats/irradcache/irradcache.md)",
      "irradcache-build room.glb --frame 12 --photons 12.photons --size 640x360 -o 12.irradcache\n"
-     "# In two steps, so that the points can be looked at or shared.\n"
+     "# In two steps, so that the points can be examined or shared.\n"
      "irradcache-build points room.glb --frame 12 --photons 12.photons -o 12.irradpoints\n"
      "irradcache-build records room.glb --frame 12 --points 12.irradpoints --size 640x360 -o 12.irradcache\n"
      "irradcache-build records room.glb --frame 12 --points low.irradpoints --high high.irradpoints -o 12.irradcache",
@@ -96,7 +96,7 @@ constexpr ManualText kTexts[] = {
      "gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 640x360 --previous s.0000.radsamples "
      "-o s.0001.radsamples "
      "--cache c.0001.irradcache\n"
-     "# From the photons of many frames: quick and quiet previews.\n"
+     "# Fast previews with little noise, from the photons of many frames.\n"
      "photon-trace room.glb --frames 0-47 --photons 25k --seed-mode frame --kinds indirect -o p.####.photons\n"
      "gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad\n"
      "frame-render room.glb --frames 0-47 --size 640x360 --meshirrad d.####.meshirrad -o f.####.exr",
@@ -110,15 +110,15 @@ constexpr ManualText kTexts[] = {
      "changing any layer's sum; path tracing does not spread.",
      "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
-     "# Caustic light where something moves: of what stands, and what movers change.\n"
+     "# Caustic light in a scene with movers: the static map, and the change that movers make.\n"
      "frame-render room.glb --frame 12 --irradcache 12.irradcache --photons s.photons --dynamic d.0012.photons -o "
      "12.exr\n"
-     "# From points alone: nothing to be placed for a camera, more noise.\n"
+     "# From points alone: no records are placed, and there is more noise.\n"
      "frame-render room.glb --frame 12 --size 640x360 --points 12.irradpoints -o 12.exr\n"
-     "# Which way light comes through windows: learned once for the cameras of a segment, read by its frames with "
+     "# Learn from where light comes through windows, once for the cameras of a segment; its frames read the file with "
      "--lights.\n"
      "frame-render room.glb --frames 0-23 --size 640x360 --learn-lights -o 0000.lightgrid\n"
-     "# By paths, but for the light that mirrors and glass throw: photon-trace --kinds caustic.\n"
+     "# By paths, except for caustic light: photon-trace --kinds caustic.\n"
      "frame-render glass.glb --frame 12 --size 640x360 --photons 12.photons -o 12.exr\n"
      "# A reference in two independent halves, so that its noise is known.\n"
      "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",
@@ -126,13 +126,13 @@ constexpr ManualText kTexts[] = {
     {"ibr-warp",
      "Makes a frame from one or two rendered key frames: each of its pixels looks up its surface point in the keys and "
      "takes their colour there, layer by layer. A mask names pixels that the keys do not give well enough, with the "
-     "cause; frame-render traces them over the warped frame. ibr-warp also writes where each pixel moves in the next "
-     "frame and came from in the previous one.",
+     "cause; frame-render traces them over the warped frame. ibr-warp also writes the flow of each pixel: where its "
+     "surface point is in the next and in the previous frame.",
      "key .exr: frames with RGBA, Z, N, id and better with the layer specular (formats/frames/frames.md)\n"
      "flow .exr: pixel flow (formats/flow/flow.md)\n"
      "mask .exr: pixels to trace, with causes (formats/mask/mask.md)",
      "ibr-warp 8.exr 16.exr --scene room.glb --frame 12 -o 12.exr --mask why.exr --flow flow.exr\n"
-     "# Trace what is missing.\n"
+     "# Trace the missing pixels.\n"
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints --base 12.exr "
      "--mask why.exr -o "
      "12.exr\n"
@@ -155,14 +155,14 @@ constexpr ManualText kTexts[] = {
      "of the surfaces and smoothed along the surfaces; frame-render --meshirrad reads them "
      "(docs/methods/light_textures.md). Its options: st-filter mesh --help.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
-     "flow .exr: where pixels go and came from (formats/flow/flow.md)\n"
+     "flow .exr: pixel flow to the next and the previous frame (formats/flow/flow.md)\n"
      ".meshirrad: written by st-filter mesh (formats/meshirrad/meshirrad.md)",
      "frame-render room.glb --frames 0-47 --spp 4 --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
      "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,halves,seen -o f.####.exr\n"
      "st-filter f.####.exr --frames 0-47 -o filtered.####.exr\n"
-     "# One frame, by its five files.\n"
+     "# One frame, from its own file and two files before and after it.\n"
      "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr\n"
-     "# A light texture, and a frame by it.\n"
+     "# A light texture, and a frame lit by it.\n"
      "st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad\n"
      "frame-render room.glb --frame 12 --size 640x360 --meshirrad 12.meshirrad -o 12.exr",
      "frame-render aqm-compare tempolux-info"},
@@ -180,9 +180,9 @@ constexpr ManualText kTexts[] = {
      "volume-compose room.glb --frame 12 --photons 12.photons --base 12.exr -o 12.smoke.exr",
      "photon-trace frame-render tempolux-info"},
     {"aqm-compare",
-     "Says how wrong a frame or a sequence is against a reference: RMSE, relMSE, bias, PSNR, flicker. With two "
-     "independent "
-     "halves of a reference its noise is taken out.",
+     "Measures the error of a frame or a sequence against a reference: RMSE, relMSE, bias, PSNR, flicker. With two "
+     "independent halves of a reference, the noise of the reference cancels. With --flow or --metric aqm it predicts "
+     "in how many pixels a viewer sees a difference.",
      "comparison .json: the figures (formats/comparison/comparison.md)",
      "aqm-compare 12.exr --reference-halves ref_a.exr ref_b.exr --difference wrong.png", "frame-render error-report"},
     {"error-report",
@@ -190,13 +190,12 @@ constexpr ManualText kTexts[] = {
      "tables, "
      "plots and one HTML page.",
      "report/: CSV, Markdown, plots, HTML (formats/report/report.md)\n"
-     "stats .json: what a run cost (formats/stats/stats.md)",
+     "stats .json: the cost of a run (formats/stats/stats.md)",
      "error-report --run scene=room,curve=draft,label=12 photons.json+frame.json 12.error.json -o report",
      "aqm-compare frame-render"},
     {"tempolux-info",
-     "Prints what a file says of itself, checks it to its end, digests its data, compares two, exports points and "
-     "makes "
-     "pictures. Files are told by their first bytes, not by their names.",
+     "Prints facts about a file, checks it to its end, digests its data, compares two files, exports points and makes "
+     "pictures. The first bytes of a file determine its type, not its name.",
      ".photons .irradpoints .irradcache .radsamples .exr .json: read; the pages in formats/ define them",
      "tempolux-info 12.photons\n"
      "tempolux-info --check out/photons/*.photons\n"

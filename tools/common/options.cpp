@@ -95,13 +95,12 @@ void Tool::environment_options() {
   CLI::App& app = state_->app;
   Common& common = state_->common;
   CLI::Option* file =
-      app.add_option(
-             "--environment", common.environment,
-             "latitude-longitude map of the light around the scene, .hdr or .exr: its middle is +Z, its top +Y; "
-             "maps made for Blender's axes want --environment-rotation 90")
+      app.add_option("--environment", common.environment,
+                     "latitude-longitude map of the light around the scene, .hdr or .exr; the middle of the map is +Z, "
+                     "its top +Y; maps made for Blender's axes need --environment-rotation 90")
           ->type_name("FILE");
   CLI::Option* color =
-      parsed_option(app, "--environment-color", "the same light from all around, W/m^2/sr, instead of a map", "",
+      parsed_option(app, "--environment-color", "the same radiance from all directions, W/m^2/sr, instead of a map", "",
                     [&common](const std::string& text) { common.environment_color = parse_color(text); })
           ->type_name("R,G,B")
           ->excludes(file);
@@ -128,17 +127,17 @@ void Tool::environment_options() {
 void Tool::volume_options() {
   CLI::App& app = state_->app;
   VolumeOptions& volume = state_->common.volume;
-  app.add_option(
-         "--volume", volume.files,
-         "OpenVDB file, or a pattern as smoke.####.vdb: a medium, in metres of world space, instead of those the scene "
-         "names; none: without any. Again for several")
+  app.add_option("--volume", volume.files,
+                 "OpenVDB file, or a pattern such as smoke.####.vdb, of a medium in metres of world space; replaces "
+                 "the media that the scene names; none: no media; repeat it for several media")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  app.add_option("--volume-grid", volume.grids,
-                 "its grid, NAME or NAME:1 for the second of that name [density, else the only one that can be meant]")
+  app.add_option(
+         "--volume-grid", volume.grids,
+         "name of the volume's grid; NAME:1 is the second grid of that name [density, else the only density grid]")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  parsed_option(app, "--volume-frames", "frames that have a file; others show the nearest [all]", "",
+  parsed_option(app, "--volume-frames", "frames that have a file; other frames use the nearest one [all]", "",
                 [&volume](const std::string& text) {
                   const std::vector<int> frames = parse_frames(text);
                   const auto [least, most] = std::ranges::minmax(frames);
@@ -158,8 +157,8 @@ void Tool::volume_options() {
       ->type_name("R,G,B")
       ->allow_extra_args(false);
   app.add_option("--majorants", volume.majorants,
-                 "state/majorants.FFFF of scene-plan: bounds of the media that hold for a whole segment, for maps that "
-                 "are updated")
+                 "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
+                 "segment; needed for maps that are updated")
       ->type_name("FILE");
   app.add_option("--phase-g", volume.phase_g, "mean cosine of scattering by Henyey and Greenstein: forward above 0 [0]")
       ->type_name("X")
@@ -203,7 +202,8 @@ void Tool::common_options(unsigned flags) {
         ->type_name("RATE")
         ->capture_default_str()
         ->check(number_between(1e-3, 1e6));
-    app.add_option("--segment", common.segment_length, "frames over which static means static")
+    app.add_option("--segment", common.segment_length,
+                   "frames in a segment; an object is static if it does not change within a segment")
         ->type_name("FRAMES")
         ->capture_default_str()
         ->check(number_between(1, 1e6));
@@ -211,7 +211,7 @@ void Tool::common_options(unsigned flags) {
                    "play only this animation of the scene; all play together if not given")
         ->type_name("NAME");
     app.add_option("--light-units", common.light_units,
-                   "raw: lights as they stand; spec: point, spot and sun lights divided by 683 lm/W")
+                   "raw: lights unchanged; spec: point, spot and sun lights divided by 683 lm/W")
         ->type_name("UNITS")
         ->capture_default_str()
         ->check(CLI::IsMember({"raw", "spec"}));
@@ -221,12 +221,13 @@ void Tool::common_options(unsigned flags) {
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
     left_out(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
-    left_out(app.add_option("--max-texture", common.max_texture, "refuse images of textures of more pixels on a side"))
+    left_out(app.add_option("--max-texture", common.max_texture,
+                            "refuse texture images with more pixels than this on a side"))
         ->type_name("N")
         ->check(number_between(1, 65536))
         ->capture_default_str();
     app.add_option("--reduce-textures", common.reduce_textures,
-                   "reduce larger images of textures to this many pixels on a side; 0: none")
+                   "reduce larger texture images to this many pixels on a side; 0: none")
         ->type_name("N")
         ->check(number_between(0, 65536))
         ->capture_default_str();
@@ -243,10 +244,10 @@ void Tool::common_options(unsigned flags) {
   left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
       ->type_name("FILE");
   left_out(app.add_option("--said", common.said_file,
-                          "file of warnings that another tool has given, a line each: they are not repeated"))
+                          "file with warnings that earlier tools have given, one per line; they are not repeated"))
       ->type_name("FILE");
   left_out(app.add_flag("--no-clobber", common.no_clobber, "refuse to replace an output that exists"));
-  left_out(app.add_flag("-q,--quiet", common.quiet, "no words but errors"));
+  left_out(app.add_flag("-q,--quiet", common.quiet, "print errors only"));
   left_out(app.add_flag("-v,--verbose", common.verbose, "report each phase and its time"));
 }
 

@@ -12,9 +12,8 @@ namespace tempolux::tools {
 
 /// Help of the option, whose value is FILE, none or "" (spheres found by the tool).
 inline constexpr const char* kImportanceHelp =
-    "where photons of sun and sky are aimed and points lie closer together: a view file of scene-plan, "
-    "state/FRAME-KEY.view; "
-    "none: the whole scene; without it: what the camera sees over the frame's segment";
+    "view file of scene-plan, state/FRAME-KEY.view: photons of sun and sky are aimed at its spheres, and points lie "
+    "closer together there; none: no aim; if not given: the surfaces that the camera sees over the frame's segment";
 
 /// Spheres around what the cameras see, in world space, by segment.
 class Importance {

@@ -170,10 +170,10 @@ void check(const Options& options, const std::vector<int>& frames) {
 }  // namespace
 
 int photon_windows(int argc, char** argv) {
-  Tool tool(
-      "gather-temporal density",
-      "Make light textures from the photons of many frames: each element takes as many as its light stands still.",
-      argc, argv);
+  Tool tool("gather-temporal density",
+            "Make light textures from the photons of many frames: each element takes as many frames as its light stays "
+            "constant.",
+            argc, argv);
   Options options;
   options.count.for_windows = true;
   CLI::App& app = tool.app();
@@ -188,7 +188,7 @@ int photon_windows(int argc, char** argv) {
       ->capture_default_str()
       ->check(number_between(0, 127));
   app.add_option("--false-alarms", options.window.false_alarms,
-                 "share of windows that close early though light stands still")
+                 "share of windows that end too early although light is constant")
       ->capture_default_str()
       ->check(number_between(1e-9, 0.5));
   app.add_option("--filter-width", options.count.mesh.filter.width,

@@ -91,29 +91,27 @@ PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t ex
 
 void add_update_options(CLI::App& app, UpdateArguments& arguments) {
   app.add_option("--update", arguments.update,
-                 "map of the frame before, or a pattern: keep its groups but for those that are traced again; needs "
-                 "photons in media and "
-                 "--majorants")
+                 "map of the previous frame, or a pattern: its groups are kept, except those that are traced again; "
+                 "needs photons in media and --majorants")
       ->type_name("FILE");
   app.add_option("--share", arguments.share,
-                 "of --update: share of the paths that are traced again, as 10%, those of pilots counted")
+                 "with --update: share of the paths that are traced again, such as 10%, including pilots")
       ->type_name("PERCENT");
   app.add_option("--max-groups", arguments.max_groups,
-                 "of --update: instead of a share, the number of groups; pilots are not counted")
+                 "with --update: the number of groups that are traced again, instead of --share; pilots do not count")
       ->type_name("N");
   std::vector<std::string> names;
   for (const auto& [name, strategy] : kStrategies) names.push_back(name);
   app.add_option("--strategy", arguments.strategy,
-                 "which groups go first: oldest; random; census: where the stored photons saw most change of the "
-                 "smoke; of pilots: fde: that look "
-                 "at smoke that has changed; dip: that smoke scatters elsewhere; hybrid: by how much the smoke has "
-                 "changed; path: that take "
-                 "another path; all. All but the first two times age")
+                 "groups that are traced again first. oldest; random; census: groups whose stored photons saw the "
+                 "largest change of smoke. By pilots: fde: pilots that see another extinction; dip: pilots that smoke "
+                 "scatters at other places; hybrid: the amount of change along pilots; path: pilots that take another "
+                 "path. all: every group. Priorities are multiplied by age, except for oldest and random")
       ->capture_default_str()
       ->check(CLI::IsMember(names));
   app.add_option("--pilots", arguments.pilots,
-                 "of a map that will be updated by pilots: share of each group's paths that are pilots, as 3%; at "
-                 "least one, at most 256")
+                 "for a map that will be updated by pilots: share of each group's paths that are pilots, such as 3%; "
+                 "at least one path, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
   // For comparison with the papers, so --help does not show them: docs/methods/volume_photons.md.
@@ -131,9 +129,8 @@ void add_update_options(CLI::App& app, UpdateArguments& arguments) {
                "the same map for twice the paths")
       ->group("");
   app.add_option("--refine", arguments.refine,
-                 "instead of tracing groups of --update again: add this many paths to them (10k, 1M), where they make "
-                 "light in smoke less noisy; "
-                 "--update is the map of the frame itself")
+                 "add this many paths (10k, 1M) to the groups in which they reduce the noise of light in smoke most, "
+                 "instead of tracing groups again; --update is then the map of the frame itself")
       ->type_name("N")
       ->capture_default_str();
 }
