@@ -1,4 +1,4 @@
-"""What a person sees wrong in a picture: codes, blobs and grain (../shared/design/evaluation.md, 1), in the standard library.
+"""What a person sees wrong in a picture: codes, blobs and grain, in the standard library.
 
 A code is 255 times the sRGB curve of the exposed value, cut to [0, 1], not rounded; one exposure puts the median of the reference's
 pixel means at .18. Images: tests/stress/exr.py. Pixels are taken to vary independently.

@@ -7,7 +7,7 @@ namespace tempolux::tools {
 
 /// Keeps freed memory in the process from now on. Tools that process pictures one after the other allocate and free
 /// arrays of a picture's size. By default malloc returns each array to the system, which clears its pages again: half
-/// of such a tool's time (docs/methods/st-filter.md 8). Affects GNU's malloc only.
+/// of such a tool's time. Affects GNU's malloc only.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   ::mallopt(M_MMAP_MAX, 0);

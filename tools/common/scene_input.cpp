@@ -34,7 +34,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   volumes_.emplace(tool, scene_);
   if (volumes_->last_frame() > 0) scene_.duration_s = std::max(scene_.duration_s, volumes_->last_frame() / time_.fps);
   tool.say(path + ": light units " + common.light_units + ": punctual lights " +
-           (common.light_units == "spec" ? "divided by 683" : "as they stand, factor 1"));
+           (common.light_units == "spec" ? "divided by 683" : "unchanged, factor 1"));
 }
 
 SceneInput::~SceneInput() {
