@@ -18,9 +18,9 @@
 namespace tempolux {
 
 /// The fluence of photons in the media of a frame, weighed for one eye position.
-/// If the phase function is isotropic, one volume serves all views. Otherwise each photon is weighed by 4 pi times the
-/// phase function from its direction to the eye's, so that filtering and look-up stay the same; there is one volume per
-/// different g. Light in the peak of a phase function comes from rays instead (PhaseShare).
+/// If the phase function is isotropic, all views share one volume. Otherwise each photon is weighed by 4 pi times the
+/// phase function for scattering from the photon's direction to the eye, and there is one volume for each different
+/// g; filtering and look-up are the same. Rays give the light in the peak of a phase function instead (PhaseShare).
 class MediaLight {
  public:
   struct Options {

@@ -35,7 +35,7 @@ class FluenceSums {
   void add(Vec3 point, Rgb contribution, int times = 1);
   const std::vector<std::array<std::int64_t, 3>>& sums() const { return sums_; }
   std::uint64_t photons() const { return photons_; }
-  /// By cell: true if its majorant is above 0, so that tentative collisions can happen in it.
+  /// One entry per cell: true if its majorant is above 0, so that tentative collisions can happen in it.
   const std::vector<std::uint8_t>& open() const { return open_; }
   /// True if cells and sums are equal.
   bool operator==(const FluenceSums& other) const {

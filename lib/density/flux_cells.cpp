@@ -10,8 +10,8 @@
 namespace tempolux {
 namespace {
 
-/// The grid begins beside the origin by an irrational part of an edge: surfaces lie at round coordinates more often
-/// than anywhere else, and one on a face between two cubes would be dealt out to both of them by rounding.
+/// The grid starts an irrational part of an edge away from the origin. Surfaces often lie at round coordinates; if
+/// the border of two cubes did, too, rounding would distribute the surface's records over both cubes.
 constexpr double kShift = 0.38196601125;  // 2 - golden ratio
 /// A cell whose area comes from the hull keeps all light if it has fewer records. With eight records the estimated area
 /// is wrong by half (rms; measured in tests/lib/density/split_light_test.cpp), which is too uncertain to call a cell

@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// By pixel: 1 where any channel is not 0 (formats/mask/mask.md).
+/// A mask by pixel: 1 where any channel of the image is not 0 (formats/mask/mask.md).
 std::vector<std::uint8_t> nonzero_pixels(const Image& image);
 
 }  // namespace tempolux

@@ -21,23 +21,26 @@ struct PreviewOptions {
   std::optional<double> exposure_stops;  ///< missing: auto, which maps the layer's 98th percentile of luminance to 0.9
 };
 
-/// Exposure in stops that "auto" chooses for a layer; a sequence should use one value. log2(0.9 / L), with L the 98th
-/// percentile (nearest rank) over the pixels of the absolute luminance, or of the largest |component| if the layer is
-/// signed or no colour. If L is 0, the largest value replaces it. 0 stops for a layer that is 0 everywhere,
-/// and for Z, N, P and ids. Values that are not finite do not count. Throws InputError listing layers and channels if
-/// the image has none of this name.
+/// The exposure in stops that "auto" chooses for a layer: log2(0.9 / L). L is the 98th percentile (nearest rank) over
+/// the pixels: of the absolute luminance, or of the largest |component| if the layer is signed or no colour. If L is
+/// 0, the largest value replaces it. Returns 0 for a layer that is 0 everywhere, and for Z, N, P and ids. Values that
+/// are not finite do not count. A sequence should use one value for all frames. Throws InputError listing layers and
+/// channels if the image has none of this name.
 double auto_exposure_stops(const Image& image, const std::string& layer);
 
 /// Converts a layer to a picture by its kind:
+///
 ///     colour L.R .G .B     2^stops, then sRGB transfer, clipped to [0, 1]
-///     signed colour        (negative values hold more than 2 % of all magnitudes, as in differences)
-///     the component d of largest magnitude: 2^stops |d|, clipped, sRGB transfer; 0 grey, above red, below blue
-///     Z                    linear between the 1st percentile (bright, 1) and the 99th (dark, 0.1);
-///     no surface (infinite or >= 1e10) black
+///     signed colour        if values below 0 hold more than 2 % of all magnitudes, as in differences:
+///                          0 is grey, above 0 red, below 0 blue; brightness is that of 2^stops |d|, clipped, sRGB
+///                          transfer, with d the component of largest magnitude
+///     Z                    linear from the 1st percentile (bright, 1) to the 99th (dark, 0.1);
+///                          black where no surface is seen (infinite or >= 1e10)
 ///     N or any L.X .Y .Z   with values in [-1, 1]: n/2 + 1/2; P and other vectors: each axis over its range
-///     L.u .v (motion)      no motion grey; u on red, v on green, |u| 2^stops = 1 full
-///     ids                  a colour per id; 0xffffffff (no object) black
-///     any other channel    grey, as colour
+///     L.u .v (motion)      grey without motion; u on red, v on green; |u| 2^stops = 1 is full
+///     ids                  a colour per id; 0xffffffff (no object) is black
+///     any other channel    grey, as a colour
+///
 /// Values that are not finite are black. Throws as auto_exposure_stops.
 Picture make_picture(const Image& image, const PreviewOptions& options);
 

@@ -51,7 +51,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
       });
   result.totals.emitted_flux = as_array(emitted);
   result.totals.escaped_flux = as_array(escaped);
-  // Lossless walls absorb 0 on average, and Russian roulette may leave a negative sum.
+  // Lossless walls absorb 0 on average; Russian roulette may make the sum negative.
   for (double& flux : result.totals.absorbed_flux = as_array(absorbed)) flux = std::max(flux, 0.0);
   for (formats::GroupFlux& group : ledger) close_ledger(group);
   writer.finish(result.totals, ledger);

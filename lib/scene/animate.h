@@ -21,7 +21,7 @@ std::array<double, 4> evaluate(const AnimationTrack& track, double time_s);
 /// The shape of a node's mesh: two equal poses have equal vertices.
 struct Pose {
   std::vector<double> weights;  ///< by morph target; empty: none
-  /// By joint of the node's skin; the identity for a joint that no vertex follows. Empty: no skin.
+  /// One transform per joint of the node's skin; the identity for a joint that no vertex follows. Empty: no skin.
   std::vector<Affine> world_from_mesh;
   bool operator==(const Pose&) const = default;
 };

@@ -91,8 +91,8 @@ bool keeps_axes(const Texture& texture) {
   return m[0] > 0 && m[4] > 0 && m[1] == 0 && m[3] == 0;
 }
 
-/// glTF 2.0, 3.7.2.1: a unit vector and the sign of the third axis. Read only if a normal map and normals exist. Where
-/// no tangents are read make_tangents computes them.
+/// Reads tangents: a unit vector and the sign of the third axis (glTF 2.0, 3.7.2.1). They are read only if the
+/// primitive has normals and its material a normal map; if the file has none, make_tangents() computes them.
 void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("TANGENT");
   const Material& material = import.scene.materials[primitive.material];

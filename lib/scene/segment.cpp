@@ -1,4 +1,4 @@
-// lib/scene/segment.cpp -- computes segments: their frames, what moves in them, and the origin of scene space.
+// lib/scene/segment.cpp -- computes segments: their frames, their movers, and the origin of scene space.
 #include <algorithm>
 #include <array>
 #include <cmath>

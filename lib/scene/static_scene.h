@@ -1,4 +1,4 @@
-// lib/scene/static_scene.h -- the static scene of a segment, and the boxes of what moves.
+// lib/scene/static_scene.h -- the static scene of a segment, and the boxes of its movers.
 #pragma once
 
 #include <span>

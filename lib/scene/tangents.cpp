@@ -82,7 +82,8 @@ class TangentGroups {
   const Texture& normal_map_;
   std::vector<std::uint32_t> joined_;  // by vertex: the first vertex that is equal
   std::vector<bool> speaks_;           // by triangle: true if the triangle has area and its coordinates have area
-  // By triangle: +1 (-1) if u and v have the corners' (the opposite) orientation; 0: unknown.
+  // One entry per triangle. +1: u and v have the orientation of the corners. -1: they have the opposite one. 0:
+  // unknown.
   std::vector<std::int8_t> turns_;
   std::vector<std::uint32_t> across_;  // by corner: the corner across the edge from it to the next corner, or kNone
   std::vector<std::uint32_t> group_;   // by corner

@@ -17,8 +17,8 @@ inline bool is_traced(std::uint8_t mark) { return mark > scaled; }
 /// The differences between the kept frame and the present one.
 struct LightChanges {
   std::vector<Box3> boxes;  ///< m; around both places of each surface that has moved
-  /// By point that may be an anchor: unmarked, scaled or lost. `ratios` holds the factor by which its light changed.
-  /// It is a separate array, since few cells read it.
+  /// One entry per point that may be an anchor: unmarked, scaled or lost. `ratios` holds the factor by which the
+  /// point's light changed. It is a separate array, since few cells read it.
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
   bool anything = false, materials = false;

@@ -48,7 +48,7 @@ bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
 
 constexpr std::size_t kPacket = 8;
 
-/// Eight rays in Embree's layout. Rays beyond the end of a list, and unusable ones, have valid 0: Embree must not
+/// Eight rays in Embree's layout. Unusable rays, and lanes after the end of a list, have valid 0: Embree must not
 /// compute with their numbers.
 struct Packet {
   RTCRayHit8 query;

@@ -43,7 +43,7 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   return header;
 }
 
-/// By pixel of the frame: 0 if the pixel needs no records. Empty without --mask.
+/// One entry per pixel of the frame: 0 if the pixel needs no records. Empty without --mask.
 std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options, int number) {
   if (options.mask.empty()) return {};
   const std::string name = frame_name(options.mask, number);

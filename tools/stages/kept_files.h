@@ -22,8 +22,8 @@ struct FramePoints {
 /// Reads the points. `high`: the file of the high part; `file` is then the low part. "": `file` holds all light.
 FramePoints read_frame_points(Tool& tool, const std::string& file, const std::string& high, const SceneFrame& frame);
 
-/// An empty set of kept records. Samples beyond an eighth of --max-memory are stored in a file in the folder of
-/// `output`.
+/// An empty set of kept records. If samples need more than an eighth of --max-memory, the remaining ones are stored
+/// in a file in the folder of `output`.
 KeptHemispheres nothing_kept(const Tool& tool, const std::string& output);
 
 /// Unit of stored distances in a segment, m: the diagonal of the scene over the segment.

@@ -31,7 +31,7 @@ struct Counted {
 /// Counts of frames: each is read or made once, and kept as long as a window needs it.
 class Counts {
  public:
-  /// `range`: the frames asked for, ascending.
+  /// `range`: the requested frames, ascending.
   Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range)
       : tool_(tool), input_(input), options_(options), range_(range) {
     if (!options.count.photons.empty() || (options.counts.size() == 1 && has_frame_pattern(options.counts[0]))) return;

@@ -1,4 +1,5 @@
-// tools/stages/photon_windows.h -- the program gather-temporal density.
+// tools/stages/photon_windows.h -- the program gather-temporal density: light textures from the photons of many
+// frames.
 #pragma once
 
 namespace tempolux::tools {

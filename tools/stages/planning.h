@@ -40,7 +40,7 @@ class PlanFolder {
   std::vector<std::string> decided_;  ///< files that decisions() has read or written
 };
 
-/// Plans the frames asked for. All files that it reads become inputs of the folder.
+/// Plans the requested frames. All files that it reads become inputs of the folder.
 class Planner {
  public:
   /// Reads the scene. `folder`: nullptr if nothing is kept. `recipes`: the files with the rules.

@@ -67,7 +67,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sam
   return runs;
 }
 
-/// The first frame asked for, and the first warped frame.
+/// The first requested frame, and the first warped frame.
 std::vector<int> sampled_frames(const Planned& planned) {
   std::vector<int> frames{planned.plan.frames.front()};
   const auto warped = std::ranges::find_if(
