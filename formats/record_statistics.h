@@ -48,7 +48,7 @@ struct RecordCensus {
 
 /// Differences of two files, record by record in file order.
 struct RecordDifference {
-  std::uint64_t records = 0;    ///< number of compared records: that of the shorter file
+  std::uint64_t records = 0;    ///< number of compared records, as many as the shorter file has
   std::uint64_t differing = 0;  ///< compared records with any different field
   std::uint64_t first = 0;      ///< index of the first different record; only if differing > 0
   std::array<double, 3> largest_position{}, largest_irradiance{};  ///< m, W/m^2: |a - b| by axis, by channel

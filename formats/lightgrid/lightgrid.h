@@ -44,8 +44,8 @@ struct LightgridFile {
 /// so every written file is one that readers accept.
 void write_lightgrid(const std::function<void(const void*, std::size_t)>& sink, const LightgridFile& file);
 
-/// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
-/// InputError "FILE: byte OFFSET: REASON; REMEDY". Memory: that of the cells and one block.
+/// Reads and checks a file; "-" is standard input. Throws InputError "FILE: byte OFFSET: REASON; REMEDY" for every
+/// truncation, flipped bit and value out of range. Memory: the cells and one block.
 LightgridFile load_lightgrid(const std::string& path);
 
 /// Hash of the data without header and history (lightgrid.md, section 6).

@@ -178,7 +178,7 @@ RadsamplesFile read_radsamples(const std::string& path, const TakeSamples& take)
 RadsamplesFile load_radsamples(const std::string& path) {
   std::vector<RadianceSample> samples;
   std::vector<std::uint32_t> anchors;
-  // Samples of an overlay arrive in another order than that of the records.
+  // In an overlay samples do not arrive in the order of the records.
   std::vector<std::pair<std::vector<RadianceSample>, std::vector<std::uint32_t>>> by_record;
   RadsamplesFile file =
       read_radsamples(path, [&](const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample> some,

@@ -27,7 +27,8 @@ struct ChannelDifference {
   double largest = 0;           ///< largest |a - b| over pixels where both are finite; also for ids
   int x = 0, y = 0;             ///< first pixel of the largest difference in row order, from the top left
 };
-/// For each channel of both images, by the order of `a`. Throws std::invalid_argument if the sizes differ.
+/// Compares each channel that both images have, in the order of `a`. Throws std::invalid_argument if the sizes
+/// differ.
 std::vector<ChannelDifference> channel_differences(const Image& a, const Image& b);
 
 /// One exposure for all frames of a sequence: the lower median of the frames' own exposures (auto_exposure_stops), so

@@ -47,7 +47,7 @@ class EnvironmentLight {
   /// Density [1/sr] with which sample() gives `direction` (unit).
   double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
   double pdf_solid_angle(const Place& place, Vec3 direction) const;
-  /// The numbers (u1, u2) for which sample() gives this direction, but for rounding.
+  /// Inverse of sample(): the numbers (u1, u2) for which it gives this direction, up to rounding.
   Vec2 numbers_of(Vec3 direction) const;
 
  private:

@@ -49,7 +49,7 @@ bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double 
                     share * (1 - environment_weight / total), s);
 }
 
-/// u in [0, 1) chooses among the directional lights; `probability` is that of choosing any of them.
+/// u in [0, 1) chooses among the directional lights; `probability` is the probability of choosing any of them.
 bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const {
   double total = 0, weight = 0;
   for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
@@ -158,7 +158,7 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
   return sample_tree(start, 1 - share, point, normal, to_float(stretch(u_choice, share, 1 - share)), u, joint, sample);
 }
 
-/// Draws a sample of a light inside the scene; `probability` is that of choosing any of them.
+/// Draws a sample of a light inside the scene; `probability` is the probability of choosing any of them.
 bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal,
                                float u_choice, Vec2 u, bool joint, LightSample& sample) const {
   if (tree.empty()) return false;

@@ -40,7 +40,7 @@ struct EmissionSlot {
 /// Little of the environment's light may enter a building, or lamps may hardly matter outdoors. If there is both an
 /// environment and another light, each gets at least a fifth.
 struct EmissionTable {
-  std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of those that emit at some frame
+  std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of the surfaces that emit at some frame
   std::vector<EmissionShares> shares;   ///< of `surfaces`, at the first frame
   std::vector<double> probability;      ///< by slot, sums to 1; all equal if nothing ever emits
   Vec3d sphere_centre{};                ///< scene sphere over the segment; scene space, m

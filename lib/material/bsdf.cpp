@@ -123,7 +123,7 @@ Rgb Bsdf::diffuse_reflectance(float cos_o) const {
 
 float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
 
-/// P(D): of the uniform light that is reflected towards wo, the share that the Lambert lobe reflects.
+/// P(D): the Lambert lobe's share of the uniform light that all lobes together reflect towards wo.
 float Bsdf::diffuse_probability(const Reflection& r) const {
   if (!diffuse_) return 0;
   if (!specular_) return 1;

@@ -15,8 +15,8 @@ const MajorantGrid& PhotonTracer::majorants() const {
   return media_ ? media_->majorants() : none;
 }
 
-/// Follows photons to the next surface, as the loop without media does. Photons that a medium scatters before are
-/// listed in `scattered`. Returns the number that arrives.
+/// Follows photons to the next surface, as the loop of follow() does without media. Photons that a medium scatters
+/// before they reach a surface are listed in `scattered`. Returns the number of photons that arrive.
 std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits,
                               std::uint32_t* scattered, std::size_t& scattered_count, PhotonBatch& batch) const {
   std::size_t arrived = 0;

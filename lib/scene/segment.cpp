@@ -23,7 +23,7 @@ int floor_to_multiple(int value, int step) {
   return value - (remainder < 0 ? remainder + step : remainder);
 }
 
-/// The frame from which on nothing moves: that of the last key, rounded up.
+/// The first frame from which on nothing moves: the frame of the last key, rounded up.
 int last_frame(const Scene& scene, const TimeOptions& options) {
   const double frame = std::ceil(scene.duration_s * options.fps - 1e-3);
   return frame < 1e9 ? int(frame) : 1'000'000'000;

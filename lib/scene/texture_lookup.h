@@ -57,7 +57,7 @@ class TextureSpot {
 /// Texture coordinates of a set; empty if the primitive has none.
 const std::vector<Vec2>& texture_coordinates(const Primitive& primitive, std::uint32_t uv_set);
 
-/// Texture coordinates at the corners of a triangle: those of the texture's set, transformed.
+/// Texture coordinates at the corners of a triangle, from the texture's set and with the texture's transform.
 std::array<Vec2, 3> corner_coordinates(const Primitive& primitive, const std::array<std::uint32_t, 3>& triangle,
                                        const Texture& texture);
 
