@@ -372,9 +372,9 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(0.0, 100.0));
   app.add_flag("--learn-lights", options.learn_lights,
-               "before the frame, learn which lights and parts of the sky reach the visible places, and draw light "
-               "samples accordingly; with -o FILE.lightgrid: learn for the cameras of all named frames, and write a "
-               "file instead of a frame");
+               "first trace rays to learn from where sky, suns and lamps reach the visible places, and aim light "
+               "samples accordingly; with -o FILE.lightgrid learn for the cameras of all named frames and write a file "
+               "instead of a frame");
   app.add_option("--lights", options.lights,
                  ".lightgrid file from --learn-lights, or a pattern: read it instead of learning for each frame")
       ->type_name("FILE");

@@ -44,7 +44,7 @@ struct IrradianceCacheRecord {
   float clearance_reach =
       0;  ///< m, > 0 or +inf: distance up to which clearance was measured; 0 without column_clearance
   std::array<std::uint8_t, 16>
-      clearance{};  ///< clearance by spoke, in 1/255 of clearance_reach; 0 without column_clearance
+  std::array<std::uint8_t, 16> clearance{};  ///< by spoke, in 1/255 of clearance_reach; 0 without
 
   bool operator==(const IrradianceCacheRecord&) const = default;
 };
@@ -104,9 +104,9 @@ struct IrradcacheFile {
   std::vector<IrradianceCacheRecord> records;
 };
 
-/// Reads and checks a file; "-" is standard input. Throws InputError "FILE: byte OFFSET: REASON; REMEDY" for every
-/// truncation, flipped bit and value out of range. An unknown identity is no error: header.identity.known() is then
-/// false, and the tool warns. Memory: 156 bytes per record and one block.
+/// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
+/// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known()
+/// is false, and the tool warns. Memory: 156 bytes per record and one block.
 IrradcacheFile load_irradcache(const std::string& path);
 
 /// Hash of the data without header and history (irradcache.md, section 7). Equal records in equal order have equal

@@ -17,7 +17,7 @@ constexpr std::size_t kEndBodySize = 8, kCellsInBlock = 1024,
                       kFixedSize = 24;     // of a record: 24 bytes and one float for each part
 constexpr std::uint32_t kMostParts = 256;  ///< across, and down
 
-/// Checks the values for both reader and writer: returns the fault, or "" if there is none.
+/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const LightgridHeader& h) {
   if (!(h.edge > 0) || !std::isfinite(h.edge)) return "edge is not a length";
   for (const std::uint32_t parts : h.parts)
@@ -52,11 +52,11 @@ std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_u
 
 bool is_share(float x) { return x >= 0 && x <= 1; }
 
-/// Checks cell after cell by the rules of lightgrid.md, section 3.
+/// The rules of lightgrid.md, section 3, for one cell after the other.
 class Checked {
  public:
   explicit Checked(std::size_t parts) : parts_(parts) {}
-  /// Adds a cell: returns the fault, or "" if the cell may follow the earlier ones.
+  /// "" if the cell may follow those before.
   std::string_view add(const LightgridCell& cell) {
     for (const std::int32_t x : cell.place)
       if (x < -LightgridCell::kFarthest || x > LightgridCell::kFarthest) return "place is more than 524286 from 0";

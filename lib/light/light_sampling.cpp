@@ -81,8 +81,8 @@ bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 poi
   return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
 }
 
-/// `u` is a stretched part of a float with 24 bits. Where the choice has used up these bits, bits of the other
-/// coordinate fill the lower digits of `u`.
+/// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
+/// up u.
 bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;

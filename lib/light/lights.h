@@ -90,8 +90,8 @@ class Lights {
   ~Lights();
   Lights(Lights&&) noexcept;
 
-  /// Sets the grid, which must outlive this object; nullptr removes it. From then on, sample() draws by the cell's
-  /// probabilities wherever the grid has a cell. The expectation does not change.
+  /// From now on, where the grid has a cell, samples are drawn by the cell's probabilities; nullptr: no longer. The
+  /// grid must outlive this object. The expectation does not change.
   void use(const LightGrid* grid);
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const;

@@ -115,10 +115,10 @@ constexpr ManualText kTexts[] = {
      "12.exr\n"
      "# From points alone: no records are placed, and there is more noise.\n"
      "frame-render room.glb --frame 12 --size 640x360 --points 12.irradpoints -o 12.exr\n"
-     "# Learn from where light comes through windows, once for the cameras of a segment; its frames read the file with "
+     "# Which way light comes through windows: learned once for the cameras of a segment, read by its frames with "
      "--lights.\n"
      "frame-render room.glb --frames 0-23 --size 640x360 --learn-lights -o 0000.lightgrid\n"
-     "# By paths, except for caustic light: photon-trace --kinds caustic.\n"
+     "# By paths, but for the light that mirrors and glass throw: photon-trace --kinds caustic.\n"
      "frame-render glass.glb --frame 12 --size 640x360 --photons 12.photons -o 12.exr\n"
      "# A reference in two independent halves, so that its noise is known.\n"
      "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",

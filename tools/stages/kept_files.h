@@ -19,18 +19,18 @@ struct FramePoints {
   std::vector<float> high_shares;  ///< by point, from photonmap-split; empty: points are not divided
   std::string high_hash;           ///< hash of high_shares; "" without
 };
-/// Reads the points. `high`: the file of the high part; `file` is then the low part. "": `file` holds all light.
+/// `high`: the high part, `file` then being the low part; "": `file` holds all light.
 FramePoints read_frame_points(Tool& tool, const std::string& file, const std::string& high, const SceneFrame& frame);
 
-/// An empty set of kept records. If samples need more than an eighth of --max-memory, the remaining ones are stored
-/// in a file in the folder of `output`.
+/// An empty set of kept records. Samples beyond an eighth of --max-memory are stored in a file in the folder of
+/// `output`.
 KeptHemispheres nothing_kept(const Tool& tool, const std::string& output);
 
 /// Unit of stored distances in a segment, m: the diagonal of the scene over the segment.
 float sample_unit(const SceneFrame& frame);
 
-/// Writes the files of a range of frames in order. The first file is whole; overlays on it follow as long as they
-/// share at least half of their samples with it; then the next whole file.
+/// Writes the files of a range of frames in order: a whole file, then overlays of it as long as at least half of their
+/// samples are the whole file's; then again a whole file.
 class KeptFiles {
  public:
   /// Writes the samples of a frame. An `output` in another folder than the last whole file is whole, too.
