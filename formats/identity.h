@@ -12,8 +12,8 @@ namespace tempolux::formats {
 /// unknown. Camera, seed, options and version are never part of an identity.
 struct Identity {
   std::string static_geometry, moving_geometry, materials, lights, media;
-  int first_frame = 0,
-      last_frame = -1;  ///< first and last frame for which the file is valid; last < first: there is no identity
+  /// first and last frame for which the file is valid; last < first: there is no identity
+  int first_frame = 0, last_frame = -1;
 
   /// Only for photons: hash of the emission table with which paths were chosen. A reader of the photons does not need
   /// it. An update that replaces some of the paths needs the same table.

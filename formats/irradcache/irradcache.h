@@ -37,13 +37,12 @@ struct IrradianceCacheRecord {
   /// [W/m^3], with n_i and x_i the record's normal and position.
   std::array<std::array<float, 3>, 3> rotational{}, translational{};
   float radius = 1;  ///< m, > 0: the record is valid within this distance; clamped
-  float radius_unclamped =
-      1;                ///< m, >= 0: before clamping and before neighbours reduce it; +inf: no gather ray hit a surface
-  float influence = 0;  ///< W/m^2, >= 0: the largest change that movers can make; 0 without column_influence
+  /// m, >= 0: before clamping and before neighbours reduce it; +inf: no gather ray hit a surface
+  float radius_unclamped = 1;
+  float influence = 0;            ///< W/m^2, >= 0: the largest change that movers can make; 0 without column_influence
   std::array<float, 3> update{};  ///< W/m^2: the movers' change at this frame, may be < 0; 0 without column_update
-  float clearance_reach =
-      0;  ///< m, > 0 or +inf: distance up to which clearance was measured; 0 without column_clearance
-  std::array<std::uint8_t, 16>
+  /// m, > 0 or +inf: distance up to which clearance was measured; 0 without column_clearance
+  float clearance_reach = 0;
   std::array<std::uint8_t, 16> clearance{};  ///< by spoke, in 1/255 of clearance_reach; 0 without
 
   bool operator==(const IrradianceCacheRecord&) const = default;

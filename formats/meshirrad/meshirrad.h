@@ -27,11 +27,11 @@ struct MeshElement {
   float area = 0;                           ///< m^2
   std::uint32_t photons = 0;                ///< number of photons that arrived
   std::array<std::int64_t, 3> sums{};       ///< flux of the photons, R, G, B, in multiples of the header's unit
-  std::array<float, 3>
-      irradiance{};  ///< W/m^2, filtered, >= 0. In a file of counts [0] is the sum of squares, see squares()
+  /// W/m^2, filtered, >= 0. In a file of counts [0] is the sum of squares, see squares()
+  std::array<float, 3> irradiance{};
   std::uint16_t object = 0xffff;
-  std::uint8_t before = 0,
-               after = 0;  ///< in a file of windows: number of frames before and after this one from which photons come
+  /// in a file of windows: number of frames before and after this one from which photons come
+  std::uint8_t before = 0, after = 0;
 
   /// In a file of counts: sum over the photons of their squared luminance flux, in unit^2.
   double squares() const { return double(irradiance[0]); }
@@ -74,14 +74,14 @@ struct MeshirradHeader {
   std::string kinds = "indirect";  ///< kinds of the photons
   MeshHolds holds = MeshHolds::frame;
   bool jump = false;  ///< in a file of counts: true if light jumps between the frame before and this one
-  std::string filter =
-      "none";  ///< the filter that smoothed irradiance: none; or box, gaussian or bilateral, and its width in m
+  /// the filter that smoothed irradiance: none; or box, gaussian or bilateral, and its width in m
+  std::string filter = "none";
 };
 
 struct MeshirradFile {
   MeshirradHeader header;
-  std::vector<MeshElement>
-      elements;  ///< ascending by surface, triangle, side, cell; each side has all of its cells or none
+  /// ascending by surface, triangle, side, cell; each side has all of its cells or none
+  std::vector<MeshElement> elements;
 };
 
 /// Writes a file front to back, without seeking. Throws std::invalid_argument for a value out of the format's range,

@@ -28,8 +28,8 @@ inline constexpr std::size_t kPathKinds = 5;
 /// One photon: a packet of flux that arrived at a point. 32 bytes, the same in memory and on disk.
 struct Photon {
   std::array<float, 3> position{};  ///< m; world space minus the header's origin
-  std::array<float, 3>
-      flux{};  ///< W, linear Rec. 709; already divided by the number of light paths. Tentative photons: W m
+  /// W, linear Rec. 709; already divided by the number of light paths. Tentative photons: W m
+  std::array<float, 3> flux{};
   std::array<std::uint16_t, 2> normal{};  ///< octahedral: surface normal on the side at which the light arrived
   std::uint16_t object = 0xffff;          ///< id.object; 0xffff in a medium, or if unknown
   PathKind kind = PathKind::direct;
@@ -101,8 +101,8 @@ struct PhotonTotals {
   std::array<double, 3> stored_flux{};   ///< W: exact sum of the photons' flux, rounded once
   std::array<double, 3> emitted_flux{};  ///< W: flux of the lights
   std::array<double, 3> escaped_flux{};  ///< W: flux that left the scene
-  std::array<double, 3>
-      absorbed_flux{};  ///< W: flux absorbed at surfaces; Russian roulette changes it, but not its mean
+  /// W: flux absorbed at surfaces; Russian roulette changes it, but not its mean
+  std::array<double, 3> absorbed_flux{};
 
   bool operator==(const PhotonTotals&) const = default;
 };
