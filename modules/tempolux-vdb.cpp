@@ -157,8 +157,8 @@ class OpenFile : openvdb::io::Archive {
   }
 
   std::istream& file_;
-  openvdb::io::StreamMetadata::Ptr metadata_ =
-      std::make_shared<openvdb::io::StreamMetadata>();  ///< the stream refers to this object
+  /// the stream refers to this object
+  openvdb::io::StreamMetadata::Ptr metadata_ = std::make_shared<openvdb::io::StreamMetadata>();
 };
 
 /// The grid to read: by name, else "density", else the only density grid.

@@ -69,8 +69,8 @@ struct RadsamplesHeader {
 /// The content of a file.
 struct RadsamplesFile {
   RadsamplesHeader header;
-  std::vector<std::array<float, 3>>
-      point_light;  ///< W/m^2, all kinds together, at this frame: by point that anchors name
+  /// W/m^2, all kinds together, at this frame: by point that anchors name
+  std::vector<std::array<float, 3>> point_light;
   std::vector<RadsamplesRecord> records;
   std::vector<RadianceSample> samples;  ///< record after record; for an overlay including samples from the base
   std::vector<std::uint32_t> anchors;   ///< by sample; empty without the column

@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::size_t kChunk = 256;  ///< pixels
 constexpr float kMostSlices = 4096;  ///< along a ray
-constexpr float kMostAbove =
-    8;  ///< limit of the weight extinction / linear extinction, where a linear extinction is nearly 0 at a corner
-constexpr float kNothingLeft =
-    1e-30f;  ///< below this, light from behind adds nothing to a float; it also prevents a division by 0
+/// limit of the weight extinction / linear extinction, where a linear extinction is nearly 0 at a corner
+constexpr float kMostAbove = 8;
+/// below this, light from behind adds nothing to a float; it also prevents a division by 0
+constexpr float kNothingLeft = 1e-30f;
 
 /// A piece of a ray over which extinction is taken as linear.
 struct Slice {

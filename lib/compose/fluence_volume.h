@@ -57,8 +57,8 @@ inline constexpr float kPhotonsInFilter = 256;  ///< photons under a filter of a
 struct FluenceFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;
-  float width =
-      0;  ///< cells: half the box's edge, or the Gaussian's standard deviation; 0: so that about 256 photons count
+  /// cells: half the box's edge, or the Gaussian's standard deviation; 0: so that about 256 photons count
+  float width = 0;
   float range = 0.5f;  ///< bilateral filter: standard deviation of the difference in ln fluence
 };
 

@@ -9,8 +9,8 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kTurns =
-    8;  ///< updates in which each close hit is traced again once (table in docs/notebook/temporal.md)
+/// updates in which each close hit is traced again once (table in docs/notebook/temporal.md)
+constexpr std::uint64_t kTurns = 8;
 /// Largest change of an anchor's light, as a factor up or down, by which a cell is scaled and not traced again.
 constexpr float kLargestRatio = 2;
 

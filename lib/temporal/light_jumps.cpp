@@ -8,8 +8,9 @@ namespace tempolux {
 namespace {
 
 constexpr double kLeast = 1.0 / 16;  ///< smaller steps are hidden in the noise of the filtered irradiance
-constexpr double kStandsOut =
-    2;  ///< over the sum of the neighbouring steps: where motion starts or ends, one neighbour has the size of the step
+/// A jump is a step larger than this many times the sum of the neighbouring steps. Where motion starts or ends, one
+/// neighbouring step has the same size, so the start of a motion is no jump.
+constexpr double kStandsOut = 2;
 constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are compared
 
 /// Power of all lights, without textures, to compare two frames. Unit: W for lights given in W/sr or W/m^2/sr;

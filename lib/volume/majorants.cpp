@@ -63,8 +63,8 @@ std::string MajorantGrid::hash() const {
 MajorantWalk::MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length)
     : grid_(&grid), origin_(origin), begin_(0), end_(length) {
   if (grid.empty()) return;
-  constexpr float kAlong =
-      1e-30f;  // below this 1 / d overflows, and 0 x infinity is NaN; a ray does not advance along such an axis
+  // below this 1 / d overflows, and 0 x infinity is NaN; a ray does not advance along such an axis
+  constexpr float kAlong = 1e-30f;
   for (int a = 0; a < 3; ++a) {
     if (std::abs(direction[a]) < kAlong) {
       if (!(origin[a] >= grid.box_.lower[a] && origin[a] <= grid.box_.upper[a])) return;

@@ -20,8 +20,8 @@ constexpr std::uint64_t kMemory = 400u << 20;  ///< OpenVDB and its libraries ta
 constexpr std::uint64_t kExpansion = 64;
 constexpr std::uint64_t kSlowest = 10u << 20;  ///< bytes per second that the process must read at least
 constexpr std::size_t kMostTogether = 16;      ///< files read by one process, whose start then costs 3 ms per file
-constexpr std::uint64_t kMostAhead =
-    16u << 20;  ///< bytes of files read by one process; in memory up to kExpansion times as many
+/// bytes of files read by one process; in memory up to kExpansion times as many
+constexpr std::uint64_t kMostAhead = 16u << 20;
 /// Voxels. Within half of this distance from index 0, float32 resolves positions to 1/256 of a voxel.
 constexpr std::int32_t kFarStep = 1 << 16;
 

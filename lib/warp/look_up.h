@@ -44,8 +44,8 @@ struct WantedPoints {
 struct FoundPoints {
   std::array<LookUp, WantedPoints::kMost> result;
   std::array<Taps, WantedPoints::kMost> taps;
-  std::array<float, WantedPoints::kMost>
-      magnification;  ///< area of target pixels per area of the key's pixel (docs/methods/formulas.md)
+  /// area of target pixels per area of the key's pixel (docs/methods/formulas.md)
+  std::array<float, WantedPoints::kMost> magnification;
 };
 
 /// One key, seen from a target camera at another frame.

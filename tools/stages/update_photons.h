@@ -36,8 +36,8 @@ struct MapToUpdate {
   const PhotonOptions& options;
   const formats::PhotonHeader& header;  ///< of the map, if it were traced whole
   std::string output;                   ///< name of the new file
-  std::function<std::shared_ptr<const PhotonTracer>(int frame)>
-      tracer_at;  ///< the tracer for the smoke of another frame
+  /// the tracer for the smoke of another frame
+  std::function<std::shared_ptr<const PhotonTracer>(int frame)> tracer_at;
 };
 /// The previous map, kept in memory for the next frame of a range if it takes at most a quarter of the memory
 /// (--max-memory, or the machine's).
