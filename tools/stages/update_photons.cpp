@@ -152,7 +152,8 @@ void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArgu
     throw InputError("--update: say how many groups to trace again, --share 10% or --max-groups N");
   if (tool.common().volume.majorants.empty())
     throw InputError(
-        "--update: needs the --majorants of the segment (scene-plan writes state/majorants.FFFF): without them photons "
+        "--update: needs the --majorants of the segment (scene-plan writes state/FRAME-KEY.majorants): without them "
+        "photons "
         "look at "
         "other places in each frame");
 }
