@@ -117,21 +117,21 @@ void put_smoke(const std::vector<SmokePixel>& smoke, const Base& base, Image& im
   for (const char* name : kVolumeChannels)
     if (!image.find(name)) image.add(name);
   for (std::size_t p = 0; p < smoke.size(); ++p) {
-    const float left = base.attenuated ? 1 : smoke[p].left;
-    if (left != 1)
+    const float transmittance = base.attenuated ? 1 : smoke[p].transmittance;
+    if (transmittance != 1)
       for (Channel& channel : image.channels) {
         const char last = channel.name.back();
         const bool colour = !channel.values.empty() &&
                             (channel.name.size() == 1 || channel.name[channel.name.size() - 2] == '.') &&
                             (last == 'R' || last == 'G' || last == 'B') && !channel.name.starts_with("albedo");
-        if (colour) channel.values[p] *= left;
+        if (colour) channel.values[p] *= transmittance;
       }
     for (std::size_t c = 0; c < 3; ++c) {
       image.find(kVolumeChannels[c])->values[p] = smoke[p].light[int(c)];
       image.find(kColours[c])->values[p] += smoke[p].light[int(c)];
     }
     if (Channel* alpha = image.find("A"); alpha && !base.attenuated)
-      alpha->values[p] = 1 - left * (1 - alpha->values[p]);
+      alpha->values[p] = 1 - transmittance * (1 - alpha->values[p]);
   }
 }
 

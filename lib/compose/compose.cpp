@@ -19,14 +19,14 @@ constexpr float kMostSlices = 4096;  ///< along a ray
 /// limit of the weight extinction / linear extinction, where a linear extinction is nearly 0 at a corner
 constexpr float kMostAbove = 8;
 /// below this, light from behind adds nothing to a float; it also prevents a division by 0
-constexpr float kNothingLeft = 1e-30f;
+constexpr float kLeastTransmittance = 1e-30f;
 
 /// A piece of a ray over which extinction is taken as linear.
 struct Slice {
   float begin, length;  ///< m
   float tau;
-  float left;   ///< transmittance from its start to the eye
-  float slope;  ///< extinction at its end minus extinction at its start, 1/m
+  float transmittance;  ///< from its start to the eye
+  float slope;          ///< extinction at its end minus extinction at its start, 1/m
   float extinction(float t) const { return tau / length + slope * (t - 0.5f); }
   /// Position in the slice, 0 to 1, at which the optical depth from its start is `depth`: depth = length (extinction(0)
   /// t + slope t^2 / 2).
@@ -44,7 +44,7 @@ double finest_voxel(const Media& media) {
 }
 
 /// (1 - exp(-x)) / x.
-float mean_left(float x) { return x < 1e-4f ? 1 - x / 2 : -std::expm1(-x) / x; }
+float mean_transmittance(float x) { return x < 1e-4f ? 1 - x / 2 : -std::expm1(-x) / x; }
 
 /// Cuts the ray into slices where there may be a medium; optical depth by Gauss-Legendre quadrature with two points.
 void cut(const Media& media, const Ray& ray, float end, float step, std::vector<Slice>& slices) {
@@ -62,9 +62,9 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
       const float a = media.extinction(ray.origin + ray.direction * (begin + kGauss * each));
       const float b = media.extinction(ray.origin + ray.direction * (begin + (1 - kGauss) * each));
       const float depth = 0.5f * each * (a + b);
-      const auto left = float(std::exp(-tau));
-      if (left < kNothingLeft) return;
-      if (depth > 0) slices.push_back({begin, each, depth, left, (b - a) / (1 - 2 * kGauss)});
+      const auto transmittance = float(std::exp(-tau));
+      if (transmittance < kLeastTransmittance) return;
+      if (depth > 0) slices.push_back({begin, each, depth, transmittance, (b - a) / (1 - 2 * kGauss)});
       tau += double(depth);
     }
   };
@@ -111,12 +111,12 @@ Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight
   for (int k = 0; k < samples; ++k) {
     const float wanted = (float(k) + random.get1(0, Purpose::place)) / float(samples) * whole;
     // Samples ascend; the last slice takes the remainder from rounding.
-    while (at + 1 < slices.size() && passed + slices[at].left * -std::expm1(-slices[at].tau) <= wanted) {
-      passed += slices[at].left * -std::expm1(-slices[at].tau);
+    while (at + 1 < slices.size() && passed + slices[at].transmittance * -std::expm1(-slices[at].tau) <= wanted) {
+      passed += slices[at].transmittance * -std::expm1(-slices[at].tau);
       ++at;
     }
     const Slice& slice = slices[at];
-    const float share = std::clamp((wanted - passed) / slice.left, 0.0f, -std::expm1(-slice.tau));
+    const float share = std::clamp((wanted - passed) / slice.transmittance, 0.0f, -std::expm1(-slice.tau));
     const float within = slice.place_of(-std::log1p(-share));
     const Vec3 position = ray.origin + ray.direction * (slice.begin + within * slice.length);
     const float linear = slice.extinction(within),
@@ -142,11 +142,11 @@ SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight&
   double tau = 0;
   for (const Slice& slice : slices) {
     const Vec3 middle = ray.origin + ray.direction * (slice.begin + 0.5f * slice.length);
-    pixel.light += light.scattered(middle) * (slice.left * slice.length * mean_left(slice.tau));
+    pixel.light += light.scattered(middle) * (slice.transmittance * slice.length * mean_transmittance(slice.tau));
     tau += double(slice.tau);
   }
-  pixel.left = float(std::exp(-tau));
-  const auto whole = float(-std::expm1(-tau));  // 1 - left has only two digits if tau is 1e-6
+  pixel.transmittance = float(std::exp(-tau));
+  const auto whole = float(-std::expm1(-tau));  // 1 - transmittance has only two digits if tau is 1e-6
   if (options.sample_lights && whole > 0)
     pixel.light +=
         sampled_light(scene, media, light, ray, slices, whole, options.light_samples, random, sent_on, counts);
@@ -285,10 +285,10 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
         }
         const SmokePixel one = march(scene, *media, light, ray, end, step, options, random, slices, sent_on, own);
         sum.light += one.light;
-        sum.left += one.left;
+        sum.transmittance += one.transmittance;
       }
       if (!sent_on.empty()) sum.light += brought(*options.incoming, sent_on, own);
-      pixels[p] = {sum.light * (1 / float(options.samples)), sum.left / float(options.samples)};
+      pixels[p] = {sum.light * (1 / float(options.samples)), sum.transmittance / float(options.samples)};
     }
     const std::scoped_lock lock(joining);
     counts += own;

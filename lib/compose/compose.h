@@ -72,8 +72,8 @@ struct ComposeOptions {
 
 /// Smoke in front of a pixel.
 struct SmokePixel {
-  Rgb light{0.0f};  ///< radiance scattered towards the eye in front of the surface [W/m^2/sr]
-  float left = 1;   ///< transmittance, mean over the pixel
+  Rgb light{0.0f};          ///< radiance scattered towards the eye in front of the surface [W/m^2/sr]
+  float transmittance = 1;  ///< mean over the pixel
 };
 
 /// Smoke of all pixels, top row first. `depth`: the frame's Z channel (distance along the view axis), read only with

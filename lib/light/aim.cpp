@@ -107,23 +107,23 @@ Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Frame axes(Vec3(to * (1 / length(to))));
   const Vec3 direction =
       normalize(axes.to_world({float(across * std::cos(phi)), float(across * std::sin(phi)), float(1 - off)}));
-  return {direction, density_towards(from, direction, chosen)};
+  return {direction, pdf_towards(from, direction, chosen)};
 }
 
-double Aim::density_towards(Vec3 place, Vec3 direction) const {
-  return density_towards(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
+double Aim::pdf_towards(Vec3 place, Vec3 direction) const {
+  return pdf_towards(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
 }
 
 /// A direction meets the chosen sphere by construction, so rounding at the rim is ignored for that sphere. `place` is
 /// relative to the scene's centre.
-double Aim::density_towards(Vec3d place, Vec3 direction, std::size_t chosen) const {
-  double density = 0;
+double Aim::pdf_towards(Vec3d place, Vec3 direction, std::size_t chosen) const {
+  double pdf = 0;
   for (std::size_t k = 0; k < given_; ++k) {
     const Vec3d to = discs_[k].centre - place, aside = cross(to, Vec3d(direction));
     if (k == chosen || (dot(to, Vec3d(direction)) > 0 && dot(aside, aside) < discs_[k].radius * discs_[k].radius))
-      density += discs_[k].share / (given_share_ * 2 * M_PI * one_minus_cos(discs_[k].radius, to));
+      pdf += discs_[k].share / (given_share_ * 2 * M_PI * one_minus_cos(discs_[k].radius, to));
   }
-  return density;
+  return pdf;
 }
 
 }  // namespace tempolux

@@ -180,21 +180,21 @@ float Bsdf::multiple_share(const Reflection& r) {
 }
 
 /// pdf of event S [1/sr] without P(S): visible normals for single reflection, the cosine for multiple reflection.
-float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
+float Bsdf::pdf_given_specular(Vec3 wi, Vec3 wo, const Reflection& r) const {
   const float share = multiple_share(r);
   return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
 }
 
 float Bsdf::gloss_density(Vec3 wi, const Direction& wo) const {
   const bool gloss = specular_ && !delta_ && !(transmission_ > 0) && wi.z > 0 && wo.w.z > 0;
-  return gloss ? specular_density(wi, wo.w, wo.reflected) : std::numeric_limits<float>::infinity();
+  return gloss ? pdf_given_specular(wi, wo.w, wo.reflected) : std::numeric_limits<float>::infinity();
 }
 
 float Bsdf::pdf_specular(Vec3 wi, const Direction& wo) const {
-  float density = rough_ && wi.z != 0 && wo.w.z > 0 ? transmission_ * rough_->pdf(wi, wo.w) : 0;
-  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.w.z > 0)) return density;
-  return density +
-         (1 - diffuse_probability(wo.reflected)) * specular_density(wi, wo.w, wo.reflected) * (1 - transmission_);
+  float pdf = rough_ && wi.z != 0 && wo.w.z > 0 ? transmission_ * rough_->pdf(wi, wo.w) : 0;
+  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.w.z > 0)) return pdf;
+  return pdf +
+         (1 - diffuse_probability(wo.reflected)) * pdf_given_specular(wi, wo.w, wo.reflected) * (1 - transmission_);
 }
 
 void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
@@ -205,7 +205,7 @@ void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const
   s.weight = rho_;  // f_D cos / pdf_D; c = 1
   if (!specular_) return;
   s.weight *= diffuse_coupling(s.wi.z) * coupling(r) / p;
-  if (!delta_) s.pdf_solid_angle += (1 - p) * specular_density(s.wi, wo, r);
+  if (!delta_) s.pdf_solid_angle += (1 - p) * pdf_given_specular(s.wi, wo, r);
 }
 
 void Bsdf::sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const {
@@ -225,9 +225,9 @@ void Bsdf::sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, S
     s.wi = normalize(h * (2 * dot(wo, h)) - wo);
   }
   if (!(s.wi.z > 0)) return;  // reflected into the surface: absorbed
-  const float density = p * specular_density(s.wi, wo, r);
-  s.weight = specular(s.wi, wo, reflection(s.wi.z).lost, r.lost) * (s.wi.z / density);
-  s.pdf_solid_angle = density + (1 - p) * pdf_hemisphere_cos(s.wi.z);
+  const float pdf = p * pdf_given_specular(s.wi, wo, r);
+  s.weight = specular(s.wi, wo, reflection(s.wi.z).lost, r.lost) * (s.wi.z / pdf);
+  s.pdf_solid_angle = pdf + (1 - p) * pdf_hemisphere_cos(s.wi.z);
 }
 
 void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
@@ -250,10 +250,10 @@ void Bsdf::sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) co
   s.wi = rough_->sample(wo.w, u_lobe, u);
   if (s.wi.z == 0) return;  // lost at the wrong side of the surface
   s.transmitted = s.wi.z < 0;
-  const float density = pdf_specular(s.wi, wo);
-  if (!(density > 0)) return;
-  s.weight = eval_specular(along(s.wi), wo) * (std::abs(s.wi.z) / density);
-  s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
+  const float pdf = pdf_specular(s.wi, wo);
+  if (!(pdf > 0)) return;
+  s.weight = eval_specular(along(s.wi), wo) * (std::abs(s.wi.z) / pdf);
+  s.pdf_solid_angle = pdf + pdf_diffuse(s.wi, wo);
 }
 
 Bsdf::Sample Bsdf::sample(const Direction& wo, float u_lobe, Vec2 u) const {
@@ -271,9 +271,9 @@ Bsdf::Sample Bsdf::sample(const Direction& wo, float u_lobe, Vec2 u) const {
   s = sample_opaque(wo, std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_)), u);
   s.pdf_solid_angle *= 1 - transmission_;
   if (rough_ && !s.diffuse && s.pdf_solid_angle > 0) {  // the lobes of event S overlap
-    const float density = pdf_specular(s.wi, wo);
-    s.weight = density > 0 ? eval_specular(along(s.wi), wo) * (s.wi.z / density) : Rgb(0.0f);
-    s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
+    const float pdf = pdf_specular(s.wi, wo);
+    s.weight = pdf > 0 ? eval_specular(along(s.wi), wo) * (s.wi.z / pdf) : Rgb(0.0f);
+    s.pdf_solid_angle = pdf + pdf_diffuse(s.wi, wo);
   } else if (rough_ && s.diffuse) {
     s.pdf_solid_angle += transmission_ * rough_->pdf(s.wi, wo.w);
   }

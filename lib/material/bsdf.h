@@ -140,7 +140,7 @@ class Bsdf {
   float diffuse_probability(const Reflection& r) const;
   static float multiple_share(const Reflection& r);
   Rgb specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const;
-  float specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const;
+  float pdf_given_specular(Vec3 wi, Vec3 wo, const Reflection& r) const;
   void sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const;
   void sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const;
   Rgb eval_opaque(const Direction& wi, const Direction& wo) const;

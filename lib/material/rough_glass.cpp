@@ -51,7 +51,7 @@ float RoughGlass::mean_loss(bool behind) const {
 
 /// pdf [1/sr] of a direction on one side: cos = sqrt(spread^2 ((1 + 1/spread^2)^u - 1)) for u in [0, 1), with uniform
 /// azimuth.
-float RoughGlass::multiple_density(float cos_i) const {
+float RoughGlass::multiple_pdf(float cos_i) const {
   return cos_i * kInvPi / ((cos_i * cos_i + spread2_) * log_spread_);
 }
 
@@ -86,7 +86,7 @@ float RoughGlass::eval(Vec3 wi, Vec3 wo) const {
 
 float RoughGlass::pdf(Vec3 wi, Vec3 wo) const {
   const float several = loss(false, wo.z), share = wi.z < 0 ? share_behind_ : 1 - share_behind_;
-  return (1 - several) * single(wi, wo).pdf + several * share * multiple_density(std::abs(wi.z));
+  return (1 - several) * single(wi, wo).pdf + several * share * multiple_pdf(std::abs(wi.z));
 }
 
 Vec3 RoughGlass::sample(Vec3 wo, float u_lobe, Vec2 u) const {

@@ -45,7 +45,7 @@ class RoughGlass {
   Pair single(Vec3 wi, Vec3 wo) const;
   float loss(bool behind, float cos_theta) const;
   float mean_loss(bool behind) const;
-  float multiple_density(float cos_i) const;
+  float multiple_pdf(float cos_i) const;
 
   GlassLoss loss_;  ///< for a solid
   GgxAlbedo wall_;  ///< for a thin wall: the albedo of a mirror
@@ -54,7 +54,7 @@ class RoughGlass {
   bool thin_;
   int side_;                    ///< side of wo: 0 outside, 1 inside
   float share_behind_;          ///< share of f_ms on the other side
-  float spread2_, log_spread_;  ///< spread^2 and log(1 + 1 / spread^2) of multiple_density()
+  float spread2_, log_spread_;  ///< spread^2 and log(1 + 1 / spread^2) of multiple_pdf()
 };
 
 }  // namespace tempolux

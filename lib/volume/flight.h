@@ -93,18 +93,18 @@ float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, fl
   constexpr float kRouletteBelow = 0.1f;
   Flight flight(media.majorants(), origin, direction, length);
   Tentative t;
-  float left = 1;
+  float transmittance = 1;
   for (std::uint32_t k = 0;; ++k) {
     const FlightNumbers numbers(bits(k));
-    if (!flight.next(numbers.depth, t)) return left;
-    const float before = left;
-    left *= std::max(0.0f, 1 - media.extinction(origin + direction * t.distance) / t.majorant);
-    if (left >= kRouletteBelow) continue;
-    // Above the threshold the estimate becomes a tenth with probability left / threshold; once below, it is reduced by
-    // this step's share only.
+    if (!flight.next(numbers.depth, t)) return transmittance;
+    const float before = transmittance;
+    transmittance *= std::max(0.0f, 1 - media.extinction(origin + direction * t.distance) / t.majorant);
+    if (transmittance >= kRouletteBelow) continue;
+    // Above the threshold the estimate becomes a tenth with probability transmittance / threshold; once below, it is
+    // reduced by this step's share only.
     const float threshold = std::min(before, kRouletteBelow);
-    if (!(numbers.accept * threshold < left)) return 0;
-    left = threshold;
+    if (!(numbers.accept * threshold < transmittance)) return 0;
+    transmittance = threshold;
   }
 }
 
