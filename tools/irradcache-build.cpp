@@ -107,7 +107,7 @@ void add_options(tools::Tool& tool, Options& options) {
          "--dynamic", options.dynamic,
          "with --update: .photons file of this frame from photon-trace --map dynamic. For records the files of earlier "
          "frames may follow: where movers changed the light in those frames, records are gathered anew, too")
-      ->type_name("FILE...");
+      ->type_name("FILE");
   tools::influence_options(tool, options.influence);
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
       ->capture_default_str()

@@ -64,9 +64,10 @@ class Aim {
  private:
   struct Disc {
     Vec3d centre;  // relative to the scene sphere's centre
-    double radius, below, share,
-        // sum of the earlier shares; own share; share R^2 / r^2. The factor 1 - kUniform is included in all three
-        gain;
+    double radius;
+    double below;  // probability of the scene's whole disc and of all earlier discs: kUniform + sum of their shares
+    double share;  // probability of this disc
+    double gain;   // share R^2 / r^2 with the scene's radius R: term of the disc in p pi R^2 (Start::flux)
   };
   void add(Vec3d centre, double radius, double share);
   double pdf_towards(Vec3d place, Vec3 direction, std::size_t chosen) const;

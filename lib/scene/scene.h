@@ -170,10 +170,12 @@ struct Node {
 /// One animated property: values at increasing times.
 struct AnimationTrack {
   enum class Path {
+    // of a node
     translation,
     rotation,
     scale,
-    weights,  // of a node
+    weights,
+    // of a material
     base_color,
     alpha_cutoff,
     metallic,
@@ -183,13 +185,15 @@ struct AnimationTrack {
     specular,
     specular_color,
     ior,
-    transmission,  // of a material
+    transmission,
+    // of a light
     light_color,
     light_intensity,
     inner_cone,
-    outer_cone,  // of a light
+    outer_cone,
+    // of a camera
     yfov,
-    ymag  // of a camera
+    ymag
   };
   enum class Interpolation { linear, step, cubic_spline };
   int target = 0;  ///< index of the node, material, light or camera
