@@ -341,8 +341,8 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   kept.point_light.clear();
 }
 
-/// Fills the store with the kept records. A record begins to fade if the records before it weigh by a whole record more
-/// than when it was placed.
+/// Fills the store with the kept records. A record begins to fade if at its place the sum of the weights of all earlier
+/// records that do not fade is larger by 1 than when the record was placed.
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = result_of(k.record);

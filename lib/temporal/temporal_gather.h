@@ -82,8 +82,8 @@ class TemporalGather {
   /// record's own random numbers.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
   /// Puts the kept records into a store and places new records where the kept ones do not cover what the camera sees;
-  /// new records are kept, too. After a change a record fades out over four frames if the records before it weigh by a
-  /// whole record more than when it was placed.
+  /// new records are kept, too. After a change a record becomes superfluous if at its place the sum of the weights of
+  /// all earlier records is larger by 1 than when the record was placed. It then fades out over four frames.
   void place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store,
              TemporalCounts& counts, const std::function<void(double)>& progress = {}) const;
 
