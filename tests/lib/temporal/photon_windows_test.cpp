@@ -71,7 +71,7 @@ TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   }
 }
 
-/// Light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save
+/// algorithms.md 2.3: light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save
 /// 12 and 29 times the photons at best. Asked for are 10 and 20. 2000 estimates: the ratio of two mean squares has a
 /// standard error of sqrt(2 x 2 / 2000) = 4.5 %.
 TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
