@@ -39,8 +39,8 @@ struct PathsHeader {
 };
 inline constexpr std::size_t kMostIntervals = 64;
 
-/// The interval that holds `frame`, which lies in first .. last: floor((frame - first) n / (last - first + 1)) with n
-/// = interval_count.
+/// The interval that holds `frame`, which lies in first .. last:
+///     floor((frame - first) interval_count / (last - first + 1))
 std::size_t interval_of(int frame, int first, int last, std::size_t interval_count);
 
 /// Writes one .paths stream front to back, without seeking, so the output may be a pipe. Throws std::invalid_argument

@@ -60,8 +60,9 @@ double shared_exposure_stops(const ComparedInputs& inputs);
 JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const VisionOptions& options,
                         const std::string& name);
 
-/// The probability by pixel that a viewer sees an error `error` of a picture: compares picture + error / 2 with picture
-/// - error / 2, at the picture's automatic exposure. Planes are R, G, B; pixels where `counted` is 0 have no error.
+/// The probability by pixel that a viewer sees the error `error` of a picture. It is the probability to distinguish
+///     picture + error / 2  from  picture - error / 2
+/// at the picture's automatic exposure. Planes are R, G, B; pixels where `counted` is 0 have no error.
 std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture,
                                      const std::array<std::vector<float>, 3>& error,
                                      const std::vector<std::uint8_t>& counted, const PixelFlow& flow,

@@ -21,9 +21,9 @@ struct ChannelGrid {
 
   ChannelGrid(int width, int height);
   std::size_t padded_count() const { return std::size_t(padded_width) * std::size_t(padded_height); }
-  /// Distance of a band's samples in pixels. The band's upper edge is at most the samples' Nyquist frequency, 1 / (2
-  /// step) c/px, or step is 1. (Every second pixel for bands 1 and 2, which complex samples of one orientation allow,
-  /// would be a fifth faster, but the threshold of a dot would vary by 19 % with its position.)
+  /// Distance of a band's samples in pixels: 1, or so that the band's upper edge is at most the samples' Nyquist
+  /// frequency of 1 / (2 step) c/px. (Every second pixel for bands 1 and 2, which complex samples of one orientation
+  /// allow, would be a fifth faster, but the threshold of a dot would vary by 19 % with its position.)
   static int step(int band);
   /// Columns of a band's samples inside the picture, and one more if there is one.
   int columns(int band) const;

@@ -6,8 +6,8 @@
 
 namespace tempolux {
 
-/// x - r per channel, signed; 0 where pixels do not count; r is the mean of the halves. Channels are R, G, B for a
-/// colour layer, Y for a single channel, else the layer's suffixes.
+/// The signed difference x - r per channel; x is the frame, r the reference or the mean of its halves. 0 where pixels
+/// do not count. Channels are R, G, B for a colour layer, Y for a single channel, else the layer's suffixes.
 Image difference_image(const Compared& pair);
 
 /// The scale of a difference picture: the smallest of 1, 2, 5 x 10^k that is at least the 99th percentile of |d|, where

@@ -89,8 +89,8 @@ void add_errors(ErrorSums& total, const ErrorSums& frame);
 /// Computes figures from sums; objects of fewer than min_object_pixels pixels are marked.
 FrameError figures_of(const ErrorSums& sums, std::uint64_t min_object_pixels);
 
-/// RMS of the noise in the mean (a+b)/2 of two independent halves a and b of one image, from their comparison with a as
-/// x and b as r: RMS(a-b)/2, since the variance of a-b is four times the variance of the mean.
+/// RMS of the noise in the mean (a+b)/2 of two independent halves a and b of one image: RMS(a-b)/2, since the variance
+/// of a-b is four times the variance of the mean. `a_against_b` is the comparison of the frame a with the reference b.
 SquaredFigure noise_of_mean(const FrameError& a_against_b);
 
 /// Flicker of a sequence: RMS over pixels and frames of (x_t - x_{t-1}) - (r_t - r_{t-1}), with halves as above; t-1 is

@@ -46,8 +46,8 @@ inline Vec3 sample_visible_normal(Vec3 wo, float alpha, Vec2 u) {
   return normalize(Vec3{h.x * alpha, h.y * alpha, std::max(h.z, 1e-7f)});
 }
 
-/// pdf [1/sr] of the direction wi = 2 (wo h) h - wo if h is drawn by sample_visible_normal: D G1(wo) / (4 cos_o) = D
-/// / (2 (cos_o + smith_root(cos_o))).
+/// pdf [1/sr] of the direction wi = 2 (wo h) h - wo if h is drawn by sample_visible_normal:
+///     D G1(wo) / (4 cos_o) = D / (2 (cos_o + smith_root(cos_o)))
 inline float pdf_reflected(Vec3 h, float cos_o, float alpha2) {
   return distribution(h, alpha2) * 0.5f / (cos_o + smith_root(cos_o, alpha2));
 }

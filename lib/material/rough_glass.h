@@ -22,8 +22,9 @@ namespace tempolux {
 ///
 /// Light that meets several microfacets, 1 - E, is distributed over both sides as by Kulla & Conty (2017):
 ///     f_ms(wi, wo) = share (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean(side of wi))).
-/// The share of the other side is b if seen from outside and d if seen from inside. Reciprocity requires b / d = n^2 (1
-/// - E_mean,in) / (1 - E_mean,out). b = 1 - F_mean as long as d is below 1. The rest is reflected. No light is lost.
+/// The share of the other side is b if seen from outside and d if seen from inside. Reciprocity requires
+///     b / d = n^2 (1 - E_mean,in) / (1 - E_mean,out).
+/// b = 1 - F_mean as long as d is below 1. The rest is reflected. No light is lost.
 class RoughGlass {
  public:
   /// index >= 1: of the solid. alpha in (0, 1]: of GGX. outside: true if wo is outside the solid; without effect for

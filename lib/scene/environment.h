@@ -17,10 +17,10 @@ struct EnvironmentOptions {
 };
 
 /// Radiance by direction, world space. The map is OpenEXR's latitude-longitude map (ImfEnvmap.h) about glTF's axes: the
-/// top row is +Y; from left to right the map shows -Z, +X, +Z (its middle), -X and -Z again, as seen from inside. Pixel
-/// (x, y) of a map of w x h pixels has its centre at longitude pi - 2 pi (x + 1/2) / w and latitude pi/2 - pi (y + 1/2)
-/// / h,
+/// top row is +Y; from left to right the map shows -Z, +X, +Z (its middle), -X and -Z again, as seen from inside. The
+/// centre of pixel (x, y) of a map of w x h pixels lies at
 ///
+///     longitude = pi - 2 pi (x + 1/2) / w,    latitude = pi/2 - pi (y + 1/2) / h,
 ///     direction = (sin(longitude + rotation) cos latitude, sin latitude, cos(longitude + rotation) cos latitude)
 ///
 /// Between centres radiance is bilinear in longitude and latitude; above the first row and below the last one it is the

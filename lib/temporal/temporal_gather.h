@@ -69,10 +69,10 @@ class TemporalGather {
   /// Updates the kept records to this frame. Records on deforming surfaces, or on surfaces without area at either
   /// frame, are removed. Another record changes if one of these holds for a cell; else it stays the same to the bit:
   /// - The cell's ray meets a box in which something has moved, or what it hit moves. The cell is traced again along
-  /// its old direction. A new direction would cause a bias: rays that hit the mover would be replaced, and rays that
-  /// miss it kept.
+  ///   its old direction. A new direction would cause a bias: rays that hit the mover would be replaced, and rays that
+  ///   miss it kept.
   /// - The light of the point that represents the cell's hit has changed. The cell's radiance is scaled by the ratio,
-  /// per channel; outside the range 1/2 to 2 the cell is traced again along its old direction.
+  ///   per channel; outside the range 1/2 to 2 the cell is traced again along its old direction.
   /// - No point represents the cell's hit (mirrors, corners). The cell is traced again along its old direction.
   /// If a record changes, two more sets of its cells are traced: cells whose radiance depends on several points (close
   /// hits) in turn, each in every eighth update; and cells drawn by age, which get a new ray in their stratum

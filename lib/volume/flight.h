@@ -19,8 +19,8 @@ namespace tempolux {
 /// Largest probability with which Russian roulette lets a path continue after a collision. It ends paths in lossless,
 /// unbounded smoke after a million collisions on average. A smaller value would be wrong: in lossless smoke of optical
 /// depth tau paths have up to tau^2 collisions, and ending most paths early leaves their light to a few paths that are
-/// never sampled. The value is not expensive either: paths that enter a convex body uniformly have a mean length of 4 V
-/// / S in it, however they are scattered (Blanco and Fournier 2003).
+/// never sampled. The value is not expensive either: paths that enter a convex body uniformly have a mean length in it
+/// of 4 (volume / surface area), however they are scattered (Blanco and Fournier 2003).
 inline constexpr float kLargestSurvivalInMedia = 0.999999f;
 
 /// The random numbers of one step, from 64 random bits.
