@@ -107,16 +107,16 @@ Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Frame axes(Vec3(to * (1 / length(to))));
   const Vec3 direction =
       normalize(axes.to_world({float(across * std::cos(phi)), float(across * std::sin(phi)), float(1 - off)}));
-  return {direction, pdf_towards(from, direction, chosen)};
+  return {direction, pdf_solid_angle(from, direction, chosen)};
 }
 
-double Aim::pdf_towards(Vec3 place, Vec3 direction) const {
-  return pdf_towards(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
+double Aim::pdf_solid_angle(Vec3 place, Vec3 direction) const {
+  return pdf_solid_angle(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
 }
 
 /// A direction meets the chosen sphere by construction, so rounding at the rim is ignored for that sphere. `place` is
 /// relative to the scene's centre.
-double Aim::pdf_towards(Vec3d place, Vec3 direction, std::size_t chosen) const {
+double Aim::pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const {
   double pdf = 0;
   for (std::size_t k = 0; k < given_; ++k) {
     const Vec3d to = discs_[k].centre - place, aside = cross(to, Vec3d(direction));

@@ -50,14 +50,14 @@ class Aim {
   /// A direction from a place outside all given spheres into one of them. The sphere is chosen by weight; the direction
   /// is uniform over the solid angle that the sphere covers.
   struct Way {
-    Vec3 direction;  ///< unit
-    double pdf = 0;  ///< by solid angle [1/sr]; sums over all spheres that lie in this direction
+    Vec3 direction;              ///< unit
+    double pdf_solid_angle = 0;  ///< [1/sr]; sums over all spheres that lie in this direction
   };
   /// u.x chooses the sphere and, stretched, is the first coordinate in its cone. Must not be called if empty() or
   /// holds(place).
   Way towards(Vec3 place, Vec2 u) const;
-  /// Density [1/sr] with which towards() gives this direction (unit).
-  double pdf_towards(Vec3 place, Vec3 direction) const;
+  /// pdf [1/sr] with which towards() gives this direction (unit).
+  double pdf_solid_angle(Vec3 place, Vec3 direction) const;
   /// share of the bounces outside the spheres that go towards a sphere: docs/methods/aim.md
   static constexpr float kTowards = 0.5f;
 
@@ -70,7 +70,7 @@ class Aim {
     double gain;   // share R^2 / r^2 with the scene's radius R: term of the disc in p pi R^2 (Start::flux)
   };
   void add(Vec3d centre, double radius, double share);
-  double pdf_towards(Vec3d place, Vec3 direction, std::size_t chosen) const;
+  double pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const;
   std::vector<Disc> discs_;  ///< the given spheres come first
   std::size_t given_ = 0;
   double given_share_ = 0;  ///< of all discs

@@ -365,9 +365,9 @@ float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, st
   if (random.get1(bounce, Purpose::scatter, 1) < Aim::kTowards) {
     const Aim::Way way = aim.towards(position, random.get2(bounce, Purpose::scatter, 2));
     travel = way.direction;
-    towards = way.pdf;
+    towards = way.pdf_solid_angle;
   } else {
-    towards = aim.pdf_towards(position, travel);
+    towards = aim.pdf_solid_angle(position, travel);
   }
   const double cosine = double(std::max(0.0f, dot(travel, normal))) / M_PI;
   return float(cosine / (double(1 - Aim::kTowards) * cosine + double(Aim::kTowards) * towards));

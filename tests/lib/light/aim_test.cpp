@@ -142,7 +142,7 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
   const double far = length(Vec3d(place) - Vec3d{10, 10, -5});
   for (int i = 0; i < 1000; ++i) {
     const Aim::Way way = one.towards(place, PathRandom(3, std::uint64_t(i)).get2(0, Purpose::test));
-    EXPECT_NEAR(way.pdf * solid_angle(4, far), 1, 1e-6);
+    EXPECT_NEAR(way.pdf_solid_angle * solid_angle(4, far), 1, 1e-6);
     EXPECT_NEAR(length(way.direction), 1, 1e-6);
     const Vec3 to = Vec3{10, 10, -5} - place;
     EXPECT_LE(length(cross(to, way.direction)), 4 * (1 + 1e-5f));
@@ -151,8 +151,8 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
   int other = 0;  // ways at a rim, where rounding decides
   const Estimate angle = estimate(1 << 16, [&](const auto& u) {
     const Aim::Way way = two.towards(place, {float(u[0]), float(u[1])});
-    other += std::abs(two.pdf_towards(place, way.direction) / way.pdf - 1) > 1e-4;
-    return 1 / way.pdf;
+    other += std::abs(two.pdf_solid_angle(place, way.direction) / way.pdf_solid_angle - 1) > 1e-4;
+    return 1 / way.pdf_solid_angle;
   });
   EXPECT_NEAR(angle.mean, solid_angle(3, 20), 4 * angle.error);
   EXPECT_LT(other, 64);
