@@ -21,7 +21,8 @@ void refuse_bad(const RadsamplesFile& file) {
   for (std::size_t i = 0; i < file.records.size(); ++i)
     if (const std::string_view fault = fault_of(file.records[i]); !fault.empty()) refuse("record", i, fault);
   if (file.kept_from.size() != (file.header.base_name.empty() ? 0 : file.records.size()))
-    refuse("records", file.kept_from.size(), "are not told from the base's");
+    refuse("kept_from", file.kept_from.size(),
+           "is a wrong number of entries: an overlay has one for each record, any other file none");
 }
 
 Format format_of(const RadsamplesHeader& header) {

@@ -90,7 +90,7 @@ std::string quality_text(const Comparison& comparison) {
                 viewing.display.name.c_str(), viewing.display.peak, viewing.display.pixels_per_degree,
                 viewing.exposure_stops, viewing.gaze == vision::Gaze::track ? "track" : "fixed",
                 viewing.frames_per_second) +
-         (comparison.flow.empty() ? "no flow: everything stands still" : "flow " + comparison.flow) + "\n";
+         (comparison.flow.empty() ? "no flow: judged as a still picture" : "flow " + comparison.flow) + "\n";
 }
 
 }  // namespace
