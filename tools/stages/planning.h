@@ -29,7 +29,8 @@ class PlanFolder {
   Inputs& inputs() { return inputs_; }
   /// True if the folder's plan is of this wish and none of its inputs has changed.
   bool up_to_date(const std::string& wish);
-  /// The decisions for a segment: from an earlier plan with the same key, else from `decide`; they are then kept.
+  /// The decisions for a segment: those of an earlier plan with the same key, else those of `decide`, which are stored
+  /// for later plans.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
   /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before name.
   void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history);
