@@ -6,6 +6,7 @@ kitchen: 2.2 m wide, two window openings, sun and sky, glossy floor, glass bottl
 garage:  one lamp 8 cm below the ceiling, shelves full of boxes, a door ajar, a ball that rolls.
 spheres: one small lamp, nine spheres: rough, glossy, metal, mirror, glass smooth and rough; one hops.
 
+A word `matte` behind: surfaces that are neither metal, glass nor lamp get a Diffuse BSDF of their colour, which Cycles and glTF agree on.
 Frames 1 to 24. Then docs/from-blender.md: export with pipelines/blender/tempolux_export.py, or by Blender's own glTF exporter.
 """
 import math
@@ -286,8 +287,20 @@ def spheres():
     camera((1.9, .3, 1.7), (2.05, 2.6, .45), 22, dolly=(.2, .1, 0))
 
 
+def be_matte():
+    for made in bpy.data.materials:
+        tree = made.node_tree
+        old = tree.nodes["Principled BSDF"]
+        if old.inputs["Metallic"].default_value > 0 or old.inputs["Transmission"].default_value > 0:
+            continue
+        new = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        new.inputs["Color"].default_value = old.inputs["Base Color"].default_value
+        tree.links.new(new.outputs["BSDF"], tree.nodes["Material Output"].inputs["Surface"])
+        tree.nodes.remove(old)
+
+
 def main():
-    name, path = sys.argv[sys.argv.index("--") + 1:]
+    name, path, *matte = sys.argv[sys.argv.index("--") + 1:]
     global scene
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -295,6 +308,8 @@ def main():
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 320, 180, 100
     scene.render.engine = "CYCLES"
     {"kitchen": kitchen, "garage": garage, "spheres": spheres}[name]()
+    if matte == ["matte"]:
+        be_matte()
     bpy.ops.wm.save_as_mainfile(filepath=path)
 
 
