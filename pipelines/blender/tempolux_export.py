@@ -50,6 +50,17 @@ class Shot:
         return range(self.scene.frame_start, self.scene.frame_end + 1)
 
 
+def instanced(scene):
+    """Objects of collections that are instanced, which the scene's own list does not have."""
+    found, groups = {}, [item.instance_collection for item in scene.objects if item.instance_collection]
+    while groups:
+        for item in groups.pop().all_objects:
+            if item not in found:
+                found[item] = True
+                groups += [item.instance_collection] if item.instance_collection else []
+    return [item for item in found if item.name not in scene.objects]
+
+
 # ---- motion -----------------------------------------------------------------------------------------------
 
 def is_driven(item):
@@ -301,9 +312,8 @@ def nodes_before(socket):
 
 def keep_materials(shot):
     """Every material gets a Principled shader that the exporter can write; what it cannot write is named."""
-    used = {slot.material for item in shot.scene.objects if not item.hide_render for slot in item.material_slots if slot.material}
-    groups = {item.instance_collection for item in shot.scene.objects if item.instance_collection}
-    used |= {slot.material for group in groups for item in group.all_objects for slot in item.material_slots if slot.material}
+    used = {slot.material for item in [*shot.scene.objects, *instanced(shot.scene)] if not item.hide_render
+            for slot in item.material_slots if slot.material}
     for material in sorted((m for m in used if m.use_nodes), key=lambda m: m.name):
         shader = principled(shot, material)
         for socket in shader.inputs if shader else ():
@@ -347,7 +357,7 @@ def find_solid_glass(shot):
     chord of a body, 4 volume / area (Cauchy), which viewers without refraction use. Glass of open meshes stays a thin sheet."""
     solid, sheets = {}, {}
     graph = bpy.context.evaluated_depsgraph_get()
-    for item in shot.scene.objects:
+    for item in [*shot.scene.objects, *instanced(shot.scene)]:
         glass = {slot.material.name for slot in item.material_slots if slot.material and transmission_of(slot.material) > 0}
         if not glass or item.hide_render or item.type not in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
             continue
@@ -395,6 +405,10 @@ def list_losses(shot):
         curves = item.animation_data.action.fcurves if item.animation_data and item.animation_data.action else []
         if any(curve.data_path in ("hide_render", "hide_viewport") for curve in curves):
             shot.note(f"{item.name}: being there or not is not exported; scale it to 0 instead")
+    for item in instanced(shot.scene):
+        if item.type == "LIGHT" and (item.data.type == "AREA" or item.data.type == "POINT" and item.data.shadow_soft_size > 0):
+            shot.note(f"{item.name}: this lamp in an instanced collection " + ("is not exported" if item.data.type == "AREA" else "has no radius")
+                      + "; use Object > Apply > Make Instances Real")
     for material in bpy.data.materials:
         tree = material.node_tree
         if material.users and tree and tree.animation_data and tree.animation_data.action:

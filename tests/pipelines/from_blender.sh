@@ -9,6 +9,7 @@ blender -b --factory-startup "$work/shot.blend" -P pipelines/blender/tempolux_ex
 grep -q "No module named 'numpy'" "$work/log" && { echo "Blender's glTF exporter needs python3-numpy"; exit 77; }
 [ -f "$work/shot.glb" ] || bad "$(tail -3 "$work/log")"
 grep -qF 'material Noisy: Base Color by Noise Texture is not exported' "$work/log" || bad "a colour by nodes is lost in silence: $(cat "$work/log")"
+grep -qF 'Inner: this lamp in an instanced collection is not exported' "$work/log" || bad "a lamp in a collection is lost in silence: $(cat "$work/log")"
 grep -q INFO "$work/log" && bad "the exporter's own words: $(grep -m1 INFO "$work/log")"
 line="make -f Makefile.example SCENE=$work/shot.glb FRAMES=3-6 SIZE=1920x1080 OUT=shot QUALITY=draft SKY=1,1.2,1.6 'TIME=--fps 30'"
 grep -qxF "$line" "$work/log" || bad "does not print $line: $(grep make "$work/log")"

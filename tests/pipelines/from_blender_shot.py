@@ -57,6 +57,15 @@ for k, kind in enumerate((matte, chrome, solid, noisy)):
     bpy.context.object.data.materials.append(kind)
 bpy.ops.mesh.primitive_plane_add(size=.2, location=(0, 1.5, .5))
 bpy.context.object.data.materials.append(sheet)
+# Glass and a lamp in a collection that is instanced.
+group = bpy.data.collections.new("Group")
+for item in (bpy.data.objects["Cube Solid"], bpy.data.objects.new("Inner", bpy.data.lights["Panel"])):
+    for collection in item.users_collection:
+        collection.objects.unlink(item)
+    group.objects.link(item)
+holder = bpy.data.objects.new("Holder", None)
+holder.instance_type, holder.instance_collection = "COLLECTION", group
+scene.collection.objects.link(holder)
 # A strip that plays, and one that is muted, which Blender does not show.
 for name, mute in (("Cube Matte", False), ("Cube Chrome", True)):
     item = bpy.data.objects[name]
