@@ -81,4 +81,6 @@ if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each st
 fi
 ending makes "$goal" -C "$folder" || exit
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
+[ "$TOTAL$goal$film" != 0demo ] || echo "nothing has changed; look at $OUT/sheet.png"
+[ "$goal" != report ] || echo "look at $OUT/report/index.html"
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }

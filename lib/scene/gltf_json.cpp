@@ -308,7 +308,8 @@ std::size_t prune_value(Json& value, const std::set<std::string>& known, std::se
 Json parse_json(std::string_view text, const std::string& file) {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first != std::string_view::npos && text[first] != '{' && text[first] != '[')
-    throw InputError(file + ": is neither a .glb nor a .gltf file; export the scene as glTF 2.0");
+    throw InputError(
+        file + ": is neither a .glb nor a .gltf file; export the scene as glTF 2.0 (a .blend: docs/from-blender.md)");
   Counter counter;
   if (!Json::sax_parse(text.begin(), text.end(), &counter)) {
     const auto line =

@@ -6,7 +6,8 @@
 Written: shot.glb, and shot_world.exr where the world is more than one colour. Printed: what could not be kept, and the make line that
 renders the shot. What glTF or its exporter would lose is turned into what they keep, in a scene that is thrown away afterwards:
 
-- motion by constraints, drivers and bones becomes keys, one a frame; frames keep their numbers;
+- shaders other than Principled become the Principled shader that is like them; glass of closed bodies is solid;
+- motion by constraints, drivers, NLA strips and bones becomes keys, one a frame; frames keep their numbers;
 - area lamps become emitting meshes, point lamps with a radius small balls, of the radiance that Cycles gives them;
 - the world becomes an environment map, or a colour;
 - lamps keep Blender's watts (lighting mode Unitless: nothing is multiplied by 683);
@@ -21,6 +22,7 @@ import os
 import shlex
 import struct
 import sys
+import tempfile
 
 import bpy
 from mathutils import Matrix
@@ -48,12 +50,35 @@ class Shot:
         return range(self.scene.frame_start, self.scene.frame_end + 1)
 
 
+def instanced(scene):
+    """Objects of collections that are instanced, which the scene's own list does not have."""
+    found, groups = {}, [item.instance_collection for item in scene.objects if item.instance_collection]
+    while groups:
+        for item in groups.pop().all_objects:
+            if item not in found:
+                found[item] = True
+                groups += [item.instance_collection] if item.instance_collection else []
+    return [item for item in found if item.name not in scene.objects]
+
+
 # ---- motion -----------------------------------------------------------------------------------------------
 
 def is_driven(item):
-    """Does something other than keys of its own, or a plain parent, move it?"""
-    drivers = item.animation_data and item.animation_data.drivers
-    return bool(item.constraints) or bool(drivers) or (item.parent and item.parent_type not in ("OBJECT", "ARMATURE"))
+    """Does something other than keys of its own action, or a plain parent, move it?"""
+    motion = item.animation_data
+    strips = motion and item.type != "ARMATURE" and motion.nla_tracks
+    return (bool(item.constraints) or bool(motion and motion.drivers) or bool(strips)
+            or (item.parent and item.parent_type not in ("OBJECT", "ARMATURE")))
+
+
+def drop_muted_tracks(scene):
+    """The glTF exporter writes muted tracks as animations, too; Blender does not play them. (Its importer mutes all but one.)"""
+    for item in scene.objects:
+        for owner in (item, getattr(item.data, "shape_keys", None)):
+            motion = owner.animation_data if owner else None
+            for track in list(motion.nla_tracks) if motion else ():
+                if track.mute:
+                    motion.nla_tracks.remove(track)
 
 
 def sampled(shot, items):
@@ -225,6 +250,132 @@ def bake_world(shot):
     bpy.data.scenes.remove(stage)
 
 
+# ---- materials --------------------------------------------------------------------------------------------
+
+# Inputs of the Principled shader that stands for another: fixed values, and {its input: the other's}. glTF's exporter knows no other
+# shader: all else would become white metal.
+SHADERS = {
+    "BSDF_DIFFUSE": ({"Specular": 0, "Roughness": 1}, {"Base Color": "Color", "Normal": "Normal"}),
+    "BSDF_GLOSSY": ({"Metallic": 1}, {"Base Color": "Color", "Roughness": "Roughness", "Normal": "Normal"}),
+    "BSDF_GLASS": ({"Transmission": 1}, {"Base Color": "Color", "Roughness": "Roughness", "IOR": "IOR", "Normal": "Normal"}),
+    "BSDF_REFRACTION": ({"Transmission": 1}, {"Base Color": "Color", "Roughness": "Roughness", "IOR": "IOR", "Normal": "Normal"}),
+    "EMISSION": ({"Base Color": (0, 0, 0, 1), "Specular": 0, "Roughness": 1}, {"Emission": "Color", "Emission Strength": "Strength"}),
+}
+WRITTEN = {"TEX_IMAGE", "SEPRGB", "SEPARATE_COLOR", "NORMAL_MAP", "VERTEX_COLOR", "ATTRIBUTE", "RGB", "VALUE", "MIX", "MIX_RGB", "MATH",
+           "REROUTE"}   # nodes that the exporter of Blender 3.4 can follow
+LEFT_OUT = ("Subsurface", "Anisotropic", "Specular Tint", "Transmission Roughness")
+
+
+def shaders_below(node):
+    """The shader, or those that Mix and Add Shader are made of, first things first."""
+    if node.type not in ("MIX_SHADER", "ADD_SHADER"):
+        return [node]
+    return [found for socket in node.inputs if socket.type == "SHADER" and socket.links for found in shaders_below(socket.links[0].from_node)]
+
+
+def principled(shot, material):
+    """The Principled shader of a material; one is made in place of a shader that is like it. None if there is none."""
+    tree = material.node_tree
+    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    if not output or not output.inputs["Surface"].links:
+        return None
+    top = output.inputs["Surface"].links[0].from_node
+    parts = shaders_below(top)
+    node = next((part for part in parts if part.type == "BSDF_PRINCIPLED" or part.type in SHADERS), None)
+    if node is None:
+        shot.note(f"material {material.name}: {top.bl_label} is not exported: it becomes grey; use Principled BSDF")
+        node = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    elif len(parts) > 1:
+        shot.note(f"material {material.name}: of its {len(parts)} shaders only {node.bl_label} is exported; use one Principled BSDF")
+    if node.type in SHADERS:
+        fixed, like = SHADERS[node.type]
+        made = tree.nodes.new("ShaderNodeBsdfPrincipled")
+        for name, value in fixed.items():
+            made.inputs[name].default_value = value
+        for name, other in like.items():
+            if node.inputs[other].links:
+                tree.links.new(node.inputs[other].links[0].from_socket, made.inputs[name])
+            elif name != "Normal":
+                made.inputs[name].default_value = node.inputs[other].default_value
+        node = made
+    tree.links.new(node.outputs["BSDF"], output.inputs["Surface"])
+    return node
+
+
+def nodes_before(socket):
+    """All nodes that an input is computed by, up to images."""
+    for link in socket.links:
+        yield link.from_node
+        for before in link.from_node.inputs if link.from_node.type != "TEX_IMAGE" else ():
+            yield from nodes_before(before)
+
+
+def keep_materials(shot):
+    """Every material gets a Principled shader that the exporter can write; what it cannot write is named."""
+    used = {slot.material for item in [*shot.scene.objects, *instanced(shot.scene)] if not item.hide_render
+            for slot in item.material_slots if slot.material}
+    for material in sorted((m for m in used if m.use_nodes), key=lambda m: m.name):
+        shader = principled(shot, material)
+        for socket in shader.inputs if shader else ():
+            lost = sorted({node.bl_label for node in nodes_before(socket)} - {"Image Texture"}) \
+                if any(node.type not in WRITTEN for node in nodes_before(socket)) else []
+            if lost:
+                shot.note(f"material {material.name}: {socket.name} by {', '.join(lost)} is not exported, but the plain value of the input; "
+                          "bake it to an image")
+                material.node_tree.links.remove(socket.links[0])
+        extra = [name for name in LEFT_OUT if shader and (shader.inputs[name].links or shader.inputs[name].default_value > 0)]
+        if extra:
+            shot.note(f"material {material.name}: {', '.join(extra)} of Principled is not exported")
+
+
+# ---- glass ------------------------------------------------------------------------------------------------
+
+def transmission_of(material):
+    """The Transmission input of a material's Principled shader: its value, 1 if something is linked to it, 0 without such a shader."""
+    nodes = material.node_tree.nodes if material and material.use_nodes else ()
+    inputs = [node.inputs["Transmission"] for node in nodes if node.type == "BSDF_PRINCIPLED"]
+    return max((1.0 if i.is_linked else i.default_value for i in inputs), default=0.0)
+
+
+def volume_and_area(mesh):
+    """(volume, area) of a mesh in its own space, by its triangles; volume None where it is not closed: an edge without two faces."""
+    uses = {}
+    for face in mesh.polygons:
+        for key in face.edge_keys:
+            uses[key] = uses.get(key, 0) + 1
+    area = sum(face.area for face in mesh.polygons)
+    if not uses or any(n != 2 for n in uses.values()):
+        return None, area
+    mesh.calc_loop_triangles()
+    corner = [vertex.co for vertex in mesh.vertices]
+    six = sum(corner[a].dot(corner[b].cross(corner[c])) for a, b, c in (t.vertices for t in mesh.loop_triangles))
+    return abs(six) / 6, area
+
+
+def find_solid_glass(shot):
+    """{material's name: thickness}: glass of closed meshes is solid, as it is in Cycles; glTF wants a thickness to know. It is the mean
+    chord of a body, 4 volume / area (Cauchy), which viewers without refraction use. Glass of open meshes stays a thin sheet."""
+    solid, sheets = {}, {}
+    graph = bpy.context.evaluated_depsgraph_get()
+    for item in [*shot.scene.objects, *instanced(shot.scene)]:
+        glass = {slot.material.name for slot in item.material_slots if slot.material and transmission_of(slot.material) > 0}
+        if not glass or item.hide_render or item.type not in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
+            continue
+        body = item.evaluated_get(graph)
+        volume, area = volume_and_area(body.to_mesh())
+        body.to_mesh_clear()
+        for name in glass:
+            if volume is None:
+                sheets[name] = item.name
+            else:
+                solid.setdefault(name, 4 * volume / max(area, 1e-30))
+    for name in set(solid) & set(sheets):
+        del solid[name]
+        shot.note(f"material {name}: {sheets[name]} has it and is open, so all that have it become thin sheets of glass; give closed bodies "
+                  "a material of their own")
+    return solid
+
+
 # ---- camera, what is lost, the file ------------------------------------------------------------------------
 
 def describe_cameras(shot):
@@ -254,13 +405,17 @@ def list_losses(shot):
         curves = item.animation_data.action.fcurves if item.animation_data and item.animation_data.action else []
         if any(curve.data_path in ("hide_render", "hide_viewport") for curve in curves):
             shot.note(f"{item.name}: being there or not is not exported; scale it to 0 instead")
+    for item in instanced(shot.scene):
+        if item.type == "LIGHT" and (item.data.type == "AREA" or item.data.type == "POINT" and item.data.shadow_soft_size > 0):
+            shot.note(f"{item.name}: this lamp in an instanced collection " + ("is not exported" if item.data.type == "AREA" else "has no radius")
+                      + "; use Object > Apply > Make Instances Real")
     for material in bpy.data.materials:
         tree = material.node_tree
         if material.users and tree and tree.animation_data and tree.animation_data.action:
             shot.note(f"material {material.name}: changes over time are not exported")
 
 
-def write_gltf(shot):
+def write_gltf(shot, solid):
     words = dict(filepath=shot.path, export_format="GLB", export_cameras=True, export_lights=True, export_extras=True, export_apply=True,
                  export_yup=True, use_renderable=True, use_active_scene=True, export_animations=True, export_frame_range=True,
                  export_force_sampling=True, export_tangents=False)
@@ -269,12 +424,23 @@ def write_gltf(shot):
         if name in known:
             words[name] = "COMPAT"   # watts as Blender has them
     bpy.ops.export_scene.gltf(**{k: v for k, v in words.items() if k in known})
-    sign(shot.path)
+    sign(shot.path, solid)
 
 
-def sign(path):
+def make_solid(document, solid):
+    """Gives a thickness to the glass of closed bodies, unless the file has one."""
+    for material in document.get("materials", []):
+        thickness, extensions = solid.get(material.get("name")), material.get("extensions", {})
+        if thickness and "KHR_materials_transmission" in extensions and "KHR_materials_volume" not in extensions:
+            extensions["KHR_materials_volume"] = {"thicknessFactor": thickness}
+            if "KHR_materials_volume" not in document["extensionsUsed"]:
+                document["extensionsUsed"].append("KHR_materials_volume")
+
+
+def sign(path, solid):
     """The file says that its lamps are not multiplied (lib/scene/light_units.h); lamps that became meshes are taken out. Specular 0 is
-    none at all: the exporter blackens its colour, which leaves a gloss at grazing angles that takes 20 % of a wall's light."""
+    none at all: the exporter blackens its colour, which leaves a gloss at grazing angles that takes 20 % of a wall's light. `solid`: of
+    find_solid_glass."""
     data = open(path, "rb").read()
     size = struct.unpack("<I", data[12:16])[0]
     document = json.loads(data[20:20 + size])
@@ -283,6 +449,7 @@ def sign(path):
         gloss = material.get("extensions", {}).get("KHR_materials_specular")
         if gloss and max(gloss.get("specularColorFactor", [1])) == 0:
             gloss["specularFactor"] = 0
+    make_solid(document, solid)
     lights = document.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
     dark = {i for i, light in enumerate(lights) if light.get("intensity", 1) == 0}
     numbers = {old: new for new, old in enumerate(i for i in range(len(lights)) if i not in dark)}
@@ -465,6 +632,9 @@ def export(scene, path):
     if bpy.context.object and bpy.context.object.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     list_losses(shot)
+    keep_materials(shot)
+    solid = find_solid_glass(shot)
+    drop_muted_tracks(scene)
     bake_motion(shot)
     replace_lamps(shot)
     bake_world(shot)
@@ -473,7 +643,7 @@ def export(scene, path):
         before = read_glb(shot.path)
     except (OSError, ValueError, struct.error):
         before = None   # none, or no .glb
-    write_gltf(shot)
+    write_gltf(shot, solid)
     if before:
         settle(shot.path, before)
     return shot.notes, make_line(shot)
@@ -516,11 +686,29 @@ def unregister():
     bpy.utils.unregister_class(ExportTempolux)
 
 
+class Quiet:
+    """Keeps what Blender prints from the terminal, hundreds of lines, and shows it if the export fails."""
+
+    def __enter__(self):
+        sys.stdout.flush()
+        self.terminal, self.said = os.dup(1), tempfile.TemporaryFile()
+        os.dup2(self.said.fileno(), 1)
+
+    def __exit__(self, kind, *_):
+        sys.stdout.flush()
+        os.dup2(self.terminal, 1)
+        os.close(self.terminal)
+        if kind:
+            self.said.seek(0)
+            sys.stderr.write(self.said.read().decode(errors="replace"))
+
+
 def main():
     words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     if len(words) != 1 or not words[0].endswith(".glb"):
         sys.exit("tempolux_export.py: name the file to write: blender -b shot.blend -P tempolux_export.py -- shot.glb")
-    notes, line = export(bpy.context.scene, words[0])
+    with Quiet():
+        notes, line = export(bpy.context.scene, words[0])
     for text in notes:
         print("tempolux_export.py:", text, file=sys.stderr)
     print(line)

@@ -25,7 +25,7 @@ def options():
     parser.add_argument("--out", type=Path, default=project / "out" / "bench", help="raw results, references [out/bench]")
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
-    parser.add_argument("--only", help="parts, by comma [sweep,%s; cycles with --peers]" % ",".join(name for name in FIGURES if name != "cycles"))
+    parser.add_argument("--only", help="parts, by comma [sweep,%s; cycles, walls with --peers]" % ",".join(name for name in FIGURES if name not in ("cycles", "walls")))
     parser.add_argument("--peers", action="store_true", help="also Cycles on this machine; wants Blender and numpy")
     parser.add_argument("--scenes", default="", help="parts sweep (also walk, filter), found, everyscene: regular expression, these alone; the others as measured before")
     parser.add_argument("--sizes", default="320x180", help="part everyscene: by comma [320x180]")
@@ -65,7 +65,7 @@ def main():
     bench = Bench(args.build.resolve(), args.out.resolve(), project, args.tiny, args.reference_samples)
     peers = json.loads((Path(__file__).parent / "peers.json").read_text())
     left_out = {}
-    parts = args.only.split(",") if args.only else ["sweep", *(name for name in FIGURES if name != "cycles" or args.peers)]
+    parts = args.only.split(",") if args.only else ["sweep", *(name for name in FIGURES if name not in ("cycles", "walls") or args.peers)]
     for name in [] if args.page else parts:
         print(f"== {name}", flush=True)
         try:

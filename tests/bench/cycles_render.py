@@ -2,7 +2,7 @@
 
     blender -b --factory-startup -noaudio --python cycles_render.py -- SCENE FRAME WIDTHxHEIGHT SAMPLES SEED SKY LIGHTS OUT.exr [SMOKE.vdb SIGMA_T ALBEDO]
 
-SKY: radiance of the sky as R,G,B, W/m^2/sr. LIGHTS: SPEC or COMPAT, the importer's word for files whose lights are or are not in lumens. Path
+SCENE: a glTF file, or a .blend, which is rendered as it is: SKY and LIGHTS say nothing. SKY: radiance of the sky as R,G,B, W/m^2/sr. LIGHTS: SPEC or COMPAT, the importer's word for files whose lights are or are not in lumens. Path
 tracing without clamping, adaptive sampling and denoising; as many bounces as ours; a box of one pixel as filter. Cycles subdivides no emitter here.
 Smoke: grid `density`, placed as the glTF is; extinction of density 1 in 1/m; albedo R,G,B, scattered evenly.
 """
@@ -16,9 +16,12 @@ import numpy
 
 numpy.bool = bool      # a name that Blender 3.4's importer uses and Debian 12's numpy 1.24 has dropped
 scene_file, frame, size, samples, seed, sky, lights, output, *smoke = sys.argv[sys.argv.index("--") + 1:]
-bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.import_scene.gltf(filepath=scene_file, convert_lighting_mode=lights)
-
+as_it_is = scene_file.endswith(".blend")
+if as_it_is:
+    bpy.ops.wm.open_mainfile(filepath=scene_file)
+else:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=scene_file, convert_lighting_mode=lights)
 
 
 def be_as_the_file_says(file):
@@ -61,15 +64,17 @@ def place_smoke(file, sigma_t, albedo):
     volume.data.materials.append(material)
 
 
-be_as_the_file_says(scene_file)
+if not as_it_is:
+    be_as_the_file_says(scene_file)
 if smoke:
     place_smoke(*smoke)
 scene = bpy.context.scene
 scene.camera = scene.camera or next(o for o in scene.objects if o.type == "CAMERA")
-scene.world = bpy.data.worlds.new("World")
-scene.world.use_nodes = True
-background = scene.world.node_tree.nodes["Background"]
-background.inputs["Color"].default_value = [*map(float, sky.split(",")), 1]
+if not as_it_is:
+    scene.world = bpy.data.worlds.new("World")
+    scene.world.use_nodes = True
+    background = scene.world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = [*map(float, sky.split(",")), 1]
 
 render, cycles = scene.render, scene.cycles
 render.engine = "CYCLES"

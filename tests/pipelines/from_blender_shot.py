@@ -29,6 +29,52 @@ follow.target, follow.track_axis, follow.up_axis = aim, "TRACK_NEGATIVE_Z", "UP_
 for frame, x in ((3, -1), (6, 1)):
     eye.location = (x, -3, 1)
     eye.keyframe_insert("location", frame=frame)
+
+
+
+def material(name, kind, **values):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    tree = made.node_tree
+    tree.nodes.remove(tree.nodes["Principled BSDF"])
+    shader = tree.nodes.new(kind)
+    for key, value in values.items():
+        shader.inputs[key].default_value = value
+    tree.links.new(shader.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    return made, shader
+
+
+# Shaders that the exporter would write as white metal; glass of a closed body and of an open sheet; a colour by nodes that glTF lacks.
+matte, _ = material("Matte", "ShaderNodeBsdfDiffuse", Color=(.2, .4, .6, 1))
+chrome, _ = material("Chrome", "ShaderNodeBsdfGlossy", Color=(.9, .8, .7, 1), Roughness=.1)
+solid, _ = material("Solid", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0, IOR=1.6)
+sheet, _ = material("Sheet", "ShaderNodeBsdfPrincipled", Transmission=1)
+noisy, shader = material("Noisy", "ShaderNodeBsdfPrincipled", **{"Base Color": (.3, .3, .3, 1)})
+noisy.node_tree.links.new(noisy.node_tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], shader.inputs["Base Color"])
+for k, kind in enumerate((matte, chrome, solid, noisy)):
+    bpy.ops.mesh.primitive_cube_add(size=.2, location=(.4 * k - .6, 1, .1))
+    bpy.context.object.name = "Cube " + kind.name
+    bpy.context.object.data.materials.append(kind)
+bpy.ops.mesh.primitive_plane_add(size=.2, location=(0, 1.5, .5))
+bpy.context.object.data.materials.append(sheet)
+# Glass and a lamp in a collection that is instanced.
+group = bpy.data.collections.new("Group")
+for item in (bpy.data.objects["Cube Solid"], bpy.data.objects.new("Inner", bpy.data.lights["Panel"])):
+    for collection in item.users_collection:
+        collection.objects.unlink(item)
+    group.objects.link(item)
+holder = bpy.data.objects.new("Holder", None)
+holder.instance_type, holder.instance_collection = "COLLECTION", group
+scene.collection.objects.link(holder)
+# A strip that plays, and one that is muted, which Blender does not show.
+for name, mute in (("Cube Matte", False), ("Cube Chrome", True)):
+    item = bpy.data.objects[name]
+    for frame, x in ((3, 0), (6, 1)):
+        item.location.x = x
+        item.keyframe_insert("location", frame=frame)
+    track = item.animation_data.nla_tracks.new()
+    track.strips.new("Slide", 3, item.animation_data.action)
+    track.mute, item.animation_data.action = mute, None
 scene.world = bpy.data.worlds.new("World")
 scene.world.use_nodes = True
 scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.5, 0.6, 0.8, 1)
