@@ -73,7 +73,7 @@ class Candidates {
       for (std::size_t h = 0; h < 2; ++h)
         for (std::size_t c = 0; c < 3; ++c) {
           std::vector<float>& values = (h == 0 ? candidate.a : candidate.b)[c];
-          values.assign(std::size_t(on.width) * std::size_t(on.height), 0.0f);
+          values.resize(std::size_t(on.width) * std::size_t(on.height));
           if (const Plane& own = light[h].layers[l][c]; !own.empty())
             resolve({own, other[h].empty() ? none : other[h][l][c], on.albedo[c]}, coverage_, on.width, on.height,
                     values);

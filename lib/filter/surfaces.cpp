@@ -97,8 +97,4 @@ void Surfaces::take_edges(const Image& image) {
   });
 }
 
-bool Surfaces::on_surface(int x, int y, int dx, int dy) const {
-  return SurfaceEight(*this, y, dy, x).surface(dx)[0] != 0;
-}
-
 }  // namespace tempolux
