@@ -12,7 +12,7 @@ namespace {
 constexpr int kAround = 3;  ///< pixels
 constexpr int kWindow = (2 * kAround + 1) * (2 * kAround + 1);
 constexpr float kDark = 0.02f;      ///< darkest light that counts, over the layer's mean
-constexpr float kOwnNoise = 0.25f;  ///< share of a pixel's own noise in its scale
+constexpr float kOwnLight = 0.25f;  ///< share of a pixel's own difference from its surroundings in its scale
 /// 1 / sum of the squared weights of Neighbourhood::mean, the number of equally weighted pixels with the same variance.
 /// Summing n equal values twice gives n (2 n^2 + 1) / 3 / n^4 for the sum of squared weights.
 constexpr float kEqualPixels = [] {
@@ -53,7 +53,8 @@ class Choice {
         width_(std::size_t(around.width())),
         count_(around.count()),
         counts_(count_, 1),
-        dark_(dark) {
+        dark_(dark),
+        share_(around.width(), around.height()) {
     for (std::size_t p = 0; p < count_; ++p)
       for (std::size_t c = 0; c < 3; ++c)
         if (!(std::abs(raw.a[c][p]) < kLargestLight && std::abs(raw.b[c][p]) < kLargestLight)) counts_[p] = 0;
@@ -64,6 +65,7 @@ class Choice {
     take_best();
     for_each_pixel([&](std::size_t p, int x, int y) {
       const float w = share(p, x, y);
+      share_.at(x, y) = counts_[p] ? w : 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const float a = raw_.a[c][p], b = raw_.b[c][p];
         if (counts_[p]) {
@@ -76,6 +78,7 @@ class Choice {
         }
       }
     });
+    give_back();
     return std::move(best_);
   }
 
@@ -88,7 +91,8 @@ class Choice {
     });
   }
 
-  /// The scale 1 / (mean light of the neighbourhood + part of the pixel's own noise)^2.
+  /// The scale 1 / (mean light of the neighbourhood + part of the own light's difference from it, of the half that
+  /// differs most)^2.
   void take_scale() {
     Plane light(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
@@ -97,10 +101,11 @@ class Choice {
     light = box_sums(light, near_.width(), near_.height());
     scale_.assign(count_, 0.0f);
     for_each_pixel([&](std::size_t p, int x, int y) {
-      float noise = 0;
-      for (std::size_t c = 0; c < 3; ++c) noise += std::abs(raw_.a[c][p] - raw_.b[c][p]) / 6;
-      if (counts_[p])
-        scale_[p] = 1 / squared(std::max(light.at(x, y) / float(kWindow), 0.0f) + dark_ + kOwnNoise * noise);
+      const float around = light.at(x, y) / float(kWindow);
+      float a = 0, b = 0;
+      for (std::size_t c = 0; c < 3; ++c) a += raw_.a[c][p] / 3, b += raw_.b[c][p] / 3;
+      const float own = std::max(std::abs(a - around), std::abs(b - around));
+      if (counts_[p]) scale_[p] = 1 / squared(std::max(around, 0.0f) + dark_ + kOwnLight * own);
     });
   }
 
@@ -185,6 +190,32 @@ class Choice {
     return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
+  /// Gives the light that filtering took from each half of pixels to the filtered pixels around, so that the
+  /// sum of the layer stays: w B(light / B(w)), B the sums over 7 x 7 pixels, twice.
+  void give_back() {
+    const auto sums = [&](const Plane& values) {
+      const Plane once = box_sums(values, near_.width(), near_.height());
+      return box_sums(once, near_.width(), near_.height());
+    };
+    for_each_pixel([&](std::size_t p, int x, int y) {
+      float light = 0;
+      for (std::size_t c = 0; c < 3; ++c) light += std::max(mean_of(best_.a[c][p], best_.b[c][p]), 0.0f) / 3;
+      if (share_.at(x, y) > 0) share_.at(x, y) *= light + dark_;
+    });
+    const Plane weights = sums(share_);
+    for (const auto half : {&Halves::a, &Halves::b})
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::vector<float>& raw = (raw_.*half)[c];
+        std::vector<float>& result = (best_.*half)[c];
+        Plane taken(near_.width(), near_.height());
+        for_each_pixel([&](std::size_t p, int x, int y) {
+          if (share_.at(x, y) > 0) taken.at(x, y) = (raw[p] - result[p]) / weights.at(x, y);
+        });
+        taken = sums(taken);
+        for_each_pixel([&](std::size_t p, int x, int y) { result[p] += share_.at(x, y) * taken.at(x, y); });
+      }
+  }
+
   const Halves& raw_;
   const std::vector<Halves>& candidates_;
   const Neighbourhood& near_;
@@ -194,6 +225,7 @@ class Choice {
   std::vector<float> scale_;
   Halves best_;
   Plane gain_, square_, apart_;  ///< neighbourhood means of Estimate
+  Plane share_;                  ///< w, by pixel
 };
 
 }  // namespace

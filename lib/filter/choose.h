@@ -50,15 +50,17 @@ class Neighbourhood {
 ///     the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal
 ///     distribution, 1981].
 /// Each estimate is divided by the square of (the mean light of the neighbourhood, at least `dark`, plus a quarter of
-/// the pixel's own noise), summed over colours and averaged over the neighbourhood. The own noise lowers a pixel's
-/// weight in all three estimates alike, so a single bright sample does not decide for its neighbours. The candidate
-/// with the least error is taken; shares of candidates are averaged over the neighbourhood, too. Rousselle, Knaus,
-/// Zwicker: Adaptive rendering with non-local means filtering, 2012.
-/// The result is w F + (1 - w) M with w = (V - C + s) / (mean of (F - M)^2), clamped to [0, 1]. Inside surfaces s is
-/// the standard error that V - C - (F - M)^2 would have with noise alone; at edges s = 0. Where both halves are equal,
-/// the result is M, to the bit if (A + B) / 2 is. A pixel of which a half is not finite, or too bright for squares in
-/// float32, enters no estimate; its result is M, or the last candidate if M is not finite. All planes have one element
-/// per pixel; `candidates` is not empty. Thread-safe; the same result for any number of threads.
+/// the larger difference of the pixel's A and B from this mean), summed over colours and averaged over the
+/// neighbourhood. The own difference lowers a pixel's weight in all three estimates alike, so a single bright pixel
+/// does not decide for its neighbours, whether one half shows it or both. The candidate with the least error is taken;
+/// shares of candidates are averaged over the neighbourhood, too. Rousselle, Knaus, Zwicker: Adaptive rendering with
+/// non-local means filtering, 2012. The result is w F + (1 - w) M with w = (V - C + s) / (mean of (F - M)^2), clamped
+/// to [0, 1]. Inside surfaces s is the standard error that V - C - (F - M)^2 would have with noise alone; at edges s =
+/// 0. The light that this takes from pixels goes to the filtered pixels around, in proportion to w times the result, so
+/// that the sum of the layer stays that of M. Where both halves are equal over a neighbourhood, the result is M, to the
+/// bit if (A + B) / 2 is. A pixel of which a half is not finite, or too bright for squares in float32, enters no
+/// estimate; its result is M, or the last candidate if M is not finite. All planes have one element per pixel;
+/// `candidates` is not empty. Thread-safe; the same result for any number of threads.
 Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
 
 /// The light up to which a layer counts as dark: 2 % of its mean over the picture [W/m^2/sr].

@@ -35,8 +35,6 @@ class Coverage {
       counts >>= 4;
     }
   }
-
- public:
   static constexpr std::uint32_t kRays = 16;  ///< of a pixel
 
  private:

@@ -73,7 +73,7 @@ class Candidates {
       for (std::size_t h = 0; h < 2; ++h)
         for (std::size_t c = 0; c < 3; ++c) {
           std::vector<float>& values = (h == 0 ? candidate.a : candidate.b)[c];
-          values.assign(std::size_t(on.width) * std::size_t(on.height), 0.0f);
+          values.resize(std::size_t(on.width) * std::size_t(on.height));
           if (const Plane& own = light[h].layers[l][c]; !own.empty())
             resolve({own, other[h].empty() ? none : other[h][l][c], on.albedo[c]}, coverage_, on.width, on.height,
                     values);
@@ -207,8 +207,8 @@ RemainingError FrameFilter::remaining_error() const { return state_->remaining.e
 namespace {
 
 /// Distance in pixels from which other pixels affect a pixel: the windows of both fits, two for smoothing and the
-/// one-surface test, the windows of unmix() and resolve(), and six times the window of choose().
-constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3; }
+/// one-surface test, the windows of unmix() and resolve(), and ten times the window of choose().
+constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 10 * 3; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
   Image out{width, height, {}, {}, {}, {}};

@@ -37,7 +37,7 @@ class StripFit {
         std::min(kEight, std::size_t(surfaces_.width) - x0);
     Float8* same = same_.data();
     for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
-      const SurfaceEight row(surfaces_, y, dy * options_.stride, x0);
+      const SurfaceEight row(surfaces_, y, dy * options_.stride, std::ptrdiff_t(x0));
       for (int dx = -options_.radius; dx <= options_.radius; ++dx) *same++ = row.surface(dx * options_.stride);
     }
     alignas(32) std::array<float, kEight> support;
@@ -224,7 +224,7 @@ Plane smoothed(const Surfaces& surfaces, const Plane& values) {
     for (std::size_t x = 0; x < std::size_t(surfaces.width); x += kEight) {
       Float8 sum{}, count{};
       for (int dy = -kNear; dy <= kNear; ++dy) {
-        const SurfaceEight row(surfaces, y, dy, x);
+        const SurfaceEight row(surfaces, y, dy, std::ptrdiff_t(x));
         for (int dx = -kNear; dx <= kNear; ++dx) {
           const Float8 weight = row.surface(dx) * load8(surfaces.use.row(y + dy) + std::ptrdiff_t(x) + dx);
           count += weight;

@@ -1,7 +1,6 @@
 #include "lib/filter/resolve.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "lib/filter/rows.h"
 
@@ -23,17 +22,13 @@ float composed(const Own& own, float other, const Coverage& coverage, int x, int
 
 }  // namespace
 
-bool is_too_bright(float value) { return std::isfinite(value) && !(std::abs(value) < kLargestLight); }
-
 void resolve(const EdgePlane& light, const Coverage& coverage, int width, int height, std::vector<float>& values) {
   const auto own = [&](int x, int y) { return light.own_at(x, y); };
   for_each_row(height, [&](int y) {
     float* to = values.data() + std::size_t(y) * std::size_t(width);
-    for (int x = 0; x < width; ++x) {
-      if (is_too_bright(to[x])) continue;
-      to[x] = coverage.is_whole(x, y) ? light.own_at(x, y)
-                                      : composed(own, light.other_at(x, y), coverage, x, y, width, height);
-    }
+    for (int x = 0; x < width; ++x) to[x] = light.own_at(x, y);
+    for (int x = 0; x < width; ++x)
+      if (!coverage.is_whole(x, y)) to[x] = composed(own, light.other_at(x, y), coverage, x, y, width, height);
   });
 }
 

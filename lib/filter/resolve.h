@@ -19,12 +19,9 @@ struct EdgePlane {
   float other_at(int x, int y) const { return other.empty() ? own_at(x, y) : other.at(x, y) * albedo_at(x, y); }
 };
 
-/// True if the light is too bright for squares in float32; the filter leaves such light as it is.
-bool is_too_bright(float value);
-
 /// Writes the radiance of each pixel p. If p sees one surface the radiance is own(p), else
 ///     share(p) own(p) + sum over the neighbours n of share(n) own(n) + share(other) other(p),
-/// with shares from coverage. Values that are too bright stay.
+/// with shares from coverage.
 void resolve(const EdgePlane& light, const Coverage& coverage, int width, int height, std::vector<float>& values);
 
 }  // namespace tempolux

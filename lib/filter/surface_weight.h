@@ -1,7 +1,6 @@
 // lib/filter/surface_weight.h -- decides for rows of pixels whether a pixel may take light from another one.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 
 #include "lib/filter/lane.h"
@@ -9,47 +8,11 @@
 
 namespace tempolux {
 
-/// Compares a row of pixels with the row of pixels (dx, dy) away: 1 if both are on one surface (PixelSurfaces::same),
-/// else 0.
-class SurfaceRow {
- public:
-  SurfaceRow(const Surfaces& of, int y, int dx, int dy)
-      : object_(of.object.row(y)),
-        other_object_(of.object.row(y + dy) + dx),
-        w_(of.w.row(y)),
-        other_w_(of.w.row(y + dy) + dx),
-        w_right_(of.w_right.row(y)),
-        w_down_(of.w_down.row(y)),
-        nx_(of.nx.row(y)),
-        ny_(of.ny.row(y)),
-        nz_(of.nz.row(y)),
-        other_nx_(of.nx.row(y + dy) + dx),
-        other_ny_(of.ny.row(y + dy) + dx),
-        other_nz_(of.nz.row(y + dy) + dx),
-        dx_(float(dx)),
-        dy_(float(dy)) {}
-
-  float surface(std::size_t i) const {
-    const float facing = nx_[i] * other_nx_[i] + ny_[i] * other_ny_[i] + nz_[i] * other_nz_[i];
-    const float length2 = nx_[i] * nx_[i] + ny_[i] * ny_[i] + nz_[i] * nz_[i];
-    const float right = w_right_[i] * dx_, down = w_down_[i] * dy_;
-    const float off = std::abs(other_w_[i] - w_[i] - right - down);
-    const float allowed = PixelSurfaces::kSameDepth * w_[i] + std::abs(right) + std::abs(down);
-    // Products of conditions instead of &&: all lanes of a vector compute the same.
-    return float(object_[i] == other_object_[i]) * float(facing >= PixelSurfaces::kSameNormal * length2) *
-           float(off <= allowed);
-  }
-
- private:
-  const std::uint32_t *object_, *other_object_;
-  const float *w_, *other_w_, *w_right_, *w_down_, *nx_, *ny_, *nz_, *other_nx_, *other_ny_, *other_nz_;
-  float dx_, dy_;
-};
-
-/// The same for eight pixels (x + i, y) and those (dx, dy) away, for one dy. The pixels' own values are loaded once.
+/// Compares the eight pixels (x + i, y) with those (dx, dy) away, for one dy: are both on one surface
+/// (PixelSurfaces::same)? The pixels' own values are loaded once. All of them lie in the picture or its margin.
 class SurfaceEight {
  public:
-  SurfaceEight(const Surfaces& frame, int y, int dy, std::size_t x)
+  SurfaceEight(const Surfaces& frame, int y, int dy, std::ptrdiff_t x)
       : object_(load8(frame.object.row(y) + x)),
         nx_(load8(frame.nx.row(y) + x)),
         ny_(load8(frame.ny.row(y) + x)),

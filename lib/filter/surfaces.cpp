@@ -18,20 +18,20 @@ Plane plane_of(const Image& image, const std::string& name) {
   return plane;
 }
 
-/// 1 if the pixel and each of its 3 x 3 neighbours are on one surface, compared in both directions, else 0; for `count`
-/// pixels.
-void one_surface_around(const Surfaces& surfaces, int y, std::size_t x0, std::size_t count, Lane& inside) {
-  inside.fill(1);
-  const auto width = std::size_t(surfaces.width);
+/// 1 if the pixel and each of its 3 x 3 neighbours are on one surface, compared in both directions, else 0; for eight
+/// pixels. Neighbours outside the picture do not count.
+Float8 one_surface_around(const Surfaces& surfaces, int y, std::ptrdiff_t x0) {
+  Float8 inside = all8(1);
   for (int dy = std::max(-1, -y); dy <= std::min(1, surfaces.height - 1 - y); ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if (dx == 0 && dy == 0) continue;
-      const SurfaceRow there(surfaces, y, dx, dy), back(surfaces, y + dy, -dx, -dy);
-      // Columns outside the picture do not count.
-      const std::size_t first = x0 == 0 && dx < 0 ? 1 : 0, last = x0 + count == width && dx > 0 ? count - 1 : count;
-      for (std::size_t i = first; i < last; ++i)
-        inside[i] *= there.surface(x0 + i) * back.surface(std::size_t(std::ptrdiff_t(x0 + i) + dx));
+      Float8 same =
+          SurfaceEight(surfaces, y, dy, x0).surface(dx) * SurfaceEight(surfaces, y + dy, -dy, x0 + dx).surface(-dx);
+      if (dx < 0 && x0 == 0) same[0] = 1;
+      if (const auto last = std::size_t(surfaces.width - 1 - x0); dx > 0 && last < kEight) same[last] = 1;
+      inside *= same;
     }
+  return inside;
 }
 
 }  // namespace
@@ -86,21 +86,15 @@ void Surfaces::take_edges(const Image& image) {
   use = Plane::unset(width, height);
   inside = Plane::unset(width, height);
   for_each_row(height, [&](int y) {
-    for (std::size_t x0 = 0; x0 < std::size_t(width); x0 += kStrip) {
-      const std::size_t count = std::min(kStrip, std::size_t(width) - x0);
-      Lane around;
-      one_surface_around(*this, y, x0, count, around);
-      for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t x0 = 0; x0 < std::size_t(width); x0 += kEight) {
+      const Float8 around = one_surface_around(*this, y, std::ptrdiff_t(x0));
+      for (std::size_t i = 0; i < std::min(kEight, std::size_t(width) - x0); ++i) {
         const bool whole = coverage.known() ? coverage.is_whole(int(x0 + i), y) : around[i] != 0;
         use.row(y)[x0 + i] = whole ? 1.0f : 0.0f;
         inside.row(y)[x0 + i] = whole ? around[i] : 0.0f;
       }
     }
   });
-}
-
-bool Surfaces::on_surface(int x, int y, int dx, int dy) const {
-  return SurfaceRow(*this, y, dx, dy).surface(std::size_t(x)) != 0;
 }
 
 }  // namespace tempolux

@@ -29,8 +29,6 @@ struct Surfaces {
   /// (formats/frames/frames.md).
   Surfaces(const Image& image, bool seen);
 
-  /// True if the pixel (dx, dy) from (x, y) is on the same surface (PixelSurfaces::same), whether or not it has `use`.
-  bool on_surface(int x, int y, int dx, int dy) const;
   bool has_pixel(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
   float albedo_at(std::size_t c, int x, int y) const { return albedo[c].empty() ? 1 : albedo[c].at(x, y); }
 

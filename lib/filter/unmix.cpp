@@ -4,6 +4,7 @@
 #include <array>
 
 #include "lib/core/parallel.h"
+#include "lib/filter/surface_weight.h"
 
 namespace tempolux {
 namespace {
@@ -31,9 +32,11 @@ class Unmixing {
       for (std::size_t c = 0; c < 3 && !is_black(l); ++c) other_[l][c].at(x, y) = fitted_.layers[l][c].at(x, y);
     sums_ = {};
     count_ = 0;
-    for (int dy = -kRadius; dy <= kRadius; ++dy)
+    for (int dy = -kRadius; dy <= kRadius; ++dy) {
+      const SurfaceEight row(surfaces_, y, dy, x);
       for (int dx = -kRadius; dx <= kRadius; ++dx)
-        if (surfaces_.has_pixel(x + dx, y + dy) && surfaces_.on_surface(x, y, dx, dy)) add(x + dx, y + dy, own);
+        if (surfaces_.has_pixel(x + dx, y + dy) && row.surface(dx)[0] != 0) add(x + dx, y + dy, own);
+    }
     for (std::size_t l = 0; l < raw_.layers.size(); ++l)
       for (std::size_t c = 0; c < 3 && !is_black(l); ++c) {
         const Sums& s = sums_[l][c];

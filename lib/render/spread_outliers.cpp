@@ -151,8 +151,10 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
     const int count = counts.*number;
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
     if (!(claimed > error) || !(error > 0)) return;
-    double others = (channel_mean(Rgbd((samples.parts[pixel].*part)[sample.layer])) - claimed) * count;
-    int other_count = count - 1;
+    // Two bright samples of many may be chance, so neither confirms the other.
+    const double second = channel_mean(Rgbd(sample.second)) / count;
+    double others = (channel_mean(Rgbd((samples.parts[pixel].*part)[sample.layer])) - claimed - second) * count;
+    int other_count = count - 2;
     if (further) {
       others += channel_mean(Rgbd((further->mean.*part)[sample.layer])) * further->count.*number;
       other_count += further->count.*number;
@@ -164,8 +166,10 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
     // If further samples found about one such sample's light again, the light is confirmed.
     if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
-    found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last),
-                     Rgbd(sample.radiance) * ((1 - allowed / claimed) / count), count});
+    const double both = claimed - allowed + std::max(0.0, second - allowed);
+    Rgbd excess = Rgbd(sample.radiance) * ((1 - allowed / claimed) / count);
+    if (second > allowed) excess += Rgbd(sample.second) * ((1 - allowed / second) / count);
+    found.push_back({pixel, sample.layer, level_of(both, error, last), excess, count});
   };
   look(brightest.own, &PathParts::own, &PartCounts::own);
   look(brightest.lit, &PathParts::lit, &PartCounts::lit);
@@ -192,9 +196,12 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
   for (const Layer of : {Layer::specular, Layer::direct, Layer::caustic, Layer::indirect, Layer::volume}) {
     if (specular_alone && of != Layer::specular) continue;
     if (const float sum = channel_sum(sample[of]); sum > brightest) {
+      second = layer == of ? radiance : Rgb(0.0f);
       brightest = sum;
       radiance = sample[of];
       layer = of;
+    } else if (layer == of && sum > channel_sum(second)) {
+      second = sample[of];
     }
   }
 }

@@ -9,11 +9,12 @@
 
 namespace tempolux {
 
-/// The brightest sample of one part of a pixel, in the layer in which the sample is brightest. Layer emission is
-/// ignored: it holds edges of what the camera sees, not outliers.
+/// The brightest sample of one part of a pixel, in the layer in which the sample is brightest, and the second of that
+/// layer. Layer emission is ignored: it holds edges of what the camera sees, not outliers.
 struct BrightestSample {
   Rgb radiance{0.0f};   ///< W/m^2/sr
-  float brightest = 0;  ///< sum of its channels
+  Rgb second{0.0f};     ///< the brightest of the other samples noted so far in the same layer; 0: none
+  float brightest = 0;  ///< sum of the channels of `radiance`
   Layer layer = Layer::specular;
   /// layers: the layers whose samples are stored; for a frame that will be filtered, layer specular alone.
   void note(const Layers& sample, bool specular_alone);
@@ -54,11 +55,11 @@ struct SampledPixels {
 };
 
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994],
-/// docs/methods/outliers.md. A sample may contribute to its pixel as much as the pixel's allowed error, or as much as
-/// the pixel's other samples (FurtherSamples included) or the 24 pixels around show in that layer, whichever is most.
-/// The rest is taken out of `pixels` (sums of parts) and spread over so many pixels around that it is below the allowed
-/// error in each. Pixels without a surface (coverage 0) receive none. The sum of a layer over the picture stays the
-/// same up to rounding. Returns the share of the picture's light that was spread.
+/// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the pixel's
+/// allowed error, or as much as the pixel's other samples (FurtherSamples included) or the 24 pixels around show in
+/// that layer, whichever is most. The rest is taken out of `pixels` (sums of parts) and spread over so many pixels
+/// around that it is below the allowed error in each. Pixels without a surface (coverage 0) receive none. The sum of a
+/// layer over the picture stays the same up to rounding. Returns the share of the picture's light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
 
 /// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.

@@ -59,15 +59,16 @@ TEST(Choose, WhereHalvesAgreeThePictureStays) {
 }
 
 /// V = sigma^2 / 2 is the variance of M. For a candidate without noise and with the bias b, the best share is V / (V +
-/// b^2). The mean of the result then has the bias b V / (V + b^2), and its squared error is V b^2 / (V + b^2), which
-/// for b^2 = V is half of that of either. V and (F - M)^2 are estimated from about 60 pixels each, to sqrt(2 / 60) = 18
-/// %. So the share has a random error of 9 % of 1, which adds (.09)^2 (V + b^2) = .016 V to the squared error, and it
-/// is a few per cent too large in the mean, because the inverse of a noisy mean is too large.
-TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
+/// b^2), here .5. The standard error of V - C from 108 pixels, 2 V / sqrt(108) = .19 V, is added: w = .6. The bias is
+/// given back: the mean of M stays, to rounding. What remains is the noise (1 - w)^2 V = .16 V. (F - M)^2 is estimated
+/// from as many pixels, so w has a random error of about .1, which adds .01 (V + b^2) = .02 V; the mean of M over about
+/// 100 pixels adds .01 V. Without the light given back the squared error would be .16 V + .36 b^2.
+TEST(Choose, ABiasedCandidateGetsAShareAndLeavesTheMean) {
   const float sigma = 0.1f, variance = sigma * sigma / 2, b = std::sqrt(variance);
-  const Colours out = chosen({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}});
-  EXPECT_NEAR(mean(out[1]) - 1, double(b) / 2, 0.06 * double(b));
-  EXPECT_NEAR(squared_error(out[1], 1), double(variance) / 2, 0.08 * double(variance));
+  const Halves raw{noise(2, sigma), noise(3, sigma)};
+  const Colours out = chosen(raw, {{constant(1 + b), constant(1 + b)}});
+  EXPECT_NEAR(mean(out[1]), (mean(raw.a[1]) + mean(raw.b[1])) / 2, 1e-6);
+  EXPECT_NEAR(squared_error(out[1], 1), 0.16 * double(variance), 0.08 * double(variance));
 }
 
 /// A candidate with a bias of 10 standard deviations of M gets the share 1 / 101.
@@ -88,8 +89,9 @@ TEST(Choose, TheBetterCandidateIsTaken) {
 }
 
 /// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise. The covariance of F and M is V / 2,
-/// and the mean of (F - M)^2 is (b^2 + V) / 4. With b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean has
-/// the bias b / 4. Without the covariance the share would be 1. The tolerance is as above.
+/// and the mean of (F - M)^2 is (b^2 + V) / 4. With b^2 = 3 V the best share is (V - V / 2) / V = .5; with the standard
+/// error of V - C, .19 V / 2, w = .6. The noise (1 - w / 2)^2 V = .49 V remains. Without the covariance the share would
+/// be 1, and .25 V would remain. w has a random error of about .1, and so the squared error one of .07 V at a pixel.
 TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   const float sigma = 0.1f, b = sigma * std::sqrt(1.5f);
   const Halves raw{noise(8, sigma), noise(9, sigma)};
@@ -98,7 +100,28 @@ TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
     for (auto& plane : *half)
       for (float& v : plane) v = (v + 1 + b) / 2;
   const Colours out = chosen(raw, {candidate});
-  EXPECT_NEAR(mean(out[0]) - 1, double(b) / 4, 0.05 * double(b));
+  EXPECT_NEAR(squared_error(out[0], 1) / (double(sigma) * double(sigma) / 2), 0.49, 0.06);
+}
+
+/// One pixel of 30 times the light in both halves, among pixels whose noise is .5 of the light. The mean around it is
+/// 1 + 29 / 49 = 1.6, so its (F - M)^2 is 841 / (1.6 + .25 x 28.4)^2 = 11 of the scale, of which the window's middle
+/// counts 1 / 49: .23. V = .125 / 1.6^2 = .05 of the scale gives the share .05 / (.05 + .23) = .18, and (1 - .18)^2 =
+/// .67 of the noise remains at most. Without the pixel's own light in its scale its (F - M)^2 would be 330, and .99 of
+/// the noise would remain.
+TEST(Choose, ABrightPixelDoesNotKeepTheNoiseAroundIt) {
+  const float sigma = 0.5f;
+  Halves raw{noise(10, sigma), noise(11, sigma)};
+  const std::size_t middle = kSide * kSide / 2 + kSide / 2;
+  for (std::size_t c = 0; c < 3; ++c) raw.a[c][middle] = raw.b[c][middle] = 30;
+  const Colours out = chosen(raw, {{constant(1), constant(1)}});
+  double before = 0, after = 0;
+  for (std::size_t y = 0; y < 5; ++y)
+    for (std::size_t x = 0; x < 5; ++x)
+      if (const std::size_t p = middle + (y - 2) * kSide + x - 2; p != middle) {
+        before += std::pow(double(mean_of(raw.a[0][p], raw.b[0][p])) - 1, 2);
+        after += std::pow(double(out[0][p]) - 1, 2);
+      }
+  EXPECT_LT(after, 0.75 * before);
 }
 
 TEST(Choose, ACandidateThatFiltersNothingChangesNothing) {

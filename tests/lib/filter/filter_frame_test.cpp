@@ -196,11 +196,12 @@ TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
                 1e-5f);
 }
 
-/// A quarter of each pixel in column 20 shows the surface of column 19. A sample of such a pixel shows either side, and
-/// its halves show this noise. The result is the mixture of both sides' other pixels; the same holds for emission.
+/// A quarter of each pixel in column 20 shows the surface of column 19. One pixel of seven found all of the left side's
+/// light, and the halves show this noise. The result is the mixture of both sides' other pixels; the same holds for
+/// emission. The light that the filter takes from a pixel and gives to others is 0 in sum over any seven lines.
 TEST(Filter, EdgesArePutTogetherByCoverage) {
   Image frame = wall(40, 64);
-  const auto mixed = [](int x, int y) { return x < 20 ? 4.0f : x > 20 ? 1.0f : y % 4 == 0 ? 4.0f : 1.0f; };
+  const auto mixed = [](int x, int y) { return x < 20 ? 4.0f : x > 20 ? 1.0f : y % 7 == 0 ? 6.25f : 1.0f; };
   for (const char* layer : {"direct", "emission"}) {
     grey(frame, layer, mixed);
     set_noise(frame, layer, [&](int x, int y) { return x == 20 ? mixed(x, y) - 1.75f : 0.0f; });

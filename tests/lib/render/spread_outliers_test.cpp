@@ -84,6 +84,16 @@ TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
 }
 
+/// Two such samples of four do not confirm each other: each may leave 1.05, and the two others hold .5.
+TEST(SpreadOutliers, TwoSamplesDoNotConfirmEachOther) {
+  Even even(320, 300);
+  const std::size_t middle = 150 * 320 + 160;
+  even.set(middle, {Rgb(1.0f), Rgb(1000.0f), Rgb(1.0f), Rgb(800.0f)});
+  const std::vector<Layers> pixels = even.spread();
+  EXPECT_NEAR(pixels[middle][Layer::indirect].g, 2.6f, kError);
+  EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
+}
+
 /// In a corner, of a picture so small that all is near a border, beside pixels that show nothing, and with errors that
 /// differ: the sum stays and nothing arrives where nothing is seen. A red sample gives no green.
 TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
