@@ -66,24 +66,11 @@ void check_points(const Chain& chain, const std::string& file, const FramePoints
 
 void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history,
                  tools::Output& output) {
-  formats::IrradcacheHeader header;
-  header.identity = identity_of(frame);
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
-  header.columns = formats::column_clearance;
-  header.rays = std::uint32_t(options.gather.rays);
-  header.error_bound = double(options.placement.error_bound);
-  header.least_cosine = double(store.least_cosine());
-  for (const IrradianceRecord& record : store.records()) {
-    header.min_radius =
-        header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
-    header.max_radius = std::max(header.max_radius, double(record.radius));
-  }
+  formats::IrradcacheHeader header =
+      tools::records_header(frame, store.records(), store.least_cosine(), options.gather, options.placement);
   header.placed_frames = {{frame.frame, frame.frame}};
   header.history = history;
-  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
-  writer.write(to_file(store.records(), frame));
-  writer.finish();
-  output.commit();
+  tools::write_records(header, to_file(store.records(), frame), output);
 }
 
 void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool first) {

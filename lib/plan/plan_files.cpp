@@ -72,7 +72,7 @@ Json segment_json(const PlannedSegment& segment) {
   for (const MovingNode& node : segment.moves)
     json["moves"].push_back({{"node", node.name}, {"carries", node.carries}, {"why", node.why}});
   json["hashes"] = {
-      {"static_geometry", segment.static_geometry}, {"standing", segment.standing}, {"frozen", segment.frozen}};
+      {"static_geometry", segment.static_geometry}, {"static_scene", segment.static_scene}, {"frozen", segment.frozen}};
   json["frames"] = Json::array();
   for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame));
   return json;
