@@ -2,7 +2,7 @@
 # film.sh -- makes OUT/film.mp4 from the previews of the frames, all at one exposure. run.sh runs it inside OUT, after
 # the frames.
 command -v ffmpeg > /dev/null ||
-  { echo 'make film: there is no ffmpeg; install it (Debian: apt-get install ffmpeg), then type this again' >&2; exit 2; }
+  { echo 'make film: there is no ffmpeg; install it (Debian: apt-get install ffmpeg) and type this again' >&2; exit 2; }
 . "${0%/*}/ending.sh"
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT

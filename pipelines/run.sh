@@ -81,7 +81,8 @@ if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 # The commands that will run are those that make -n prints. progress.sh counts them. If there are none, make need not
 # read a long plan once more.
 PROGRESS=$aside/progress BEGAN=$(date +%s)
-(MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n -s) > "$aside/commands" 2> /dev/null || echo "$goal" >> "$aside/commands"
+(MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n -s) > "$aside/commands" 2> /dev/null ||
+  echo "$goal" >> "$aside/commands"
 sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' "$aside/commands" > "$PROGRESS"
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"

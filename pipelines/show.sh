@@ -35,7 +35,8 @@ now=
 case $marker in
   shown/exposure-*)
     part_of "$marker"
-    info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" && mv -f "$part" "$marker";;
+    info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" &&
+      mv -f "$part" "$marker";;
   shown/sheet-*)
     file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
     ! grep -q '^log :=' "$PLAN" || marks=$(sh "$PIPELINES/walkthrough.sh" marks)
