@@ -1,5 +1,4 @@
-// lib/plan/graph.cpp -- turns decisions into files; what light, pictures and walkthroughs need stands in files of these
-// names.
+// lib/plan/graph.cpp -- turns decisions into files: the files of the pictures asked for, and those of the report.
 #include "lib/plan/graph.h"
 
 #include <algorithm>
@@ -59,7 +58,6 @@ std::string joined(const std::vector<int>& frames) {
   return text;
 }
 
-/// Options without one of them.
 std::string without(const std::string& words, const std::string& word) {
   std::istringstream stream(words);
   std::string text;

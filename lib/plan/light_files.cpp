@@ -14,6 +14,7 @@ void add_view(GraphBuilder& g, int frame, Command& c) {
   if (s.decisions.view.empty()) c.option("--importance none");
   else c.file("--importance", g.add_state("view", s.first, s.decisions.view));
 }
+
 std::string majorants_file(GraphBuilder& g, int frame) {
   const PlannedSegment& s = g.segment(frame);
   return g.once("majorants " + std::to_string(s.first),
@@ -24,6 +25,7 @@ std::string photon_words(const GraphBuilder& g, int frame) {
   const Decisions& d = g.decided(frame);
   return "--photons " + std::to_string(d.photon_paths) + " --kinds " + d.kinds;
 }
+
 bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving != MovingMethod::anew; }
 /// Hash of all that a static map, its points and its records depend on.
 std::string static_content(const GraphBuilder& g, int frame) {
@@ -61,6 +63,7 @@ std::string static_points(GraphBuilder& g, int frame) {
   c.option(g.wish.points);
   return g.add(stage::static_points, first, c);
 }
+
 /// Adds points as options: all points, or the low and the high part.
 void add_points(GraphBuilder& g, int lit, Command& c) {
   const std::string all = point_file(g, lit);
@@ -77,6 +80,7 @@ std::string record_words(const GraphBuilder& g, int lit) {
       has_word(g.wish.records, "--rays") ? "" : " --rays " + std::to_string(g.decided(lit).record_rays);
   return g.size + rays + (g.wish.records.empty() ? "" : " " + g.wish.records);
 }
+
 /// Pictures of the segment whose cameras share static records with a frame: a block of Decisions::together.
 std::vector<int> together(const GraphBuilder& g, int frame) {
   const std::vector<int> pictures = g.segment(frame).pictures();
@@ -85,6 +89,7 @@ std::vector<int> together(const GraphBuilder& g, int frame) {
   return {pictures.begin() + block * size,
           pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
 }
+
 std::string static_records(GraphBuilder& g, int frame) {
   const std::vector<int> pictures = together(g, frame);
   Command c{"--frames " + joined(pictures) + " --map static", {}, static_content(g, frame) + g.cameras(pictures)};
@@ -92,10 +97,12 @@ std::string static_records(GraphBuilder& g, int frame) {
   c.option(record_words(g, frame));
   return g.add(stage::static_records, pictures.front(), c);
 }
+
 /// The state of light of the frame before, if this state's records continue that state's.
 int state_before(const GraphBuilder& g, int lit) {
   return lit > g.segment(lit).first ? g.state(lit - 1).lit_frame : lit;
 }
+
 /// True if records are kept over time. Only for states that a single picture shows: if the camera moves while the
 /// light is constant, one cache serves all its pictures.
 bool over_time(const GraphBuilder& g, int lit) {
@@ -108,6 +115,7 @@ std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pic
   c.option(record_words(g, lit));
   return g.add(stage::records, pictures.front(), c);
 }
+
 std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
   Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
   c.file("--update", static_records(g, pictures.front()));
@@ -123,6 +131,7 @@ std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pi
   c.option(record_words(g, lit));
   return g.add(stage::records, pictures.front(), c);
 }
+
 std::string record_file(GraphBuilder& g, int frame);
 
 std::string kept_records(GraphBuilder& g, int lit) {
@@ -164,11 +173,13 @@ std::string preview_photons(GraphBuilder& g, int frame, bool still) {
   c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
   return g.add(stage::photons, frame, c);
 }
+
 std::string width_words(const GraphBuilder& g, int frame) {
   std::ostringstream words;
   words << "--filter-width " << g.decided(frame).texture_width;
   return words.str();
 }
+
 std::string counts(GraphBuilder& g, int frame) {
   const PlannedSegment& s = g.segment(frame);
   Command c{
@@ -181,6 +192,7 @@ std::string counts(GraphBuilder& g, int frame) {
   c.file("--photons", preview_photons(g, frame, false));
   return g.add(stage::counts, frame, c);
 }
+
 /// The light textures of a state of light.
 std::string preview_light(GraphBuilder& g, int lit) {
   const PlannedSegment& s = g.segment(lit);
@@ -272,4 +284,5 @@ void add_light(GraphBuilder& g, int frame, Command& c) {
   }
   c.file("--lights", lights(g, frame));
 }
+
 }  // namespace tempolux

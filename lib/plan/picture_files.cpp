@@ -36,12 +36,13 @@ std::string in_motion(const GraphBuilder& g, int frame, const std::string& chann
 }
 
 std::string pixels_of(const GraphBuilder& g, int frame) {
-  const std::string words_of_all = without(g.wish.pixels, "--learn-lights");
-  if (!g.wish.preset_pixels) return words_of_all;
+  const std::string wished = without(g.wish.pixels, "--learn-lights");
+  if (!g.wish.preset_pixels) return wished;
   std::ostringstream words;
-  words << words_of_all << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error;
+  words << wished << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error;
   return words.str();
 }
+
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels) {
   Command c{"--frame " + std::to_string(frame), {}, g.cameras({frame}) + in_motion(g, frame, channels)};
   add_light(g, frame, c);
@@ -49,6 +50,7 @@ Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, con
   if (g.decided(frame).photons() && !g.preview()) c.option(kAudit);
   return c;
 }
+
 int shown_by(const GraphBuilder& g, int frame, const std::string& channels) {
   if (!has_channel(channels, "motion")) return g.state(frame).picture;
   for (int f = g.segment(frame).first + 1; f < frame; ++f)

@@ -20,6 +20,7 @@ bool same_light(const GraphBuilder& g, const Interval& interval) {
     if (g.state(f).light != g.state(interval.first).light) return false;
   return true;
 }
+
 std::string key_picture(GraphBuilder& g, int frame) {
   const bool layers = g.wish.filter > 0 || has_channel(g.wish.channels, "layers");
   const std::string channels = with_channels(g.wish.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
@@ -27,6 +28,7 @@ std::string key_picture(GraphBuilder& g, int frame) {
   if (g.wish.filter > 0) return filtered_picture(g, frame, channels);
   return g.add(stage::keys, frame, frame_command(g, frame, pixels_of(g, frame), channels));
 }
+
 /// The interval of equal light between first keys that strictly holds a frame; false: the frame is a key. Intervals
 /// start at fixed multiples; an interval whose light changes is halved until it does not.
 bool interval_around(const GraphBuilder& g, int frame, Interval& interval) {
@@ -38,6 +40,7 @@ bool interval_around(const GraphBuilder& g, int frame, Interval& interval) {
   }
   return false;
 }
+
 /// The file that decides an interval, from its keys and from the files of its halves; "": no frame lies between them.
 std::string interval_file(GraphBuilder& g, const Interval& i) {
   if (i.last - i.first < 2) return "";
