@@ -1,31 +1,45 @@
 # build.mk -- building, testing, installing: goals of Makefile.example that need no scene. build.md is its page.
 PACKAGES = g++ cmake ninja-build ccache pkg-config libembree-dev libopenexr-dev libopenimageio-dev libtinygltf-dev \
   libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev libnanoflann-dev libxxhash-dev libpng-dev \
-  libjpeg62-turbo-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libopenvdb-dev libboost-iostreams-dev libseccomp-dev libfftw3-dev \
-  gnuplot-nox python3 git make
+  libjpeg62-turbo-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libopenvdb-dev libboost-iostreams-dev \
+  libseccomp-dev libfftw3-dev gnuplot-nox python3 git make
 INSTALL = apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $(PACKAGES)
 deps: # Debian: packages that are missing are installed, by root only. Elsewhere they are yours to provide.
 	@command -v dpkg-query > /dev/null || exit 0; \
-	test $$(dpkg-query -W -f '$${db:Status-Status}\n' $(PACKAGES) 2> /dev/null | grep -cx installed) -ge $(words $(PACKAGES)) || \
+	there=$$(dpkg-query -W -f '$${db:Status-Status}\n' $(PACKAGES) 2> /dev/null | grep -cx installed); \
+	test $$there -ge $(words $(PACKAGES)) || \
 	if test $$(id -u) = 0; then $(INSTALL); else echo 'packages are missing; as root: $(INSTALL)' >&2; exit 1; fi
 in_top = cd "$$TOP" &&
 configured: deps ; @$(in_top) { test -f build/release/build.ninja || cmake --preset release; }
 build: configured ; @$(in_top) cmake --build --preset release --target tools
 build_all: configured ; @$(in_top) cmake --build --preset release
 check: build_all # all tests; those skipped are counted and named
-	@$(in_top) ctest --preset release -j 2; code=$$?; sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
+	@$(in_top) ctest --preset release -j 2; code=$$?; \
+	sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
 # Evidence that takes longer. Programs are those of this tree; results go to OUT.
-bench: build_all ; $(in_top) python3 -B tests/bench/bench.py --out "$$OUT/bench" $(if $(PEERS),--peers) # error against time, required figures, into RESULTS.md
-report-papers: build ; $(in_top) python3 -B tests/bench/papers.py build/release/bin "$$OUT/papers" # figures of the papers with our numbers
-ablation: configured ; $(in_top) python3 -B tests/bench/ablation.py --out "$$OUT/bench" --page docs/results/ablation.md # what each idea of the samplers is worth
-stress: build ; $(in_top) python3 -B tests/stress/stress.py --bin build/release/bin $(STRESS) # extreme cases; STRESS=--long for some hours more
-asan: deps ; $(in_top) cmake --preset asan && cmake --build --preset asan && ctest --preset asan
-tsan: deps ; $(in_top) cmake --preset tsan && cmake --build --preset tsan --target tools && sh tests/pipelines/tsan.sh build/tsan/bin # a short chain under ThreadSanitizer
+bench: build_all # error against time, required figures, into RESULTS.md
+	$(in_top) python3 -B tests/bench/bench.py --out "$$OUT/bench" $(if $(PEERS),--peers)
+report-papers: build # figures of the papers with our numbers
+	$(in_top) python3 -B tests/bench/papers.py build/release/bin "$$OUT/papers"
+ablation: configured # what each idea of the samplers is worth
+	$(in_top) python3 -B tests/bench/ablation.py --out "$$OUT/bench" --page docs/results/ablation.md
+stress: build # extreme cases; STRESS=--long for some hours more
+	$(in_top) python3 -B tests/stress/stress.py --bin build/release/bin $(STRESS)
+asan: deps
+	$(in_top) cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+tsan: deps # a short chain under ThreadSanitizer
+	$(in_top) cmake --preset tsan && cmake --build --preset tsan --target tools
+	$(in_top) sh tests/pipelines/tsan.sh build/tsan/bin
 fuzz: PACKAGES += clang libclang-rt-dev
-fuzz: deps ; $(in_top) sh tests/fuzz/run.sh # hostile input for every reader, each for FUZZ_SECONDS=60
-install: configured ; $(in_top) cmake --build --preset release --target tools manual && cmake --install build/release --prefix '$(PREFIX)'
+fuzz: deps # hostile input for every reader, each for FUZZ_SECONDS=60
+	$(in_top) sh tests/fuzz/run.sh
+programs: configured
+	$(in_top) cmake --build --preset release --target tools manual
+install: programs
+	$(in_top) cmake --install build/release --prefix '$(PREFIX)'
 deb: PACKAGES += dpkg-dev
-deb: configured ; $(in_top) cmake --build --preset release --target tools manual && cpack --config build/release/CPackConfig.cmake -B build/release/deb # a Debian package
+deb: programs # a Debian package
+	$(in_top) cpack --config build/release/CPackConfig.cmake -B build/release/deb
 help:
 	@sed -n '/^names :=/q; s/^# //p; /^[A-Z_]* *=/p' "$$TOP/Makefile.example"
 clean: # what was built here and what was made in OUT, and nothing else

@@ -6,12 +6,12 @@ done
 rmdir "$TOP/build" 2> /dev/null
 cd "$OUT" 2> /dev/null || exit 0
 [ -f plan.mk ] || exit 0
-for folder in state shown stands photons moved refined stands_points points split textures stands_cache cache kept lights keys walk walked raw filtered \
-  pictures smoky path error report; do
+ours='[0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|warnings|files[.0-9]*|.*[.](csv|md|html|svg|png|gp)'
+for folder in state shown stands photons moved refined stands_points points split textures counts windows stands_cache \
+  cache kept lights keys walk walked raw filtered pictures smoky path error report; do
   [ -d "$folder" ] || continue
-  find "$folder" -maxdepth 1 -type f -regextype egrep \
-    -regex '[a-z_]+/([0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|warnings|files[.0-9]*|.*[.](csv|md|html|svg|png|gp))' -delete
-  rm -f "$folder/.lock" "$folder"/.*.tmp.*
+  find "$folder" -maxdepth 1 -type f -regextype egrep -regex "[a-z_]+/($ours)" -delete
+  rm -f "$folder/.lock" "$folder/.makes" "$folder"/.*.tmp.*
   rmdir "$folder" 2> /dev/null
 done
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null

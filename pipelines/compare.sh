@@ -35,4 +35,5 @@ picture() {   # picture RUN FOLDER FRAME
   done
   sed "1,/<!-- frames -->/d" "$PIPELINES/compare.html"
 } > "$work/page.html" || exit 3
-cp "$work/page.html" "$page.$$" && mv -f "$page.$$" "$page" && echo "$page: $(echo "$common" | wc -w) frames of two runs"
+cp "$work/page.html" "$page.$$" && mv -f "$page.$$" "$page" &&
+  echo "$page: $(echo "$common" | wc -w) frames of two runs"

@@ -1,7 +1,8 @@
 #!/bin/sh
 # film.sh -- makes OUT/film.mp4 from the previews of the frames, all at one exposure. run.sh runs it inside OUT, after
 # the frames.
-command -v ffmpeg > /dev/null || { echo 'make film: there is no ffmpeg; install it (Debian: apt-get install ffmpeg), then type this again' >&2; exit 2; }
+command -v ffmpeg > /dev/null ||
+  { echo 'make film: there is no ffmpeg; install it (Debian: apt-get install ffmpeg) and type this again' >&2; exit 2; }
 . "${0%/*}/ending.sh"
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -12,5 +13,6 @@ for name in $(sed -n 's/^previews := //p' plan.mk); do   # in the order asked fo
 done
 fps=$(sed -n 's/^ *"fps": *\([0-9.e+]*\),*$/\1/p' plan.json)
 # H.264 needs even sizes: an odd picture gets a black row or column.
-ending ffmpeg -nostdin -v error -y -framerate "${fps:-24}" -i "$work/%06d.png" -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p "$work/film.mp4" || exit 3
+ending ffmpeg -nostdin -v error -y -framerate "${fps:-24}" -i "$work/%06d.png" -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' \
+  -pix_fmt yuv420p "$work/film.mp4" || exit 3
 cp "$work/film.mp4" film.mp4.$$ && mv -f film.mp4.$$ film.mp4 && echo "$OUT/film.mp4: $n frames, $fps a second"

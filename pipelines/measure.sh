@@ -63,7 +63,8 @@ case $AQM in
   *[!0-9.%]*) echo "AQM=$AQM: a share of the pixels, such as 5%" >&2; exit 2;;
 esac
 list=
-sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "$OUT/plan.json" | paste -d ' ' - - > "$work/segments"
+sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "$OUT/plan.json" |
+  paste -d ' ' - - > "$work/segments"
 while read -r first last; do
   line=$(segment "$first" "$last" < /dev/null) || exit 3
   list="$list${list:+,
@@ -71,4 +72,5 @@ while read -r first last; do
 done < "$work/segments"
 printf '{"format": "tempolux measured", "version": "1.0", "segments": [\n%s\n]}\n' "$list" > "$table.$$" &&
   mv -f "$table.$$" "$table" && rm -rf "$runs"
-echo "$table: what was measured$([ "$METHOD" != preview ] || echo "; MEASURED=$table lets make take the photons that it asks for")"
+echo "$table: what was measured"
+[ "$METHOD" != preview ] || echo "MEASURED=$table lets make take the photons that it asks for"

@@ -7,25 +7,30 @@
 #
 # The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
 # WEIGHT, their estimated cost in all (progress.sh weigh); BEGAN, the time at which the first one began (date +%s).
-clock() { if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60)); else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi; }
+clock() {
+  if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60))
+  else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi
+}
 
 stage() {   # a file inside OUT in words
   case $1 in
     photons) echo photons;; stands) echo 'photons of what stands still';; moved) echo 'photons that movers change';;
     refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';;
     stands_points) echo 'light on what stands still';;
-    split) echo 'bright points apart';; cache) echo 'indirect light';; stands_cache) echo 'indirect light on what stands still';;
-    kept) echo 'indirect light, kept over time';; textures) echo 'light textures';; counts) echo 'photons counted';;
-    windows) echo 'light from photons of many frames';; lights) echo 'which way sky and sun come in';;
-    pictures | raw) echo pixels;; filtered) echo 'noise filter';; smoky) echo smoke;; keys) echo 'pixels of a key frame';;
-    walk) echo 'distance of keys';; walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
+    split) echo 'bright points apart';; cache) echo 'indirect light';;
+    stands_cache) echo 'indirect light on what stands still';; kept) echo 'indirect light, kept over time';;
+    textures) echo 'light textures';; counts) echo 'photons counted';; lights) echo 'which way sky and sun come in';;
+    windows) echo 'light from photons of many frames';; pictures | raw) echo pixels;; filtered) echo 'noise filter';;
+    smoky) echo smoke;; keys) echo 'pixels of a key frame';; walk) echo 'distance of keys';;
+    walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
   esac
 }
 
 # Relative costs of the commands for the file names on standard input: CPU seconds for a frame of the demo.
 weigh() {
-  awk -F / 'BEGIN { w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7; w["path"] = 60; w["cache"] = 5; w["kept"] = 5
-                    w["photons"] = w["stands"] = w["points"] = w["stands_points"] = w["filtered"] = w["textures"] = w["lights"] = w["smoky"] = 1 }
+  awk -F / 'BEGIN { w["path"] = 60; w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7
+                    w["cache"] = w["kept"] = 5; w["photons"] = w["stands"] = w["points"] = w["stands_points"] = 1
+                    w["filtered"] = w["textures"] = w["lights"] = w["smoky"] = 1 }
             { sum += $1 in w ? w[$1] : .2 } END { printf "%.1f", sum }'
 }
 
@@ -49,7 +54,8 @@ in_words() {   # a file inside OUT, by the frame that was asked for
     *[!0-9+]*) echo "$folder"; return;;
     *+*) echo "frames $(number "${frame%+*}") to $(number "${frame#*+}"), $(stage "$folder")"; return;;
   esac
-  if ! grep -q "^frames/${frame}[.]exr:" plan.mk; then   # a frame that looks the same was asked for, or frames that share its light
+  # A frame that looks the same was asked for, or frames that share its light.
+  if ! grep -q "^frames/${frame}[.]exr:" plan.mk; then
     alike=$(sed -n "s|^frames/\([0-9]*\)[.]exr: .*[a-z]/$frame-.*|\1|p" plan.mk | head -1)
     case $alike,$folder in
       ?*,*) frame=$alike;;
@@ -64,9 +70,9 @@ number() { n_=${1#"${1%%[!0]*}"}; echo "${n_:-0}"; }   # 0012 -> 12
 
 count() { sed -n "s/^$1 := //p" plan.mk | wc -w; }
 
-frames_of() { [ "$1" = 1 ] && echo "1 frame of $SIZE" || echo "$1 frames of $SIZE"; }
+of() { [ "$1" = 1 ] && echo "1 $2" || echo "$1 $2s"; }   # of 3 frame -> 3 frames
 
-begin() { echo "$(frames_of "$(count frames)"), $QUALITY: $TOTAL commands to run (V=1 shows them)"; }
+begin() { echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" command) to run (V=1 shows them)"; }
 
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
 # with path tracing. Noise is printed in brightness steps of a screen, of which white has 255. The audit is the bias
@@ -76,12 +82,12 @@ end() {
   # shellcheck disable=SC2086
   audit=$("$BIN/tempolux-info" --account $frames)
   sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
-    awk -v frames="$(count frames)" -v shown="$(frames_of "$(count frames)")" -v audit="$audit" -v out="$OUT" '
+    awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }
       {
         folder = $0; sub("/.*", "", folder); whole = 1
         while ((getline line < $0) > 0) {
-          if (whole && line ~ /"cpu_s":/) { cpu += value(line); whole = 0 }   # the first of a file is that of the whole command
+          if (whole && line ~ /"cpu_s":/) { cpu += value(line); whole = 0 }   # the first is of the whole command
           if (line ~ /"noise.codes":/) { noise[folder] += value(line); counted[folder]++ }
         }
         close($0)
@@ -89,7 +95,8 @@ end() {
       END {
         printf "%s: %.*f CPU s in all, %.1f a frame", shown, cpu < 10, cpu, cpu / frames
         last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
-        if (counted[last]) printf "; noise %.1f of 255 brightness steps%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
+        if (counted[last]) printf "; noise %.1f of 255 brightness steps", noise[last] / counted[last]
+        if (last == "raw") printf " before the filter"
         printf "%s; look at %s/sheet.png\n", audit == "" ? "" : "; " audit, out
       }'
 }

@@ -17,7 +17,9 @@ for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME MEASURED; do absolute $name; 
 goal=$1 film=
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
-export PIPELINES="$TOP/pipelines"
+export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
+[ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
+  { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $goal in
   tidy) exec "$BIN/scene-plan" --tidy "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
@@ -26,25 +28,32 @@ esac
 
 # The wish as options. The preset decides about empty variables.
 set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channels "$CHANNELS" --camera "$CAMERA" \
-  --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" --strategy "$STRATEGY" \
-  --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" --reference-samples "$REFERENCE_SAMPLES"
-for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD light-units:LIGHT_UNITS \
-  environment-color:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS \
-  smoke-words:SMOKE texture-words:TEXTURES; do
+  --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" \
+  --strategy "$STRATEGY" --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" \
+  --reference-samples "$REFERENCE_SAMPLES"
+for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD \
+  light-units:LIGHT_UNITS environment-color:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT \
+  volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS smoke-words:SMOKE; do
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
 done
-case $SURFACES in gather) ;; textures) set -- "$@" --textures ;; *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;; esac
+case $SURFACES in
+  gather) ;;
+  textures) set -- "$@" --textures ;;
+  *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;;
+esac
 # shellcheck disable=SC2086
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh" \
   --recipes "$TOP/pipelines/show.sh"
 
-export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 . "${0%/*}/ending.sh"
 plan=plan.mk folder=$OUT
 aside=$(mktemp -d) || exit 3
 trap 'rm -rf "$aside"' EXIT
-makes() { goal=$1; shift; exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"; }   # in a process of its own
+makes() {   # in a process of its own
+  goal=$1; shift
+  exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
+}
 estimate() {   # options of scene-plan: the first picture, small, at two sizes
   ending $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
   for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
@@ -60,7 +69,8 @@ if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
 else
   # shellcheck disable=SC2086
   ending $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
-  plan=state/.plan.mk.tmp.$(uname -n).$$   # a walkthrough reads its plan again and again; a second make in OUT writes another one meanwhile
+  # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
+  plan=state/.plan.mk.tmp.$(uname -n).$$
   trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
   cp "$OUT/plan.mk" "$OUT/$plan" || exit
 fi
@@ -68,9 +78,12 @@ fi
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 
-# The commands that will run are those that make -n prints. progress.sh counts them.
+# The commands that will run are those that make -n prints. progress.sh counts them. If there are none, make need not
+# read a long plan once more.
 PROGRESS=$aside/progress BEGAN=$(date +%s)
-MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
+(MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n -s) > "$aside/commands" 2> /dev/null ||
+  echo "$goal" >> "$aside/commands"
+sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' "$aside/commands" > "$PROGRESS"
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"
 export TOTAL WEIGHT PROGRESS BEGAN
@@ -79,7 +92,20 @@ if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each st
   (estimate "$@")
   df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
 fi
-ending makes "$goal" -C "$folder" || exit
+# Every make in OUT holds a lock, so that one that fails can see whether another one still runs.
+exec 8> "$OUT/state/.makes"
+alone() { ! command -v flock > /dev/null || flock "$@" 8; }
+alone -s
+failed() {
+  alone -n -x ||
+    echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
+  exit "$1"
+}
+if [ -s "$aside/commands" ]; then
+  ending makes "$goal" -C "$folder" || failed $?
+else
+  echo "make: Nothing to be done for '$goal'."
+fi
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
 [ "$TOTAL$goal$film" != 0demo ] || echo "nothing has changed; look at $OUT/sheet.png"
 [ "$goal" != report ] || echo "look at $OUT/report/index.html"

@@ -21,7 +21,10 @@ part_of() { part=${1%/*}/.${1##*/}.tmp.$(uname -n).$$; }   # a name that make ti
 
 # The text of a marker: digests of the shown frames, and $1. A command may have made the same picture again: then the
 # text is equal and nothing is shown anew.
-shows() { said=$1; shift; now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $("$BIN/tempolux-info" --digest "$@" | cut -d' ' -f1 | cksum)"; }
+shows() {
+  said=$1; shift
+  now="$(sed -n 's/^viewer := *//p' "$PLAN") $said $("$BIN/tempolux-info" --digest "$@" | cut -d' ' -f1 | cksum)"
+}
 is_shown() { [ -f "$file" ] && [ "$now" = "$(cat "$@" 2> /dev/null)" ]; }   # is_shown OLD_MARKER...
 
 # Two makes that show different pictures of a frame run one after the other: the marker always fits the shown file.
@@ -32,7 +35,8 @@ now=
 case $marker in
   shown/exposure-*)
     part_of "$marker"
-    info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" && mv -f "$part" "$marker";;
+    info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" &&
+      mv -f "$part" "$marker";;
   shown/sheet-*)
     file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
     ! grep -q '^log :=' "$PLAN" || marks=$(sh "$PIPELINES/walkthrough.sh" marks)

@@ -9,8 +9,9 @@
 PLAN = plan.mk
 include $(PLAN)
 # An empty variable leaves out its option. Names of files stay in the environment.
-shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} $${VOLUME:+--volume "$$VOLUME"} \
-  $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME --said state/warnings
+shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} \
+  $${VOLUME:+--volume "$$VOLUME"} $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME \
+  --said state/warnings
 scene  = "$$SCENE" $(words) $(shared)
 drawn  = $(scene) $(seed)
 seen   = $(drawn) --camera "$$CAMERA"
@@ -85,12 +86,14 @@ walk/%.done:
 walked/%.exr:
 	$(quiet)$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
 # make runs a line that contains $(MAKE) even with -n: here a variable holds it.
-walk_rule = $(if $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS)))),,+)$(quiet)$(say)exec env MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' \
+dry       = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+walk_rule = $(if $(dry),,+)$(quiet)$(say)exec env MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' \
   SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
 # Files that a user looks at: frames, previews, the sheet, a walkthrough's log (show.sh). shown/WHAT-KEY is the marker
 # of a file: if it is missing, the file is made, and a file that was removed is made again.
-show = exec env PLAN="$(PLAN)" sh "$$PIPELINES/show.sh" $(firstword $(filter shown/%,$@ $|)) $(filter-out $(frames) $(firstword $(filter shown/%,$@ $|)),$|)
+marker = $(firstword $(filter shown/%,$@ $|))
+show = exec env PLAN="$(PLAN)" sh "$$PIPELINES/show.sh" $(marker) $(filter-out $(frames) $(marker),$|)
 shown/%:
 	$(quiet)$(show)
 $(frames) $(previews) sheet.png walk.log:
@@ -101,7 +104,9 @@ path/%.exr path/%_a.exr path/%_b.exr:
 	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
-write_report = $(RUN) "$$BIN"/error-report -o report --title "$$(basename -- "$$SCENE"): error against time" $(report_runs) && rm -f shown/report-* && touch $(filter shown/%,$@ $|)
+title = "$$(basename -- "$$SCENE"): error against time"
+write_report = $(RUN) "$$BIN"/error-report -o report --title $(title) $(report_runs) && \
+  rm -f shown/report-* && touch $(marker)
 shown/report-%:
 	$(quiet)$(write_report)
 report/index.html:

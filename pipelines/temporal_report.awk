@@ -1,8 +1,11 @@
-# What gathering over time did in each frame, as a table, from the statistics of gather-temporal: awk -f temporal_report.awk OUT/cache/*.json
-# A row for each frame: its records, those born and those removed, rays, how many of the cells were traced again, their mean age, CPU seconds.
+# Prints a table of what gathering over time did in each frame, from the statistics of gather-temporal:
+#     awk -f temporal_report.awk OUT/kept/*.json
+# A row for each frame: its records, those born and those removed, rays, the share of the cells that were traced again,
+# their mean age, CPU seconds.
 function row() {
   if (frame == "") return
-  printf "| %s | %d | %d | %d | %d | %s | %.2f | %.2f |\n", frame, v["records"], v["records_born"], v["records_removed"], v["birth_rays"] + v["update_rays"],
+  printf "| %s | %d | %d | %d | %d | %s | %.2f | %.2f |\n", frame, v["records"], v["records_born"],
+    v["records_removed"], v["birth_rays"] + v["update_rays"],
     "retraced_share" in v ? sprintf("%.1f %%", 100 * v["retraced_share"]) : "first", v["mean_age"], cpu
 }
 BEGIN {

@@ -20,7 +20,8 @@ frame_of() { name=${1##*/}; echo "${name%%-*}"; }       # keys/0012-3fa94c21d0.e
 number() { n=${1#"${1%%[!0]*}"}; echo "${n:-0}"; }      # 0012 -> 12
 count_of() { sed -n "s/^ *\"$1\": *\([0-9.e+-]*\),*\$/\1/p" "$2" | head -n 1; }
 percent() { awk "BEGIN { printf \"%.1f%%\", 100 * $1 / $2 }"; }
-tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; ending $RUN "$BIN/$name" "$@"; }   # SHARED: options in quotes, names in variables
+# SHARED: options in quotes, names in variables.
+tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; ending $RUN "$BIN/$name" "$@"; }
 warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
@@ -28,11 +29,12 @@ sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$n
 # Warps both keys to frame $1 in folder $2. Exits with 1 if a viewer sees the error of either warped picture in more
 # than the share $threshold of the pixels that are not masked. Appends the share in percent to $seen.
 differ() {
-  warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
+  warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
+    --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
   code=0
-  ending $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" --fail-by aqm --fail-above "$threshold" \
-    --quiet --json "$2/compare.json" || code=$?
+  ending $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" \
+    --fail-by aqm --fail-above "$threshold" --quiet --json "$2/compare.json" || code=$?
   [ $code -le 1 ] || exit $code
   seen="$seen $(count_of percent "$2/compare.json")"
   return $code
@@ -60,7 +62,8 @@ decide() {
   # every frame and costs a key.
   [ $((distant * (last - first))) -gt $((2 * pixels)) ] && verdict=split
   seen=$(printf '%s\n' $seen | sort -g | tail -n 1)
-  echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  seen ${seen:-none}${seen:+%}  traced $(percent "$traced" "$pixels"):$causes  $verdict"
+  traced="$(percent "$traced" "$pixels"):$causes"
+  echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  seen ${seen:-none}${seen:+%}  traced $traced  $verdict"
 }
 
 interval() {
@@ -91,9 +94,11 @@ frame() {
   part=${target%.exr}.part.$$
   trap 'rm -f "$part".*' EXIT
   n=$(number "$frame")
-  warp "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" --compression none --stats "${target%.exr}.warp.json"
+  warp "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" --compression none \
+    --stats "${target%.exr}.warp.json"
   if [ "$channels" = - ]; then completed=$target; else completed=$part.raw.exr; set -- "$@" --compression none; fi
-  tool frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" --mask "$part.mask.exr" -o "$completed" --stats "${target%.exr}.json"
+  tool frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" --mask "$part.mask.exr" \
+    -o "$completed" --stats "${target%.exr}.json"
   [ "$channels" = - ] || ending $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
 }
 
@@ -110,7 +115,8 @@ log() {
 # walk.log has a line for an interval that was halved and for its halves. Keys are the ends of intervals that were not
 # halved and the middles of those that were.
 marks() {
-  keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" } /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
+  keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" }
+    /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
     while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,)
   [ -z "$keys" ] || echo "--mark $keys"
 }

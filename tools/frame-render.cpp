@@ -173,7 +173,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
                                                                               : ExrWriteOptions::Compression::zip};
-  const tools::FrameDescription description{tools::identity_of(frame),
+  const tools::FrameDescription description{identity_of(frame),
                                             light.history() + tool.history_line(number),
                                             frame.frame,
                                             input.time().fps,

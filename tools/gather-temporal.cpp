@@ -16,14 +16,17 @@
 #include <string>
 #include <vector>
 
+#include "formats/base_file.h"
 #include "formats/error.h"
 #include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
+#include "lib/temporal/kept_files.h"
+#include "lib/temporal/temporal_gather.h"
 #include "tools/common/option_words.h"
 #include "tools/stages/photon_windows.h"
 #include "tools/common/tool_main.h"
-#include "tools/stages/kept_files.h"
+#include "tools/stages/gather_input.h"
 
 using namespace tempolux;
 
@@ -46,16 +49,16 @@ struct Chain {
   KeptHemispheres kept;
   std::optional<SceneFrame> before;  ///< empty: nothing is kept
   std::string places_hash;           ///< of the points that anchors name
-  tools::KeptFiles files;
+  KeptFiles files;
 
-  void follow(SceneFrame frame, const tools::FramePoints& points) {
+  void follow(SceneFrame frame, const FramePoints& points) {
     before.emplace(std::move(frame));
     places_hash = points.places_hash;
   }
 };
 
 /// Anchors are numbers of points, so each point must lie where the previous frame's point of that number lay.
-void check_points(const Chain& chain, const std::string& file, const tools::FramePoints& points) {
+void check_points(const Chain& chain, const std::string& file, const FramePoints& points) {
   if (!chain.before || chain.places_hash.empty() || chain.places_hash == points.places_hash) return;
   throw InputError(file + ": its " + std::to_string(points.anchored) +
                    " points on static surfaces lie elsewhere than those of frame " +
@@ -65,24 +68,11 @@ void check_points(const Chain& chain, const std::string& file, const tools::Fram
 
 void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history,
                  tools::Output& output) {
-  formats::IrradcacheHeader header;
-  header.identity = tools::identity_of(frame);
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
-  header.columns = formats::column_clearance;
-  header.rays = std::uint32_t(options.gather.rays);
-  header.error_bound = double(options.placement.error_bound);
-  header.least_cosine = double(store.least_cosine());
-  for (const IrradianceRecord& record : store.records()) {
-    header.min_radius =
-        header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
-    header.max_radius = std::max(header.max_radius, double(record.radius));
-  }
+  formats::IrradcacheHeader header =
+      tools::records_header(frame, store.records(), store.least_cosine(), options.gather, options.placement);
   header.placed_frames = {{frame.frame, frame.frame}};
   header.history = history;
-  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
-  writer.write(to_file(store.records(), frame));
-  writer.finish();
-  output.commit();
+  tools::write_records(header, to_file(store.records(), frame), output);
 }
 
 void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool first) {
@@ -117,6 +107,37 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
         double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
 }
 
+/// `high`: the high part, `file` then being the low part; "": `file` holds all light.
+FramePoints read_frame_points(tools::Tool& tool, const std::string& file, const std::string& high,
+                              const SceneFrame& frame) {
+  if (high.empty()) return {{tools::read_points(tool, file, frame), {}}, frame};
+  return {tools::read_divided_points(tool, file, high, frame), frame};
+}
+
+/// An empty set of kept records. Samples beyond an eighth of --max-memory are stored in a file in the folder of
+/// `output`.
+KeptHemispheres nothing_kept(const tools::Tool& tool, const std::string& output) {
+  KeptHemispheres kept;
+  const std::string folder = std::filesystem::path(output).parent_path();
+  if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0)
+    kept.shelf = std::make_shared<SampleShelf>(output == "-"    ? std::filesystem::temp_directory_path().string()
+                                               : folder.empty() ? "."
+                                                                : folder,
+                                               limit / 8);
+  return kept;
+}
+
+/// Reads what the previous frame has kept, and that frame's scene.
+void read_previous(tools::Tool& tool, tools::SceneInput& input, const std::string& file, const SceneFrame& now,
+                   const FramePoints& points, Chain& chain) {
+  tool.depends_on(file, tools::InputRole::replaceable);
+  const formats::RadsamplesHeader header = read_kept(file, now, chain.kept).header;
+  if (!header.base_name.empty()) tool.depends_on(formats::path_of_base(file, header.base_name));
+  check_kept(file, header, now, points, chain.kept);
+  chain.before.emplace(input.at(header.identity.first_frame, false));
+  tools::check_identity(tool, file, header.identity, *chain.before);
+}
+
 /// Gathers one frame from the previous one in `chain`, and stores it there.
 void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing,
                   Chain& chain, bool resume) {
@@ -126,13 +147,12 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tool.stats().phase("evaluate");
   SceneFrame frame = input.at(number);
   tool.stats().phase("read points");
-  tools::FramePoints points =
-      tools::read_frame_points(tool, tools::frame_name(options.points, number),
-                               options.high.empty() ? "" : tools::frame_name(options.high, number), frame);
+  FramePoints points = read_frame_points(tool, tools::frame_name(options.points, number),
+                                         options.high.empty() ? "" : tools::frame_name(options.high, number), frame);
   const std::string history = points.read.history + tool.history_line(number);
   if (resume && std::filesystem::is_regular_file(cache))
     if (std::optional<KeptHemispheres> found =
-            chain.files.find(samples, frame, points, history, tools::nothing_kept(tool, samples))) {
+            chain.files.find(samples, frame, points, history, nothing_kept(tool, samples))) {
       chain.kept = std::move(*found);
       chain.follow(std::move(frame), points);
       tool.say("frame " + std::to_string(number) + ": found");
@@ -141,12 +161,12 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tools::Output kept_output(samples, tool.common().no_clobber), cache_output(cache, tool.common().no_clobber);
   if (single && !chain.before) {
     tool.stats().phase("read samples");
-    chain.kept = tools::nothing_kept(tool, samples);
-    tools::read_kept(tool, input, options.previous, frame, points, chain.kept, chain.before);
+    chain.kept = nothing_kept(tool, samples);
+    read_previous(tool, input, options.previous, frame, points, chain);
   }
   if (chain.before && chain.before->segment.first != frame.segment.first) chain.before.reset();
   check_points(chain, tools::frame_name(options.points, number), points);
-  if (!chain.before) chain.kept = tools::nothing_kept(tool, samples);
+  if (!chain.before) chain.kept = nothing_kept(tool, samples);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
@@ -174,7 +194,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
     bright.emplace(tracer, lights, lookup, points.high_shares, BrightOptions{.seed = rays.seed});
     rays.bright = &*bright;
   }
-  const TemporalGather gather(scene, rays, options.placement, options.temporal, tools::sample_unit(frame));
+  const TemporalGather gather(scene, rays, options.placement, options.temporal, sample_unit(frame));
   const PixelView seen = [&](const Look& look) { return seen_through(tracer, view, look); };
   tool.stats().phase("records", true);
   TemporalCounts counts;
@@ -184,7 +204,9 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
                [&](double done) { tool.progress(done); });
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
-  chain.files.write(chain.kept, frame, points, history, kept_output);
+  chain.files.write(chain.kept, frame, points, history, kept_output.is_stdout() ? "" : kept_output.path(),
+                    [&](const void* data, std::size_t size) { kept_output.write(data, size); });
+  kept_output.commit();
   tool.stats().end_phase();
   count(tool, counts, number, !chain.before);
   chain.follow(std::move(frame), points);

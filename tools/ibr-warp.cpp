@@ -159,7 +159,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
 
   Image image{frames.view(number).width(), frames.view(number).height(), {}, {}, {}, {}};
   image.text["tempolux:history"] = keys[0].history + tool.history_line(number);
-  set_identity(image, tools::identity_of(frame));
+  set_identity(image, identity_of(frame));
   image.numbers["tempolux:frame"] = frame.frame;
   image.numbers["framesPerSecond"] = input.time().fps;
   image.matrices["worldToCamera"] = frames.view(number).world_to_camera();

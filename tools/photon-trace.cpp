@@ -83,7 +83,7 @@ formats::PhotonHeader header_of(const tools::Tool& tool, const SceneFrame& frame
                                 int number) {
   formats::PhotonHeader header;
   header.history = tool.history_line(number);
-  header.identity = tools::identity_of(frame);
+  header.identity = identity_of(frame);
   header.identity.emission = emission_hash(emission, frame.segment);
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
   return header;

@@ -59,7 +59,6 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
                                     {"--record-words", wish.records},
                                     {"--pixel-words", wish.pixels},
                                     {"--channels", wish.channels},
-                                    {"--texture-words", wish.texture_words},
                                     {"--smoke-words", wish.smoke_words},
                                     {"--update", wish.update},
                                     {"--refine", wish.refine},
@@ -148,7 +147,6 @@ void add_wishes(tools::Tool& tool, Options& options) {
   words("--point-words", wish.points, "options of irradcache-build points instead of the preset's");
   words("--record-words", wish.records, "options of irradcache-build records instead of the preset's");
   words("--pixel-words", wish.pixels, "options of frame-render instead of the preset's");
-  words("--texture-words", wish.texture_words, "options of st-filter mesh");
   words("--smoke-words", wish.smoke_words, "options of volume-compose");
   app.add_flag("--textures", wish.textures, "with smoke: indirect light of surfaces from light textures");
   app.add_option("--update", wish.update,

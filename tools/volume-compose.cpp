@@ -190,7 +190,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
   }
   tool.stats().phase("write");
   base.image.text["tempolux:history"] = history + tool.history_line(number);
-  set_identity(base.image, tools::identity_of(frame));
+  set_identity(base.image, identity_of(frame));
   save_exr(output.temporary_path(), base.image, {options.half_float, ExrWriteOptions::Compression::zip});
   output.commit();
   tool.stats().end_phase();

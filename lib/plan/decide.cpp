@@ -229,11 +229,11 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
   const double together = std::min(double(d.together), double(segment.pictures().size())),
-               standing = d.records_of(together) / together;
+               static_work = d.records_of(together) / together;
   const MovingChoice choice =
       wish.moving == "auto"
           ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(),
-                          standing)
+                          static_work)
           : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
@@ -292,7 +292,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
 }
 
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source) {
-  StaticTree standing;
+  StaticTree static_tree;
   SeenAround seen;
   double radius = 0;
   bool from_afar = false;
@@ -300,7 +300,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     const SceneFrame frame = source.at(picture, false);
     from_afar = from_afar || shines_from_afar(frame);
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
-    const Tracer tracer(frame, standing);
+    const Tracer tracer(frame, static_tree);
     look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // With lamps only, photons are not aimed, and in a room points are everywhere: one look suffices.
     if (picture == segment.first && !from_afar && spheres_around(seen.places, radius).empty()) return "";
@@ -341,7 +341,7 @@ std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool m
     hasher.add(std::string_view(frame.light));
     hasher.add(std::string_view(frame.camera));
   }
-  hasher.add(std::string_view(segment.standing));
+  hasher.add(std::string_view(segment.static_scene));
   for (const std::string& word : {wish.indirect, wish.moving, wish.split, wish.common})
     hasher.add(std::string_view(word));
   hasher.add(double(wish.method == FrameMethod::preview));

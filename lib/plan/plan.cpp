@@ -85,7 +85,7 @@ void share_in_segment(PlannedSegment& segment) {
   }
 }
 
-std::string standing_hash(const SceneFrame& frame) {
+std::string static_scene_hash(const SceneFrame& frame) {
   const SceneHashes hashes = static_scene_of(frame).hashes;
   Hasher hasher;
   for (const std::string& hash : {hashes.static_geometry, hashes.materials, hashes.lights})
@@ -152,7 +152,7 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int came
   planned.first = segment.first;
   planned.last = segment.last;
   planned.static_geometry = begin.hashes.static_geometry;
-  planned.standing = standing_hash(begin);
+  planned.static_scene = static_scene_hash(begin);
   planned.frozen = emission_hash(build_emission_table(scene, segment, options), segment);
   planned.moves = moving_nodes(scene, segment);
   planned.frames = planned_frames(stage, camera_node, !planned.moves.empty(), media);

@@ -37,7 +37,7 @@ struct PlannedFrame {
 struct PlannedSegment {
   int first = 0, last = 0;
   std::string static_geometry;  ///< hash, as in SceneHashes
-  std::string standing;         ///< hash of the static scene: geometry, materials, lights (static_scene_of)
+  std::string static_scene;     ///< hash of the static scene: geometry, materials, lights (static_scene_of)
   std::string frozen;           ///< hash of what is fixed over the segment: emission table, bounds, origin
   std::vector<MovingNode> moves;
   std::vector<PlannedFrame> frames;  ///< all frames of the segment, ascending

@@ -10,28 +10,50 @@
 #include "formats/hash.h"
 
 namespace tempolux {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json decisions_json(const Decisions& d) {
-  Json json = {{"photon_kinds", d.kinds},
-               {"indirect", kIndirectMethods[std::size_t(d.indirect)]},
-               {"caustic_map", d.caustic_map},
-               {"paths", d.photon_paths},
-               {"rays", d.record_rays},
-               {"pixel_error", d.pixel_error},
-               {"learn_lights", d.learn_lights},
-               {"split", d.split},
-               {"moving", kMovingMethods[std::size_t(d.moving)]},
-               {"new_share", d.new_share},
-               {"pictures_together", d.together},
-               {"walkthrough", d.walk},
-               {"view", d.view},
-               {"looked_at", d.looked}};
-  if (d.texture_width > 0) json["texture_width"] = d.texture_width;
-  json["because"] = Json::object();
-  for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
+// How the parts of Decisions stand in JSON: methods by their names, reasons as an object by stage.
+void to_json(Json& json, IndirectMethod method) { json = kIndirectMethods[std::size_t(method)]; }
+void to_json(Json& json, MovingMethod method) { json = kMovingMethods[std::size_t(method)]; }
+void from_json(const Json& json, IndirectMethod& method) {
+  method = named<IndirectMethod>(kIndirectMethods, json).value();
+}
+void from_json(const Json& json, MovingMethod& method) { method = named<MovingMethod>(kMovingMethods, json).value(); }
+void to_json(Json& json, const std::vector<Reason>& reasons) {
+  json = Json::object();
+  for (const Reason& reason : reasons) json[reason.stage] = reason.because;
+}
+void from_json(const Json& json, std::vector<Reason>& reasons) {
+  for (const auto& [stage, because] : json.items()) reasons.push_back({stage, because});
+}
+
+namespace {
+
+/// Calls visit(name, value) for each decision, in the order of plan.json.
+template <class AnyDecisions, class Visit>
+void each_decision(AnyDecisions& d, const Visit& visit) {
+  visit("photon_kinds", d.kinds);
+  visit("indirect", d.indirect);
+  visit("caustic_map", d.caustic_map);
+  visit("paths", d.photon_paths);
+  visit("rays", d.record_rays);
+  visit("pixel_error", d.pixel_error);
+  visit("texture_width", d.texture_width);
+  visit("learn_lights", d.learn_lights);
+  visit("split", d.split);
+  visit("moving", d.moving);
+  visit("new_share", d.new_share);
+  visit("pictures_together", d.together);
+  visit("walkthrough", d.walk);
+  visit("view", d.view);
+  visit("looked_at", d.looked);
+  visit("because", d.reasons);
+}
+
+Json decisions_json(const Decisions& decisions) {
+  Json json;
+  each_decision(decisions, [&](const char* name, const auto& value) { json[name] = value; });
   return json;
 }
 
@@ -50,7 +72,7 @@ Json segment_json(const PlannedSegment& segment) {
   for (const MovingNode& node : segment.moves)
     json["moves"].push_back({{"node", node.name}, {"carries", node.carries}, {"why", node.why}});
   json["hashes"] = {
-      {"static_geometry", segment.static_geometry}, {"standing", segment.standing}, {"frozen", segment.frozen}};
+      {"static_geometry", segment.static_geometry}, {"static_scene", segment.static_scene}, {"frozen", segment.frozen}};
   json["frames"] = Json::array();
   for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame));
   return json;
@@ -127,22 +149,7 @@ Decisions read_decisions(const std::string& text) {
   try {
     const Json json = Json::parse(text);
     Decisions d;
-    d.kinds = json.at("photon_kinds").get<std::string>();
-    d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect")).value();
-    d.caustic_map = json.at("caustic_map");
-    d.photon_paths = json.at("paths");
-    d.record_rays = json.at("rays");
-    d.pixel_error = json.at("pixel_error");
-    d.texture_width = json.value("texture_width", 0.0);
-    d.learn_lights = json.at("learn_lights");
-    d.split = json.at("split");
-    d.moving = named<MovingMethod>(kMovingMethods, json.at("moving")).value();
-    d.new_share = json.at("new_share");
-    d.together = json.at("pictures_together");
-    d.walk = json.at("walkthrough");
-    d.view = json.at("view").get<std::string>();
-    d.looked = json.at("looked_at").get<std::vector<int>>();
-    for (const auto& [stage, because] : json.at("because").items()) d.reasons.push_back({stage, because});
+    each_decision(d, [&](const char* name, auto& value) { json.at(name).get_to(value); });
     return d;
   } catch (const std::exception& error) { throw InputError(std::string("decisions: ") + error.what()); }
 }

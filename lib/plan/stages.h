@@ -19,18 +19,18 @@ struct StageInfo {
 
 namespace stage {
 inline constexpr StageInfo photons{"photon-trace", "photons", ".photons", "photon-trace", "trace,commit"};
-inline constexpr StageInfo stands_photons{"photon-trace --map static", "stands", ".photons", "photon-trace",
+inline constexpr StageInfo static_photons{"photon-trace --map static", "stands", ".photons", "photon-trace",
                                           "trace,commit"};
 inline constexpr StageInfo moved_photons{"photon-trace --map dynamic", "moved", ".photons", "photon-trace",
                                          "trace,commit"};
 inline constexpr StageInfo refined{"photon-trace --refine", "refined", ".photons", "photon-trace", "trace,commit"};
 inline constexpr StageInfo points{"irradcache-build points", "points", ".irradpoints", "irradcache-build",
                                   "read photons,points,write"};
-inline constexpr StageInfo stands_points{"irradcache-build points --map static", "stands_points", ".irradpoints",
+inline constexpr StageInfo static_points{"irradcache-build points --map static", "stands_points", ".irradpoints",
                                          "irradcache-build", "read photons,points,write"};
 inline constexpr StageInfo split{"photonmap-split", "split", ".low.irradpoints", "photonmap-split", "split"};
 inline constexpr StageInfo records{"irradcache-build records", "cache", ".irradcache", "irradcache-build", "records"};
-inline constexpr StageInfo stands_records{"irradcache-build records --map static", "stands_cache", ".irradcache",
+inline constexpr StageInfo static_records{"irradcache-build records --map static", "stands_cache", ".irradcache",
                                           "irradcache-build", "records"};
 inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", "gather-temporal", "records"};
 inline constexpr StageInfo textures{"st-filter mesh", "textures", ".meshirrad", "st-filter", "count"};
@@ -51,9 +51,9 @@ inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare",
 }  // namespace stage
 
 /// In the order in which they run.
-inline constexpr std::array kStages{stage::stands_photons, stage::photons,   stage::moved_photons,  stage::refined,
-                                    stage::stands_points,  stage::points,    stage::split,          stage::textures,
-                                    stage::counts,         stage::windows,   stage::stands_records, stage::records,
+inline constexpr std::array kStages{stage::static_photons, stage::photons,   stage::moved_photons,  stage::refined,
+                                    stage::static_points,  stage::points,    stage::split,          stage::textures,
+                                    stage::counts,         stage::windows,   stage::static_records, stage::records,
                                     stage::kept,           stage::lights,    stage::keys,           stage::walk,
                                     stage::walked,         stage::raw,       stage::filtered,       stage::pictures,
                                     stage::smoke,          stage::reference, stage::error};

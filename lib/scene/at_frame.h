@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/identity.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -152,6 +153,8 @@ struct SceneFrame {
   PlacedCamera camera(int camera_node) const;
 };
 
+/// Identity of the scene's state at this frame, for files made from it.
+formats::Identity identity_of(const SceneFrame& frame);
 /// Hash of one placed camera; SceneHashes::camera covers all cameras of the scene.
 std::string camera_hash(const PlacedCamera& placed);
 

@@ -176,6 +176,11 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
 
 std::string media_hash() { return hash_hex("media 1"); }
 
+formats::Identity identity_of(const SceneFrame& frame) {
+  const SceneHashes& h = frame.hashes;
+  return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
+}
+
 std::string camera_hash(const PlacedCamera& placed) {
   Hasher hasher;
   hasher.add(std::string_view("camera 1"));

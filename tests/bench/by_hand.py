@@ -92,6 +92,14 @@ class Comparison:
             self.limit, env=os.environ | {"TEMPOLUX_THREADS": "1"})
         return self.means_of(out / "frames" / f"{frame:04d}.exr")
 
+    def make_refuses(self, scene, frame, light):
+        """A scene without light or without a surface is refused, not rendered wrong."""
+        try:
+            self.by_make(scene.resolve(), frame, light, 1)
+        except Failed as error:
+            return " ends with 2: " in str(error)
+        return False
+
     def means_of(self, image):
         """Mean of each layer over the frame and its channels."""
         done = subprocess.run([self.bin / "tempolux-info", "--json", image], capture_output=True, text=True, check=True)
@@ -105,6 +113,9 @@ class Comparison:
         light = {k: str(SHARED / "found" / v) if k == "ENVIRONMENT" else v for k, v in light.items()}
         try:
             hand = [self.by_hand(scene, frame, light, s) for s in range(1, seeds + 1)]
+        except Failed as error:
+            return [f"left out: {name}: both ways refuse: {error}" if self.make_refuses(scene, frame, light) else f"FAILED: {name}: {error}"]
+        try:
             make = [self.by_make(scene.resolve(), frame, light, s) for s in range(1, seeds + 1)]
         except Failed as error:
             return [f"FAILED: {name}: {error}"]

@@ -39,6 +39,14 @@ refuses '.32. is not WIDTHxHEIGHT\|--size' demo SIZE=32
 refuses 'my scene.glb' demo SCENE='my scene.glb'
 demo demo OUT="$work/o 4" && [ -s "$work/o 4/frames/0030.exr" ] || bad 'OUT with a blank'
 refuses 'frame 1 is none of --frames' report REPORT_FRAMES='0 1'
+refuses 'BIN=/nowhere: holds no scene-plan; ' demo BIN=/nowhere
+# A make that fails says whether another one runs in the same OUT.
+refuses 'nonsense' demo PIXELS='--spp nonsense' FRAMES=0
+says 'another make runs here' && bad 'no other make runs, and it is blamed'
+(flock -s 8 && exec sleep 60) 8> "$work/out/state/.makes" & holder=$!
+until ! flock -n -x "$work/out/state/.makes" true; do sleep .1; done
+refuses 'another make runs here and may have removed a file' demo PIXELS='--spp nonsense' FRAMES=0
+kill $holder
 demo report REPORT_FRAMES=30 && ls "$work"/out/error/0030-*.json > /dev/null || bad 'REPORT_FRAMES=30'
 
 # clean takes what make made, and nothing else.

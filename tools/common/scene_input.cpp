@@ -118,11 +118,6 @@ const EmissionTable& SceneInput::emission(int frame) {
   return *emission_;
 }
 
-formats::Identity identity_of(const SceneFrame& frame) {
-  const SceneHashes& h = frame.hashes;
-  return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
-}
-
 void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity,
                     const SceneFrame& frame) {
   if (!file_identity.known()) {

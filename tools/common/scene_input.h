@@ -58,9 +58,6 @@ class SceneInput {
   bool warned_range_ = false;
 };
 
-/// Identity of the scene's state at this frame, for files made from it.
-formats::Identity identity_of(const SceneFrame& frame);
-
 /// Refuses a file that was made for another state of the scene, naming the concern, the file and the frame
 /// (InputError); with --allow-stale only warns. A file without identity is accepted with one warning.
 void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "formats/error.h"
@@ -119,6 +120,10 @@ std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
   std::vector<std::string> files;
   for (const VolumeSource& source : sources_) {
     files.push_back(file_of(source, frame));
+    if (!source.frames && has_frame_pattern(source.pattern) && !std::filesystem::exists(files.back()))
+      throw InputError(files.back() + ": cannot be opened: there is no such file; frame " +
+                       std::to_string(frame) + " is read, as its segment or a filter's window holds it; name the "
+                       "frames that have files, such as --volume-frames 0-47 (make: in VOLUME_OPTIONS)");
     tool_.depends_on(files.back(), InputRole::of_scene);
   }
   if (!series_) {

@@ -20,20 +20,9 @@ namespace {
 formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneFrame& frame,
                                        const std::vector<int>& frames, std::span<const IrradianceRecord> records,
                                        float least_cosine) {
-  formats::IrradcacheHeader header;
-  header.identity = identity_of(frame);
+  formats::IrradcacheHeader header = records_header(frame, records, least_cosine, options.gather, options.placement);
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
   header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
-  header.columns = formats::column_clearance;
-  header.rays = std::uint32_t(options.gather.rays);
-  header.error_bound = double(options.placement.error_bound);
-  header.least_cosine = double(least_cosine);
-  for (const IrradianceRecord& record : records) {
-    header.min_radius =
-        header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
-    header.max_radius = std::max(header.max_radius, double(record.radius));
-  }
   std::vector<int> sorted = frames;
   std::sort(sorted.begin(), sorted.end());
   for (int f : sorted) {
@@ -163,10 +152,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
   if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
   header.history = history + tool.history_line();
-  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
-  writer.write(to_file(store.records(), first));
-  writer.finish();
-  output.commit();
+  write_records(header, to_file(store.records(), first), output);
   tool.stats().end_phase();
   count(tool, store.records().size(), counts);
 }
@@ -215,10 +201,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
       cache_header(options, frame, frames, all, std::max(cache.least_cosine, fixed.least_cosine()));
   header.columns |= formats::column_influence | formats::column_update;
   header.history = cache.history + (frames.size() == 1 ? tool.history_line(number) : tool.history_line());
-  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
-  writer.write(to_file(cache, frame));
-  writer.finish();
-  output.commit();
+  write_records(header, to_file(cache, frame), output);
   tool.stats().end_phase();
   count(tool, cache.gathered.size(), counts);
   tool.stats().count("records_updated", double(cache.standing.size()));

@@ -166,6 +166,31 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   output.commit();
 }
 
+formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<const IrradianceRecord> records,
+                                         float least_cosine, const GatherOptions& gather,
+                                         const PlacementOptions& placement) {
+  formats::IrradcacheHeader header;
+  header.identity = identity_of(frame);
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.columns = formats::column_clearance;
+  header.rays = std::uint32_t(gather.rays);
+  header.error_bound = double(placement.error_bound);
+  header.least_cosine = double(least_cosine);
+  if (!records.empty()) {
+    const auto [least, most] = std::ranges::minmax_element(records, {}, &IrradianceRecord::radius);
+    header.min_radius = double(least->radius), header.max_radius = double(most->radius);
+  }
+  return header;
+}
+
+void write_records(const formats::IrradcacheHeader& header, const std::vector<formats::IrradianceCacheRecord>& records,
+                   Output& output) {
+  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(records);
+  writer.finish();
+  output.commit();
+}
+
 std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file,
                         const SceneFrame& frame, RecordStore& store) {
   if (file.header.columns & (formats::column_influence | formats::column_update))

@@ -4,12 +4,14 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "formats/irradcache/irradcache.h"
 #include "formats/photons/photons.h"
 #include "lib/gather/gather_points.h"
+#include "lib/gather/place_records.h"
 #include "lib/irradcache/records.h"
 #include "tools/common/scene_input.h"
 
@@ -44,6 +46,13 @@ DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, cons
 /// Writes points that are valid for the frame, or for the given first to last frame; adds counts to stats.
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
                   std::optional<std::array<int, 2>> frames = {});
+
+/// Header of a cache of a frame's records, without the frames that it was placed for and without history.
+formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<const IrradianceRecord> records,
+                                         float least_cosine, const GatherOptions& gather,
+                                         const PlacementOptions& placement);
+void write_records(const formats::IrradcacheHeader& header, const std::vector<formats::IrradianceCacheRecord>& records,
+                   Output& output);
 
 /// Adds the records of a loaded file, made for this state of the scene, to a store; returns the file's history. Throws
 /// InputError for a localised cache, whose records are of several kinds.

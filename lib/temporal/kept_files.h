@@ -1,45 +1,56 @@
-// tools/stages/kept_files.h -- writes, finds and checks .radsamples files for gather-temporal.
+// lib/temporal/kept_files.h -- the .radsamples files of a range of frames: written as whole files and overlays of them,
+// found again, and checked against a frame (formats/radsamples/radsamples.md).
 #pragma once
 
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "lib/temporal/temporal_gather.h"
-#include "tools/stages/gather_input.h"
+#include "lib/gather/gather_points.h"
+#include "lib/scene/at_frame.h"
+#include "lib/temporal/kept_hemisphere.h"
 
-namespace tempolux::tools {
+namespace tempolux {
 
 /// The points of a frame, and the data that samples must agree with.
 struct FramePoints {
+  FramePoints(DividedGatherPoints points, const SceneFrame& frame);
+
   GatherPoints read;
   std::size_t anchored = 0;        ///< number of first points on static surfaces
   std::string places_hash;         ///< of those
   std::vector<float> high_shares;  ///< by point, from photonmap-split; empty: points are not divided
   std::string high_hash;           ///< hash of high_shares; "" without
 };
-/// `high`: the high part, `file` then being the low part; "": `file` holds all light.
-FramePoints read_frame_points(Tool& tool, const std::string& file, const std::string& high, const SceneFrame& frame);
-
-/// An empty set of kept records. Samples beyond an eighth of --max-memory are stored in a file in the folder of
-/// `output`.
-KeptHemispheres nothing_kept(const Tool& tool, const std::string& output);
 
 /// Unit of stored distances in a segment, m: the diagonal of the scene over the segment.
 float sample_unit(const SceneFrame& frame);
+
+/// Reads a file into `kept`, which must be empty, in the space of the frame `now`. `also` receives the samples, too.
+formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept,
+                                  const formats::TakeSamples& also = {});
+/// Throws InputError unless the frame `now` can follow from a file: its segment, the static points and the part of the
+/// light must be the same.
+void check_kept(const std::string& file, const formats::RadsamplesHeader& header, const SceneFrame& now,
+                const FramePoints& points, const KeptHemispheres& kept);
 
 /// Writes the files of a range of frames in order: a whole file, then overlays of it as long as at least half of their
 /// samples are the whole file's; then again a whole file.
 class KeptFiles {
  public:
-  /// Writes the samples of a frame. An `output` in another folder than the last whole file is whole, too.
+  using WriteBytes = std::function<void(const void*, std::size_t)>;
+
+  /// Writes the samples of a frame. `path`: the file's final name; "": a stream, which is whole and no base of others.
+  /// A file in another folder than the last whole file is whole, too.
   void write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points,
-             const std::string& history, Output& output);
+             const std::string& history, const std::string& path, const WriteBytes& sink);
   /// Reads the file that an earlier run of the same command wrote for this frame. Nothing if the file is missing,
-  /// truncated, or made differently: from other points or on another base. `empty`: nothing_kept().
+  /// truncated, or made differently: from other points or on another base. `kept` must be empty.
   std::optional<KeptHemispheres> find(const std::string& file, const SceneFrame& frame, const FramePoints& points,
-                                      const std::string& history, KeptHemispheres empty);
+                                      const std::string& history, KeptHemispheres kept);
 
  private:
   void make_base(const std::string& path, const formats::RadsamplesHeader& header, const std::string& digest,
@@ -52,9 +63,5 @@ class KeptFiles {
   std::array<std::int32_t, 2> segment_{};
   std::unordered_map<std::string, std::uint32_t> records_;  ///< its records by the hash of their samples
 };
-/// Reads a file into `kept`, which must be empty, for the frame `now`. The segment, the static points, the part of the
-/// light, and the scene at the file's own frame must match (else InputError). `before` receives that scene.
-void read_kept(Tool& tool, SceneInput& input, const std::string& file, const SceneFrame& now, const FramePoints& points,
-               KeptHemispheres& kept, std::optional<SceneFrame>& before);
 
-}  // namespace tempolux::tools
+}  // namespace tempolux

@@ -1,12 +1,15 @@
-#include "tools/stages/kept_files.h"
+// lib/temporal/kept_files.cpp -- decides which samples a .radsamples file holds itself, and whether a file fits a
+// frame.
+#include "lib/temporal/kept_files.h"
 
 #include <filesystem>
 
 #include "formats/base_file.h"
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/temporal/temporal_gather.h"
 
-namespace tempolux::tools {
+namespace tempolux {
 namespace {
 
 Vec3d vec_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -53,36 +56,17 @@ float sample_unit(const SceneFrame& frame) {
   return unit > 0 ? float(unit) : 1.0f;
 }
 
-FramePoints read_frame_points(Tool& tool, const std::string& file, const std::string& high, const SceneFrame& frame) {
-  FramePoints points;
-  if (high.empty()) {
-    points.read = read_points(tool, file, frame);
-  } else {
-    DividedGatherPoints divided = read_divided_points(tool, file, high, frame);
-    points.read = std::move(divided.whole);
-    points.high_shares = std::move(divided.high_shares);
-    points.high_hash =
-        hash_hex({reinterpret_cast<const char*>(points.high_shares.data()), points.high_shares.size() * sizeof(float)});
-  }
-  points.anchored = anchored_points(frame, points.read.points);
+FramePoints::FramePoints(DividedGatherPoints points, const SceneFrame& frame)
+    : read(std::move(points.whole)), high_shares(std::move(points.high_shares)) {
+  if (!high_shares.empty())
+    high_hash = hash_hex({reinterpret_cast<const char*>(high_shares.data()), high_shares.size() * sizeof(float)});
+  anchored = anchored_points(frame, read.points);
   Hasher hasher;
-  for (std::size_t i = 0; i < points.anchored; ++i) {
-    hasher.add(points.read.points[i].position);
-    hasher.add(points.read.points[i].normal);
+  for (std::size_t i = 0; i < anchored; ++i) {
+    hasher.add(read.points[i].position);
+    hasher.add(read.points[i].normal);
   }
-  points.places_hash = hasher.hex();
-  return points;
-}
-
-KeptHemispheres nothing_kept(const Tool& tool, const std::string& output) {
-  KeptHemispheres kept;
-  const std::string folder = std::filesystem::path(output).parent_path();
-  if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0)
-    kept.shelf = std::make_shared<SampleShelf>(output == "-"    ? std::filesystem::temp_directory_path().string()
-                                               : folder.empty() ? "."
-                                                                : folder,
-                                               limit / 8);
-  return kept;
+  places_hash = hasher.hex();
 }
 
 void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHeader& header, const std::string& digest,
@@ -119,7 +103,7 @@ bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::st
 }
 
 void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points,
-                      const std::string& history, Output& output) {
+                      const std::string& history, const std::string& path, const WriteBytes& sink) {
   formats::RadsamplesFile file = head_of(kept);
   file.header.history = history;
   file.header.identity = identity_of(frame);
@@ -131,8 +115,8 @@ void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, cons
   std::vector<std::string> hashes;
   KeptHemisphere room;
   for (const KeptHemisphere& k : kept.records) hashes.push_back(hash_of(k.record, see(kept, k, room)));
-  const bool whole = output.is_stdout() || !lay_over_base(output.path(), hashes, file);
-  formats::RadsamplesWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, file);
+  const bool whole = path.empty() || !lay_over_base(path, hashes, file);
+  formats::RadsamplesWriter writer(sink, file);
   formats::RadsamplesDigest digest;
   for (const KeptHemisphere& k : kept.records) {
     const SeenSamples of = see(kept, k, room);
@@ -140,39 +124,38 @@ void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, cons
     if (whole) digest.add(of.samples, of.anchors);
   }
   writer.finish();
-  output.commit();
-  if (whole && !output.is_stdout()) make_base(output.path(), file.header, digest.of(file), hashes);
+  if (whole && !path.empty()) make_base(path, file.header, digest.of(file), hashes);
 }
 
-void read_kept(Tool& tool, SceneInput& input, const std::string& file, const SceneFrame& now, const FramePoints& points,
-               KeptHemispheres& kept, std::optional<SceneFrame>& before) {
-  tool.depends_on(file, InputRole::replaceable);
-  const formats::RadsamplesFile in = formats::read_radsamples(
+formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept,
+                                  const formats::TakeSamples& also) {
+  formats::RadsamplesFile in = formats::read_radsamples(
       file, [&](const formats::RadsamplesFile& head, std::size_t record,
                 std::span<const formats::RadianceSample> samples, std::span<const std::uint32_t> anchors) {
         take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - now.origin, kept);
+        if (also) also(head, record, samples, anchors);
       });
   take_head(in, kept);
-  if (!in.header.base_name.empty()) tool.depends_on(formats::path_of_base(file, in.header.base_name));
-  const formats::Identity& identity = in.header.identity;
-  if (!identity.known())
+  return in;
+}
+
+void check_kept(const std::string& file, const formats::RadsamplesHeader& header, const SceneFrame& now,
+                const FramePoints& points, const KeptHemispheres& kept) {
+  const std::string frame = std::to_string(now.frame), kept_frame = std::to_string(header.identity.first_frame);
+  const bool same_numbers = header.segment[0] == now.segment.first && header.segment[1] == now.segment.last;
+  if (!header.identity.known())
     throw InputError(file + ": does not say of which frame it is; give a file that gather-temporal wrote");
-  const int frame = identity.first_frame;
-  if (!same_segment(in.header, now) && in.header.segment[0] == now.segment.first &&
-      in.header.segment[1] == now.segment.last)
-    throw InputError(file + ": of a scene of another size, " + std::to_string(in.header.diagonal) +
+  if (!same_segment(header, now) && same_numbers)
+    throw InputError(file + ": of a scene of another size, " + std::to_string(header.diagonal) +
                      " m across in this segment, not " + std::to_string(sample_unit(now)) +
                      " m: another one, or edited since; leave out --previous");
-  if (!same_segment(in.header, now))
-    throw InputError(file + ": of frame " + std::to_string(frame) + ", in another segment than frame " +
-                     std::to_string(now.frame) +
+  if (!same_segment(header, now))
+    throw InputError(file + ": of frame " + kept_frame + ", in another segment than frame " + frame +
                      "; nothing is kept from one segment to the next: leave out --previous");
-  before.emplace(input.at(frame, false));
-  check_identity(tool, file, identity, *before);
-  if (!in.header.anchors || in.header.points_hash != points.places_hash)
-    throw InputError(file + ": its points lay elsewhere than those of frame " + std::to_string(now.frame) +
+  if (!header.anchors || header.points_hash != points.places_hash)
+    throw InputError(file + ": its points lay elsewhere than those of frame " + frame +
                      "; make the points of both frames with the same options");
-  if (in.header.high_hash.empty() != points.high_hash.empty())
+  if (header.high_hash.empty() != points.high_hash.empty())
     throw InputError(
         file + (points.high_hash.empty()
                     ? ": its samples hold the low part of the light alone; give --high, too, or leave out --previous"
@@ -188,14 +171,11 @@ std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const Sc
   try {
     std::vector<std::string> hashes;
     formats::RadsamplesDigest digest;
-    const formats::RadsamplesFile in = formats::read_radsamples(
-        file, [&](const formats::RadsamplesFile& head, std::size_t record,
-                  std::span<const formats::RadianceSample> samples, std::span<const std::uint32_t> anchors) {
-          take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - frame.origin, kept);
+    const formats::RadsamplesFile in = read_kept(
+        file, frame, kept, [&](const formats::RadsamplesFile& head, std::size_t record, auto samples, auto anchors) {
           hashes.push_back(hash_of(head.records[record], {samples, anchors}));
           digest.add(samples, anchors);
         });
-    take_head(in, kept);
     if (!same_segment(in.header, frame) || in.header.history != history ||
         !(in.header.identity == identity_of(frame)) || in.header.points_hash != points.places_hash ||
         in.header.high_hash != points.high_hash)
@@ -214,4 +194,4 @@ std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const Sc
   }
 }
 
-}  // namespace tempolux::tools
+}  // namespace tempolux

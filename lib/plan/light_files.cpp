@@ -1,0 +1,288 @@
+// lib/plan/light_files.cpp -- the files that light frames: photons, irradiance points, records, light textures.
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "formats/hash.h"
+#include "lib/plan/graph_builder.h"
+
+namespace tempolux {
+namespace {
+
+void add_view(GraphBuilder& g, int frame, Command& c) {
+  const PlannedSegment& s = g.segment(frame);
+  if (s.decisions.view.empty()) c.option("--importance none");
+  else c.file("--importance", g.add_state("view", s.first, s.decisions.view));
+}
+
+std::string majorants_file(GraphBuilder& g, int frame) {
+  const PlannedSegment& s = g.segment(frame);
+  return g.once("majorants " + std::to_string(s.first),
+                [&] { return g.add_state("majorants", s.first, g.majorants(s.first, s.last)); });
+}
+
+std::string photon_words(const GraphBuilder& g, int frame) {
+  const Decisions& d = g.decided(frame);
+  return "--photons " + std::to_string(d.photon_paths) + " --kinds " + d.kinds;
+}
+
+bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving != MovingMethod::anew; }
+/// Hash of all that a static map, its points and its records depend on.
+std::string static_content(const GraphBuilder& g, int frame) {
+  Hasher hasher;
+  const PlannedSegment& s = g.segment(frame);
+  for (const std::string& hash : {s.static_geometry, s.static_scene, s.frozen}) hasher.add(std::string_view(hash));
+  for (const PlannedFrame& f : s.frames)
+    hasher.add(std::string_view(f.light));  // movers of any frame decide which paths are touched
+  return hasher.hex();
+}
+
+std::string static_photons(GraphBuilder& g, int frame) {
+  const int first = g.segment(frame).first;
+  Command c{"--frame " + std::to_string(first) + " --map static", {}, static_content(g, frame)};
+  add_view(g, frame, c);
+  c.option(photon_words(g, frame));
+  return g.add(stage::static_photons, first, c, {".paths"});
+}
+
+/// In smoke, a map is the previous map of its segment with some groups traced again.
+void add_update(GraphBuilder& g, int lit, Command& c) {
+  const std::vector<int> states = g.segment(lit).states();
+  const auto here = std::ranges::find(states, lit);
+  const bool by_pilots = std::ranges::count(std::array{"fde", "dip", "hybrid", "path"}, g.wish.strategy) > 0;
+  if (here == states.begin()) return c.option(by_pilots ? "--pilots 3%" : "");
+  c.file("--update", photon_map(g, *std::prev(here)));
+  c.option("--share " + g.wish.update + " --strategy " + g.wish.strategy);
+}
+
+std::string static_points(GraphBuilder& g, int frame) {
+  const int first = g.segment(frame).first;
+  Command c{"--frame " + std::to_string(first) + " --map static", {}, static_content(g, frame)};
+  c.file("--photons", static_photons(g, frame));
+  add_view(g, frame, c);
+  c.option(g.wish.points);
+  return g.add(stage::static_points, first, c);
+}
+
+/// Adds points as options: all points, or the low and the high part.
+void add_points(GraphBuilder& g, int lit, Command& c) {
+  const std::string all = point_file(g, lit);
+  if (!g.decided(lit).split) return c.file("--points", all);
+  Command divide;
+  divide.file("", all);
+  const std::string low = g.add(stage::split, lit, divide, {".high.irradpoints"});
+  c.file("--points", low);
+  c.file("--high", beside(low, ".high.irradpoints"));
+}
+
+std::string record_words(const GraphBuilder& g, int lit) {
+  const std::string rays =
+      has_word(g.wish.records, "--rays") ? "" : " --rays " + std::to_string(g.decided(lit).record_rays);
+  return g.size + rays + (g.wish.records.empty() ? "" : " " + g.wish.records);
+}
+
+/// Pictures of the segment whose cameras share static records with a frame: a block of Decisions::together.
+std::vector<int> together(const GraphBuilder& g, int frame) {
+  const std::vector<int> pictures = g.segment(frame).pictures();
+  const auto size = std::ptrdiff_t(g.decided(frame).together);
+  const auto block = (std::ranges::lower_bound(pictures, g.state(frame).picture) - pictures.begin()) / size;
+  return {pictures.begin() + block * size,
+          pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
+}
+
+std::string static_records(GraphBuilder& g, int frame) {
+  const std::vector<int> pictures = together(g, frame);
+  Command c{"--frames " + joined(pictures) + " --map static", {}, static_content(g, frame) + g.cameras(pictures)};
+  c.file("--points", static_points(g, frame));
+  c.option(record_words(g, frame));
+  return g.add(stage::static_records, pictures.front(), c);
+}
+
+/// The state of light of the frame before, if this state's records continue that state's.
+int state_before(const GraphBuilder& g, int lit) {
+  return lit > g.segment(lit).first ? g.state(lit - 1).lit_frame : lit;
+}
+
+/// True if records are kept over time. Only for states that a single picture shows: if the camera moves while the
+/// light is constant, one cache serves all its pictures.
+bool over_time(const GraphBuilder& g, int lit) {
+  return g.decided(lit).moving == MovingMethod::time && g.segment(lit).pictures(lit).size() == 1;
+}
+
+std::string placed_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
+  Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
+  add_points(g, lit, c);
+  c.option(record_words(g, lit));
+  return g.add(stage::records, pictures.front(), c);
+}
+
+std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pictures) {
+  Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
+  c.file("--update", static_records(g, pictures.front()));
+  c.file("--points", point_file(g, lit));
+  // Dynamic photons of up to two states before: records they affected are gathered again.
+  std::vector<int> states{lit};
+  for (int frame = lit; states.size() < 3 && frame > g.segment(lit).first;) {
+    frame = state_before(g, frame);
+    if (std::ranges::find(states, frame) != states.end()) break;
+    states.push_back(frame);
+  }
+  for (const int frame : states) c.file("--dynamic", photon_map(g, frame));
+  c.option(record_words(g, lit));
+  return g.add(stage::records, pictures.front(), c);
+}
+
+std::string record_file(GraphBuilder& g, int frame);
+
+std::string kept_records(GraphBuilder& g, int lit) {
+  const PlannedSegment& s = g.segment(lit);  // samples store its borders
+  Command c{"--frame " + std::to_string(lit),
+            {},
+            g.state(lit).light + g.cameras(s.pictures(lit)) + joined({s.first, s.last})};
+  add_points(g, lit, c);
+  const int before = state_before(g, lit);
+  if (before < lit && over_time(g, before)) c.file("--previous", beside(record_file(g, before), ".radsamples"));
+  c.option(record_words(g, lit));
+  return g.add(stage::kept, lit, c, {".radsamples"});
+}
+
+std::string record_file(GraphBuilder& g, int frame) {
+  return g.once("records " + std::to_string(g.state(frame).picture), [&] {
+    const int lit = g.state(frame).lit_frame;
+    if (over_time(g, lit)) return kept_records(g, lit);
+    std::vector<int> pictures = together(g, frame);
+    std::erase_if(pictures, [&](int other) { return g.state(other).lit_frame != lit; });
+    return g.decided(lit).moving == MovingMethod::records ? updated_records(g, lit, pictures)
+                                                          : placed_records(g, lit, pictures);
+  });
+}
+
+std::string textures(GraphBuilder& g, int lit) {
+  Command c = g.at(lit);
+  c.file("--photons", photon_map(g, lit));
+  return g.add(stage::textures, lit, c);
+}
+
+constexpr int kReach = kPreviewWindow / 2;
+/// Photons of a frame: a map of its own even if other frames have the same light, so that windows collect different
+/// photons. A segment with one state of light has as many maps as a window.
+std::string preview_photons(GraphBuilder& g, int frame, bool still) {
+  const Decisions& d = g.decided(frame);
+  Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, g.state(frame).light};
+  add_view(g, frame, c);
+  c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
+  return g.add(stage::photons, frame, c);
+}
+
+std::string width_words(const GraphBuilder& g, int frame) {
+  std::ostringstream words;
+  words << "--filter-width " << g.decided(frame).texture_width;
+  return words.str();
+}
+
+std::string counts(GraphBuilder& g, int frame) {
+  const PlannedSegment& s = g.segment(frame);
+  Command c{
+      "--frame " + std::to_string(frame) + " --counts --kinds " + g.decided(frame).kinds + " " + width_words(g, frame),
+      {},
+      ""};
+  // Sizes of moving elements depend on these frames, and jumps are detected from the neighbouring frames.
+  for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
+    c.content += g.state(std::clamp(f, s.first, s.last)).light;
+  c.file("--photons", preview_photons(g, frame, false));
+  return g.add(stage::counts, frame, c);
+}
+
+/// The light textures of a state of light.
+std::string preview_light(GraphBuilder& g, int lit) {
+  const PlannedSegment& s = g.segment(lit);
+  Command c = g.at(lit);
+  if (s.states().size() == 1) {
+    c.option("--kinds " + s.decisions.kinds + " " + width_words(g, lit));
+    c.file("--photons", preview_photons(g, lit, true));
+    return g.add(stage::textures, lit, c);
+  }
+  c.option(width_words(g, lit) + " --counts");
+  for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(g, f));
+  return g.add(stage::windows, lit, c);
+}
+
+/// Visibility of distant lights for the cameras of the segment, learned once.
+std::string lights(GraphBuilder& g, int frame) {
+  if (!g.decided(frame).learn_lights || !has_word(g.wish.pixels, "--learn-lights")) return "";
+  const std::vector<int> all = g.segment(frame).pictures();
+  std::vector<int> pictures;  // first, last and two between, since the view changes slowly
+  for (std::size_t i = 0; i < 4; ++i)
+    if (const int f = all[i * (all.size() - 1) / 3]; pictures.empty() || pictures.back() != f) pictures.push_back(f);
+  Command c{"--frames " + joined(pictures) + " --learn-lights " + g.size, {}, g.cameras(pictures)};
+  for (const int f : pictures) c.content += g.state(f).light;
+  return g.add(stage::lights, g.segment(frame).first, c);
+}
+
+}  // namespace
+
+std::string photon_map(GraphBuilder& g, int lit) {
+  if (moved(g, lit)) {
+    Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, g.state(lit).light};
+    c.file("--static", beside(static_photons(g, lit), ".paths"));
+    add_view(g, lit, c);
+    return g.add(stage::moved_photons, lit, c);
+  }
+  Command c = g.at(lit);
+  add_view(g, lit, c);
+  c.option(photon_words(g, lit));
+  if (g.plan.media && !(g.wish.update.empty() && g.wish.refine.empty())) c.file("--majorants", majorants_file(g, lit));
+  if (g.plan.media && !g.wish.update.empty()) add_update(g, lit, c);
+  return g.add(stage::photons, lit, c);
+}
+
+std::string refined_photon_map(GraphBuilder& g, int lit) {
+  if (g.wish.refine.empty()) return photon_map(g, lit);
+  Command c = g.at(lit);
+  c.file("--majorants", majorants_file(g, lit));
+  c.file("--update", photon_map(g, lit));
+  c.option("--refine " +
+           std::to_string(std::uint64_t(std::stod(g.wish.refine) / 100 * double(g.decided(lit).photon_paths))));
+  add_view(g, lit, c);
+  c.option("--kinds " + g.decided(lit).kinds);
+  return g.add(stage::refined, lit, c);
+}
+
+std::string point_file(GraphBuilder& g, int lit) {
+  Command c = g.at(lit);
+  if (moved(g, lit)) {
+    c.file("--update", static_points(g, lit));
+    c.file("--photons", static_photons(g, lit));
+    c.file("--dynamic", photon_map(g, lit));
+  } else {
+    c.file("--photons", photon_map(g, lit));
+  }
+  add_view(g, lit, c);
+  c.option(g.wish.points);
+  return g.add(stage::points, lit, c);
+}
+
+void add_light(GraphBuilder& g, int frame, Command& c) {
+  const Decisions& d = g.decided(frame);
+  const int lit = g.state(frame).lit_frame;
+  c.content += g.state(frame).light;
+  if (g.preview() && d.photons()) {
+    c.file("--meshirrad", preview_light(g, lit));
+  } else if (g.plan.media && g.wish.textures && d.photons()) {
+    c.file("--meshirrad", textures(g, lit));
+  } else if (d.points()) {
+    if (d.records()) {
+      c.file("--irradcache", record_file(g, frame));
+      c.file("--points", point_file(g, lit));
+    } else {
+      add_points(g, lit, c);
+    }
+  }
+  if (d.caustic_map && !g.preview()) {
+    if (moved(g, lit)) c.file("--photons", static_photons(g, lit));
+    c.file(moved(g, lit) ? "--dynamic" : "--photons", photon_map(g, lit));
+  }
+  c.file("--lights", lights(g, frame));
+}
+
+}  // namespace tempolux

@@ -1,0 +1,93 @@
+// lib/plan/picture_files.cpp -- the files of pictures: rendered, filtered, with smoke.
+#include <iomanip>
+#include <sstream>
+
+#include "formats/hash.h"
+#include "lib/plan/graph_builder.h"
+
+namespace tempolux {
+namespace {
+
+/// Share of the frame's rays; with the audit's look-ups less than 3 % of a run.
+constexpr const char* kAudit = "--audit 0.02";
+
+std::string clear_picture(GraphBuilder& g, int frame) {
+  const bool walk =
+      !g.plan.media && (g.wish.method == FrameMethod::walkthrough ||
+                        (g.wish.method == FrameMethod::automatic && g.decided(frame).walk && g.wish.filter <= 1));
+  if (walk) return walked_picture(g, frame);
+  if (g.wish.filter > 0) return filtered_picture(g, frame, g.wish.channels);
+  return g.add(stage::pictures, frame, frame_command(g, frame, pixels_of(g, frame), g.wish.channels));
+}
+
+}  // namespace
+
+std::string raw_channels(const Wish& wish, const std::string& filtered) {
+  return with_channels(
+      std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
+}
+
+std::string in_motion(const GraphBuilder& g, int frame, const std::string& channels) {
+  if (!has_channel(channels, "motion")) return "";
+  Hasher hasher;
+  for (const int f : {g.clamped(frame - 1), frame, g.clamped(frame + 1)})
+    for (const std::string& hash : {g.state(f).light, g.state(f).camera}) hasher.add(std::string_view(hash));
+  return hasher.hex();
+}
+
+std::string pixels_of(const GraphBuilder& g, int frame) {
+  const std::string wished = without(g.wish.pixels, "--learn-lights");
+  if (!g.wish.preset_pixels) return wished;
+  std::ostringstream words;
+  words << wished << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error;
+  return words.str();
+}
+
+Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels) {
+  Command c{"--frame " + std::to_string(frame), {}, g.cameras({frame}) + in_motion(g, frame, channels)};
+  add_light(g, frame, c);
+  for (const std::string& words : {g.size, pixels, "--channels " + channels}) c.option(words);
+  if (g.decided(frame).photons() && !g.preview()) c.option(kAudit);
+  return c;
+}
+
+int shown_by(const GraphBuilder& g, int frame, const std::string& channels) {
+  if (!has_channel(channels, "motion")) return g.state(frame).picture;
+  for (int f = g.segment(frame).first + 1; f < frame; ++f)
+    if (g.state(f).picture == g.state(frame).picture && in_motion(g, f, channels) == in_motion(g, frame, channels))
+      return f;
+  return frame;
+}
+
+std::string filtered_picture(GraphBuilder& g, int frame, const std::string& channels) {
+  // The frames of a window need independent noise.
+  const std::string pixels =
+      pixels_of(g, frame) + (g.wish.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
+  const std::string raw_names = raw_channels(g.wish, channels);
+  Command c;
+  std::size_t position = 0;
+  for (int f = frame - g.wish.filter / 2; f <= frame + g.wish.filter / 2; ++f) {
+    if (f != g.clamped(f)) continue;
+    const int like = shown_by(g, f, raw_names);
+    const std::string raw = g.add(stage::raw, like, frame_command(g, like, pixels, raw_names));
+    if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
+    if (f == frame) position = c.inputs.size();
+  }
+  c.option("--position " + std::to_string(position) + " --channels " + channels);
+  return g.add(stage::filtered, frame, c);
+}
+
+std::string picture_file(GraphBuilder& g, int frame) {
+  frame = shown_by(g, frame, g.wish.channels);
+  const std::string clear = clear_picture(g, frame);
+  if (!g.plan.media) return clear;
+  const int lit = g.state(frame).lit_frame;
+  Command c{"--frame " + std::to_string(frame), {}, g.state(frame).light + g.cameras({frame})};
+  c.file("--base", clear);
+  c.file("--photons", refined_photon_map(g, lit));
+  if (!g.wish.textures && g.decided(frame).points()) c.file("--points", point_file(g, lit));
+  c.option(g.wish.smoke_words);
+  return g.add(stage::smoke, frame, c);
+}
+
+}  // namespace tempolux
