@@ -192,8 +192,8 @@ double kernel_width(double area, double photons, double in_kernel) {
   return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons));
 }
 
-MeshOptions window_widths(double area, double photons) {
-  const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
+MeshOptions window_widths(double area, double photons, double in_kernel) {
+  const double width = kernel_width(area, std::max(1.0, photons), in_kernel);
   MeshOptions result;
   result.filter.width = width > 0 ? width : 1;  // for a scene without surfaces
   result.cell = kCellOfWindows * result.filter.width;

@@ -19,13 +19,26 @@ struct PreviewPilot {
 /// threads.
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
+inline constexpr std::uint64_t kKernelPaths = 1 << 16;  ///< light paths of each half of pilot_kernel()
+
+/// Number of photons under the Gaussian that smooths the light of kKernelPaths light paths with the least error. Two
+/// halves a and b of that many paths each are counted in elements. Irradiance E_a, smoothed by each candidate, is
+/// judged by the other half's flux F_b: over elements of area A,
+///
+///     sum A E_a^2 - 2 sum E_a F_b    weighted by 1 / E,
+///
+/// is the squared error of E_a plus a constant (cross-validation; Bowman, Biometrika 71(2), 1984). The weight is the
+/// square of the slope of a display's tone curve, nearly: an error of sqrt(E) is seen alike everywhere. 256 if no
+/// photon arrives.
+double pilot_kernel(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
+
 struct PreviewChoice {
   std::uint64_t paths = 0;  ///< light paths per frame
   double width = 0;         ///< m: standard deviation of the Gaussian, for full windows
 };
 /// The number of light paths that leaves `photons` photons in a frame: at least `photons` paths and at most 16 times as
 /// many, in the steps of photon_paths(). Uses means over all pilots, because all frames of a segment share their
-/// elements. `frames`: number of frames in a full window.
-PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, std::uint64_t photons, int frames);
+/// elements. `kernel`: of pilot_kernel(). `frames`: number of frames in a full window.
+PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel, std::uint64_t photons, int frames);
 
 }  // namespace tempolux

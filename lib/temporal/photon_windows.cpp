@@ -342,8 +342,10 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
   const HitTable table = table_of(frames, elements);
   const Surroundings around(frames, table, elements, std::sqrt(4 * std::numbers::pi) * options.width);
   const WindowThresholds thresholds(options);
-  const double widest =
-      options.width * std::sqrt(std::max(1.0, (2 * options.reach + 1) * kPhotonsInKernel / kPhotonsInWindow));
+  const double full = 2 * options.reach + 1;  // frames
+  double area = 0;                            // m^2, one side
+  for (const formats::MeshElement& e : elements) area += double(e.area) / 2;
+  const double density = around.all().block(0, int(frames.size()) - 1).photons / double(frames.size()) * full / area;
   CollectedLight result{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<float>(elements.size(), 0)};
   parallel_chunks(elements.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -357,8 +359,8 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
           grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
       result.flux[i] = put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
       const double photons = kernel.block(now - window.before, now + window.after).photons;
-      const double width = photons > 0 ? kernel_width(around.kernel_area(i), photons, kPhotonsInWindow) : widest;
-      result.widths[i] = float(std::clamp(width, options.width, widest));
+      const double fewer = density * around.kernel_area(i) / std::max(1.0, photons);
+      result.widths[i] = float(options.width * std::sqrt(std::sqrt(std::clamp(fewer, 1.0, full))));
     }
   });
   return result;
