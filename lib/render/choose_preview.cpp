@@ -18,23 +18,21 @@ constexpr double kMostPaths = 16;          ///< largest number of paths, in mult
 constexpr std::array<double, 5> kKernels{64, 256, 1024, 4096, 16384};
 constexpr std::size_t kWeights = 2;  ///< index of the candidate by which errors are weighted
 
-/// Luminance that arrives in each element: r from the photons of one half, g from the other's.
-std::vector<Rgbd> flux_of_halves(const RenderScene& scene, const std::string& kinds, std::uint64_t seed,
-                                 const MeshCuts& cuts, std::vector<formats::MeshElement>& elements) {
+/// Luminance that arrives in each element: r from the photons of one map, g from the other's.
+std::vector<Rgbd> flux_of(const Tracer& tracer, const std::array<std::span<const formats::Photon>, 2>& maps,
+                          const MeshCuts& cuts, std::vector<formats::MeshElement>& elements) {
   std::vector<Rgbd> flux(elements.size(), Rgbd(0.0));
-  for (int half = 0; half < 2; ++half) {
-    const formats::PhotonBlock block =
-        pilot_photons(scene.tracer, scene.lights, kinds, kKernelPaths, seed ^ (0x6b65726eull + std::uint64_t(half)));
+  for (int m = 0; m < 2; ++m) {
     double largest = 0;
-    for (const formats::Photon& photon : block.photons)
+    for (const formats::Photon& photon : maps[std::size_t(m)])
       for (const float f : photon.flux) largest = std::max(largest, double(f));
     if (!(largest > 0)) continue;
-    MeshSums sums(scene.tracer, cuts, largest * 0x1p-40);
-    sums.add(block.photons, {});
+    MeshSums sums(tracer, cuts, largest * 0x1p-40);
+    sums.add(maps[std::size_t(m)], {});
     put_sums(sums, elements);
     for (std::size_t i = 0; i < elements.size(); ++i) {
       const auto& e = elements[i].sums;
-      flux[i][half] = sums.unit() * luminance(Rgbd(double(e[0]), double(e[1]), double(e[2])));
+      flux[i][m] = sums.unit() * luminance(Rgbd(double(e[0]), double(e[1]), double(e[2])));
       elements[i].sums = {};
     }
   }
@@ -69,20 +67,27 @@ double least_of(const std::array<double, kKernels.size()>& errors) {
 
 }  // namespace
 
-double pilot_kernel(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {
-  const SceneFrame& frame = scene.tracer.frame();
-  const double area = surface_area(frame), photons = pilot_preview(scene, kinds, seed).photons * double(kKernelPaths);
-  if (!(area > 0) || !(photons > 0)) return kKernels[1];
-  const auto width_of = [&](double kernel) { return kernel_width(area, photons, kernel); };
+double best_kernel(const Tracer& tracer, std::span<const formats::Photon> a, std::span<const formats::Photon> b) {
+  const SceneFrame& frame = tracer.frame();
+  const double area = surface_area(frame);
+  if (!(area > 0) || a.empty() || b.empty()) return kKernels[1];
+  const auto width_of = [&](double kernel) { return kernel_width(area, double(a.size() + b.size()) / 2, kernel); };
   const MeshCuts cuts(kCellOfWindows * width_of(kKernels[0]), {&frame});
   std::vector<formats::MeshElement> elements = all_elements(frame, cuts);
-  const std::vector<Rgbd> flux = flux_of_halves(scene, kinds, seed, cuts, elements);
+  const std::vector<Rgbd> flux = flux_of(tracer, {a, b}, cuts, elements);
   std::array<std::vector<Vec2>, kKernels.size()> smoothed;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
     smooth_elements(frame, flux, {MeshFilter::Kind::gaussian, width_of(kKernels[k])}, {}, elements);
     for (const formats::MeshElement& e : elements) smoothed[k].push_back({e.irradiance[0], e.irradiance[1]});
   }
   return least_of(errors_of(elements, flux, smoothed));
+}
+
+double pilot_kernel(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {
+  const auto map = [&](std::uint64_t of) {
+    return pilot_photons(scene.tracer, scene.lights, kinds, kKernelPaths, seed ^ of).photons;
+  };
+  return best_kernel(scene.tracer, map(0x6b65726e656c31ull), map(0x6b65726e656c32ull));
 }
 
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "formats/photons/photons.h"
 #include "lib/render/path_tracer.h"
 
 namespace tempolux {
@@ -19,17 +20,18 @@ struct PreviewPilot {
 /// threads.
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
-inline constexpr std::uint64_t kKernelPaths = 1 << 16;  ///< light paths of each half of pilot_kernel()
+/// Number of photons under the Gaussian that smooths one of two equal photon maps with the least error. Maps a and b
+/// are counted in elements. Irradiance E_a, smoothed by each candidate, is judged by the other map's flux F_b: over
+/// elements of area A,
+///
+///     sum (A E_a^2 - 2 E_a F_b) / E
+///
+/// is the squared error of E_a plus a constant (cross-validation; Bowman, Biometrika 71(2), 1984). The weight 1 / E is
+/// nearly the squared slope of a display's tone curve. Positions are in scene space. 256 if a map is empty.
+double best_kernel(const Tracer& tracer, std::span<const formats::Photon> a, std::span<const formats::Photon> b);
 
-/// Number of photons under the Gaussian that smooths the light of kKernelPaths light paths with the least error. Two
-/// halves a and b of that many paths each are counted in elements. Irradiance E_a, smoothed by each candidate, is
-/// judged by the other half's flux F_b: over elements of area A,
-///
-///     sum A E_a^2 - 2 sum E_a F_b    weighted by 1 / E,
-///
-/// is the squared error of E_a plus a constant (cross-validation; Bowman, Biometrika 71(2), 1984). The weight is the
-/// square of the slope of a display's tone curve, nearly: an error of sqrt(E) is seen alike everywhere. 256 if no
-/// photon arrives.
+inline constexpr std::uint64_t kKernelPaths = 1 << 16;  ///< light paths of each of the two maps of pilot_kernel()
+/// best_kernel() of two maps of kKernelPaths light paths.
 double pilot_kernel(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
 struct PreviewChoice {
