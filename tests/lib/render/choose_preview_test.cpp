@@ -52,7 +52,7 @@ double kernel_at(float height) {
 /// the integral phi A / (4 pi s^2) over the room's area A, each of N photons worth phi = 4 pi h^2 E0 / N. The sum is
 /// least at s^6 = 2 A h^4 / (N J): .149 m for h = .5 m, which is 190 photons. At s = .3 h the error grows less than the
 /// law says, elements are as wide as s, and other walls are nearly even; all three are below a factor of two in
-/// photons. Seen to fail (64, and 16384) without the cross term, and where each map is judged by itself.
+/// photons. Seen to fail where each map is judged by itself (64) and without the cross term (642).
 TEST(BestKernel, IsThatOfTheLeastErrorUnderALamp) {
   const double kernel = kernel_at(0.5f);
   EXPECT_GT(kernel, 190 / 2.0);
