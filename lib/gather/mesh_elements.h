@@ -122,4 +122,17 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements);
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 
+/// Flux by element.
+struct MeshFlux {
+  std::vector<Rgbd> mean;       ///< W
+  std::vector<double> squares;  ///< W^2: variance of its luminance
+};
+
+/// Computes the irradiance of all_elements() as smooth_elements() does, but as smooth as the light allows: light is
+/// divided into bands by Gaussians of the deviations `width`, twice and four times that (`widths` likewise). Of the two
+/// finer bands each place keeps the share signal / (signal + noise), where signal + noise is the mean square of the
+/// band around the place and noise follows from the photons (Wiener). Each object keeps its total flux.
+void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double width, std::span<const float> widths,
+                      std::vector<formats::MeshElement>& elements);
+
 }  // namespace tempolux

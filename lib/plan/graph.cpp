@@ -364,9 +364,9 @@ class Builder {
     const PlannedSegment& s = segment(lit);
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
     if (s.states().size() == 1) {
-      c.option("--kinds " + s.decisions.kinds + " " + width_words(lit));
+      c.option("--kinds " + s.decisions.kinds + " --reach 0 " + width_words(lit));
       c.file("--photons", preview_photons(lit, true));
-      return add(stage::textures, lit, c);
+      return add(stage::windows, lit, c);
     }
     c.option(width_words(lit) + " --counts");
     for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(f));

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 #include <unordered_map>
 
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
-#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 namespace {
@@ -263,25 +263,28 @@ struct PlacedWindow {
 };
 
 /// Writes the window's photons into the element. Returns their mean flux per frame [unit of the counts], scaled to the
-/// element's present area.
-Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
-                const PlacedWindow& placed, formats::MeshElement& e) {
+/// element's present area, and its variance.
+std::pair<Rgbd, double> put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
+                                   const PlacedWindow& placed, formats::MeshElement& e) {
   const auto& [now, window, changes_size] = placed;
   e.before = std::uint8_t(window.before);
   e.after = std::uint8_t(window.after);
   Rgbd flux{0.0};
+  double squares = 0;
   for (const HitTable::Entry& entry : entries) {
     if (int(entry.frame) < now - window.before || int(entry.frame) > now + window.after) continue;
     const formats::MeshElement& counted = *entry.counted;
     const double size = changes_size && counted.area > 0 ? double(e.area) / double(counted.area) : 1;
     e.photons += counted.photons;
+    squares += size * size * hits_of(counted, unit_of(frames, entry)).squares;
     for (std::size_t c = 0; c < 3; ++c) {
       const double sum = unit_of(frames, entry) * double(counted.sums[c]);
       e.sums[c] += std::llrint(std::min(sum, kLargestSum));
       flux[int(c)] += size * sum;
     }
   }
-  return flux * (1 / double(window.before + 1 + window.after));
+  const double per_frame = 1 / double(window.before + 1 + window.after);
+  return {flux * per_frame, squares * per_frame * per_frame};
 }
 
 }  // namespace
@@ -346,7 +349,8 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
   double area = 0;                            // m^2, one side
   for (const formats::MeshElement& e : elements) area += double(e.area) / 2;
   const double density = around.all().block(0, int(frames.size()) - 1).photons / double(frames.size()) * full / area;
-  CollectedLight result{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<float>(elements.size(), 0)};
+  CollectedLight result{{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<double>(elements.size(), 0)},
+                        std::vector<float>(elements.size(), 0)};
   parallel_chunks(elements.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const HitSeries& kernel = around.kernel(i);
@@ -357,7 +361,8 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
       own.sum_up();
       const Window window =
           grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
-      result.flux[i] = put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
+      std::tie(result.flux.mean[i], result.flux.squares[i]) =
+          put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
       const double photons = kernel.block(now - window.before, now + window.after).photons;
       const double fewer = density * around.kernel_area(i) / std::max(1.0, photons);
       result.widths[i] = float(options.width * std::sqrt(std::sqrt(std::clamp(fewer, 1.0, full))));

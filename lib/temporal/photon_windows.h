@@ -11,6 +11,7 @@
 
 #include "formats/meshirrad/meshirrad.h"
 #include "lib/core/vec.h"
+#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 
@@ -101,7 +102,7 @@ Window grow_window(const WindowSeries& series, int at, int frames, const WindowT
 
 /// The light that windows give to the elements of a frame; one entry per element.
 struct CollectedLight {
-  std::vector<Rgbd> flux;     ///< per frame, mean over the window, for the element's present size [unit of the counts]
+  MeshFlux flux;              ///< per frame, mean over the window, for the element's present size [unit of the counts]
   std::vector<float> widths;  ///< m: deviation of the Gaussian of each element; 0: no photon is close
 };
 

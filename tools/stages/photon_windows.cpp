@@ -145,10 +145,10 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
       options.count.mesh.filter.width > 0 ? options.count.mesh.filter.width : here.header.cell / kCellOfWindows;
   CollectedLight light = collect_windows(window, at, std::uint32_t(frame.static_count), window_options, file.elements);
   tool.stats().phase("filter", true);
-  for (Rgbd& flux : light.flux) flux *= here.header.unit;
-  MeshFilter filter{MeshFilter::Kind::gaussian, window_options.width};
-  file.header.filter = "gaussian " + formats::text_of(filter.width);
-  smooth_elements(frame, light.flux, filter, light.widths, file.elements);
+  for (Rgbd& flux : light.flux.mean) flux *= here.header.unit;
+  for (double& squares : light.flux.squares) squares *= here.header.unit * here.header.unit;
+  file.header.filter = "gaussian " + formats::text_of(window_options.width);
+  smooth_by_scales(frame, light.flux, window_options.width, light.widths, file.elements);
   double frames = 0, lit = 0;
   for (const formats::MeshElement& e : file.elements)
     if (e.photons > 0) frames += 1 + e.before + e.after, ++lit;

@@ -153,9 +153,9 @@ class CollectWindows : public testing::Test {
     elements = elements_;
     return collect_windows(pointers, at, 1000, {.width = 0.5}, elements);
   }
-  static double channel(const std::vector<Rgbd>& flux) {
+  static double channel(const MeshFlux& flux) {
     double sum = 0;
-    for (const Rgbd& f : flux) sum += f.g;
+    for (const Rgbd& f : flux.mean) sum += f.g;
     return sum;
   }
 
@@ -175,7 +175,7 @@ TEST_F(CollectWindows, KeepPower) {
   for (const formats::MeshElement& e : elements) ASSERT_EQ(e.before + e.after, 32);
   EXPECT_NEAR(channel(light.flux), wanted, 1e-9 * wanted);
   // The filter in space keeps it, too: irradiance is rounded to float32, errors of 2^-25 that are independent.
-  smooth_elements(room_.frame(), light.flux, {MeshFilter::Kind::gaussian, 0.5}, light.widths, elements);
+  smooth_by_scales(room_.frame(), light.flux, 0.5, light.widths, elements);
   double smoothed = 0;
   for (const formats::MeshElement& e : elements) smoothed += double(e.irradiance[1]) * double(e.area);
   EXPECT_NEAR(smoothed, wanted, 1e-8 * wanted);
@@ -202,7 +202,7 @@ TEST_F(CollectWindows, HaveNoDirectionOfTime) {
   for (std::size_t i = 0; i < forth.size(); ++i) {
     EXPECT_EQ(forth[i].before, back[i].after);
     EXPECT_EQ(forth[i].sums, back[i].sums);
-    EXPECT_NEAR(a.flux[i].r, b.flux[i].r, 1e-12 * a.flux[i].r);
+    EXPECT_NEAR(a.flux.mean[i].r, b.flux.mean[i].r, 1e-12 * a.flux.mean[i].r);
   }
 }
 
