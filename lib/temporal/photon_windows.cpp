@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  ///< elements that one task processes
 constexpr int kRegions = 3;           ///< regions whose tests can reject constant light: element, kernel, ring
-/// Expected photons that a block needs to be tested: with fewer, the tails of its distribution are not Gaussian.
+/// Expected photons, counted as photons of equal power, that a block needs to be tested: with fewer, the tails of its
+/// distribution are not Gaussian.
 constexpr double kPhotonsInBlock = 8;
 
 constexpr double kLargestSum = 0x1p55;  ///< of one frame, so that the sums of 255 frames do not overflow
@@ -57,7 +58,7 @@ void each_step(int reach, const Visit& visit) {
   }
 }
 
-/// Number of tests for a region of `rate` photons per frame while a window grows to its full size.
+/// Number of tests for a region of `rate` photons of equal power per frame while a window grows to its full size.
 int tests_of(double rate, const Added& most, int reach) {
   int tests = 0;
   each_step(reach, [&](int from, int to) {
@@ -76,7 +77,7 @@ class Grower {
       : series_(series), at_(at) {
     int tests = 0;
     for (const HitSeries* region : {series.element, series.kernel, series.ring})
-      tests += tests_of(region->block(0, frames - 1).photons / frames, most, thresholds.reach());
+      tests += tests_of(region->block(0, frames - 1).equal_photons() / frames, most, thresholds.reach());
     threshold_ = thresholds.of(tests);
   }
 
@@ -113,7 +114,7 @@ class Grower {
     const int old_frames = w.before + 1 + w.after;
     const HitBlock old = old_of(s, w), added = added_of(s, w, a);
     const double p = double(std::min(old_frames, a.frames())) / (old_frames + a.frames());
-    if ((old.photons + added.photons) * p < kPhotonsInBlock) return false;
+    if ((old + added).equal_photons() * p < kPhotonsInBlock) return false;
     return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
   }
   /// True if joining the frames shifts the region's mean by more than the noise that the kernel's mean loses.

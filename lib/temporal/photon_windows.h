@@ -37,6 +37,8 @@ struct HitBlock {
   double photons = 0;
   double flux = 0;     ///< sum of the photons' luminance
   double squares = 0;  ///< sum of their squared luminance: the variance of `flux` (compound Poisson)
+  /// Number of photons of equal power that would scatter as much: at most `photons`.
+  double equal_photons() const { return squares > 0 ? flux * flux / squares : 0; }
   HitBlock& operator+=(const HitBlock& o) {
     photons += o.photons;
     flux += o.flux;
