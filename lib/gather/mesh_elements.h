@@ -85,15 +85,12 @@ inline constexpr double kPhotonsInKernel = 256;
 /// The Gaussian averages over an area of 4 pi deviations squared.
 double kernel_width(double area, double photons, double in_kernel = kPhotonsInKernel);
 
-/// Mean number of photons under the filter for light textures of a full window where nothing better is known: a noise
-/// of 1/50.
-inline constexpr double kPhotonsInWindow = 2500;
 /// Edge length of elements in standard deviations of the filter. Light is interpolated linearly between elements, so
 /// smaller ones would not show more.
 inline constexpr double kCellOfWindows = 2;
 /// Widths for surfaces of this area [m^2] at which `photons` photons arrive in all frames of a full window, `in_kernel`
 /// of them under the filter.
-MeshOptions window_widths(double area, double photons, double in_kernel = kPhotonsInWindow);
+MeshOptions window_widths(double area, double photons, double in_kernel = kPhotonsInKernel);
 
 /// Area of all surfaces of the frame, one side [m^2].
 double surface_area(const SceneFrame& frame);

@@ -192,9 +192,7 @@ int photon_windows(int argc, char** argv) {
       ->capture_default_str()
       ->check(number_between(1e-9, 0.5));
   app.add_option("--filter-width", options.count.mesh.filter.width,
-                 "least deviation of the Gaussian by which elements are smoothed, m; it is wider where fewer than 2500 "
-                 "photons count in the "
-                 "mean; 0: half of --cell")
+                 "deviation of the narrowest Gaussian by which elements are smoothed, m; 0: half of --cell")
       ->capture_default_str()
       ->check(number_between(0));
   tool.output_option(options.output, ".meshirrad file, or a pattern")->required();
