@@ -176,11 +176,9 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Sm
   }
 }
 
-/// The same samples under a filter wider by `times`.
-Smoothed smooth_wider(std::vector<Sample> samples, const MeshFilter& filter, float times) {
-  for (Sample& s : samples) s.width *= times;
+Smoothed gaussian_of(const std::vector<Sample>& samples, double width) {
   Smoothed result(samples.size());
-  smooth_all(samples, {MeshFilter::Kind::gaussian, filter.width * double(times)}, result);
+  smooth_all(samples, {MeshFilter::Kind::gaussian, width}, result);
   return result;
 }
 
@@ -392,20 +390,26 @@ void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double widt
   const MeshFilter filter{MeshFilter::Kind::gaussian, width};
   std::vector<Sample> samples = samples_of(frame, flux.mean, filter, widths, elements);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].squares = flux.squares[i];
-  const Smoothed fine = smooth_wider(samples, filter, 1), middle = smooth_wider(samples, filter, 2),
-                 coarse = smooth_wider(samples, filter, 4);
-  std::vector<Sample> energies = samples;  // mean squares of the two bands around each place
+  const auto widen = [&] {
+    for (Sample& s : samples) s.width *= 2;
+  };
+  const Smoothed fine = gaussian_of(samples, width);
+  widen();
+  const Smoothed middle = gaussian_of(samples, 2 * width);
+  widen();
+  const Smoothed coarse = gaussian_of(samples, 4 * width);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double a = luminance(fine.light[i] - middle.light[i]), b = luminance(middle.light[i] - coarse.light[i]);
-    energies[i].flux = Rgbd(a * a, b * b, 0) * double(samples[i].area);
+    samples[i].flux = Rgbd(a * a, b * b, 0) * double(samples[i].area);
   }
-  const Smoothed energy = smooth_wider(energies, filter, 4);
+  const Smoothed energy = gaussian_of(samples, 4 * width);  // mean squares of the two bands around each place
   std::vector<Rgbd> light(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double a = kept_share(energy.light[i].r, fine.variance[i]),
                  b = std::max(a, kept_share(energy.light[i].g, middle.variance[i]));
     // a convex sum, so that no light becomes negative by rounding
     light[i] = coarse.light[i] * (1 - b) + middle.light[i] * (b - a) + fine.light[i] * a;
+    samples[i].flux = flux.mean[i];
   }
   put_right(samples, elements, light);
   put_light(light, elements);
