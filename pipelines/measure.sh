@@ -6,8 +6,7 @@
 # renderings AQM says in which share of the pixels a viewer sees the noise of one (aqm-compare --either).
 # METHOD=preview chooses its photons so: a frame of n photons is compared with one of 2 n, so that the blur that more
 # photons take away is seen as well as noise; n starts at 3125 and is doubled until the share is at most AQM, or has
-# not become smaller twice (a filter that always takes equally many photons shows finer noise then). OUT/measured.json
-# has all that was tried; scene-plan --measured chooses by it.
+# not become smaller twice. OUT/measured.json has all that was tried; scene-plan --measured chooses by it.
 least=3125 most=1000000
 runs=$OUT/measure
 table=$OUT/measured.json

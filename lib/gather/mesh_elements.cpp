@@ -37,6 +37,14 @@ struct Sample {
   float area = 0;
   float width = 0;  ///< m: width of the filter around it
   std::uint32_t material = 0;
+  double squares = 0;  ///< W^2: variance of the flux's luminance
+};
+
+/// Irradiance by sample, and the variance of its luminance.
+struct Smoothed {
+  explicit Smoothed(std::size_t size) : light(size, Rgbd(0.0)), variance(size, 0.0) {}
+  std::vector<Rgbd> light;       ///< W/m^2
+  std::vector<double> variance;  ///< (W/m^2)^2
 };
 
 /// Samples by cubes of space that are as wide as the filter.
@@ -86,12 +94,12 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
 /// Irradiance of all samples with a width: flux over area under the kernel. `alike`: ln of irradiance for the bilateral
 /// filter's weights; may be empty.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
-            const std::vector<float>& alike, std::vector<Rgbd>& result) {
+            const std::vector<float>& alike, Smoothed& result) {
   parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!(samples[i].width > 0)) continue;
       Rgbd flux{0.0};
-      double area = 0;
+      double area = 0, squares = 0;
       neighbours.around(samples[i].position, [&](std::uint32_t j) {
         float w = weight(filter, samples[i], samples[j]);
         if (w > 0 && !alike.empty()) {
@@ -101,8 +109,11 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
         if (!(w > 0)) return;
         flux += samples[j].flux * double(w);
         area += double(w) * double(samples[j].area);
+        squares += double(w) * double(w) * samples[j].squares;
       });
-      if (area > 0) result[i] = flux * (1 / area);
+      if (!(area > 0)) continue;
+      result.light[i] = flux * (1 / area);
+      result.variance[i] = squares / (area * area);
     }
   });
 }
@@ -123,13 +134,14 @@ Joined join(const std::vector<Sample>& samples, float edge) {
     for (int c = 0; c < 3; ++c)
       key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
     const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
-    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material});
+    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material, 0});
     joined.of.push_back(found->second);
     Sample& cube = joined.cubes[found->second];
     cube.position = cube.position + s.position * s.area;
     cube.normal = cube.normal + s.normal * s.area;
     cube.flux += s.flux;
     cube.area += s.area;
+    cube.squares += s.squares;
   }
   for (Sample& cube : joined.cubes) {
     if (!(cube.area > 0)) continue;
@@ -141,7 +153,7 @@ Joined join(const std::vector<Sample>& samples, float edge) {
 
 /// Smooths each sample with its own width; samples whose widths are within a factor of two are processed together.
 /// Small elements are joined first, so that the cost depends on the widths and not on the number of triangles.
-void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, std::vector<Rgbd>& result) {
+void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Smoothed& result) {
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (samples[i].width > 0 && samples[i].area > 0)
@@ -155,10 +167,19 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, st
       widest = std::max(widest, width);
     }
     const Neighbours neighbours(joined.cubes, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach));
-    std::vector<Rgbd> smoothed(joined.cubes.size(), Rgbd(0.0));
+    Smoothed smoothed(joined.cubes.size());
     smooth(joined.cubes, filter, neighbours, {}, smoothed);
-    for (const std::uint32_t i : which) result[i] = smoothed[joined.of[i]];
+    for (const std::uint32_t i : which) {
+      result.light[i] = smoothed.light[joined.of[i]];
+      result.variance[i] = smoothed.variance[joined.of[i]];
+    }
   }
+}
+
+Smoothed gaussian_of(const std::vector<Sample>& samples, double width) {
+  Smoothed result(samples.size());
+  smooth_all(samples, {MeshFilter::Kind::gaussian, width}, result);
+  return result;
 }
 
 /// Scales the result so that each object keeps its flux from before smoothing, by channel.
@@ -174,6 +195,31 @@ void put_right(const std::vector<Sample>& samples, const std::vector<formats::Me
     for (int c = 0; c < 3; ++c)
       if (const auto& [before, after] = flux.at(elements[i].object); after[c] > 0)
         irradiance[i][c] *= before[c] / after[c];
+}
+
+/// Share of a band that is kept (Wiener): signal over signal and noise. `energy`: mean square of the band, difference
+/// of Gaussians of deviations s and 2 s; `variance`: of the narrower one. Over the plane the covariance of Gaussians s
+/// and t is q / (2 pi (s^2 + t^2)), so the band's variance is that of s times 1 + 1/4 - 2 x 2/5.
+double kept_share(double energy, double variance) {
+  return energy > 0 ? std::max(0.0, 1 - 0.45 * variance / energy) : 0;
+}
+
+std::vector<Sample> samples_of(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
+                               std::span<const float> widths, const std::vector<formats::MeshElement>& elements) {
+  std::vector<Sample> samples(elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const formats::MeshElement& e = elements[i];
+    const auto n = formats::decode_normal(e.normal);
+    samples[i] = {
+        {e.position[0], e.position[1], e.position[2]},    {float(n[0]), float(n[1]), float(n[2])}, flux[i], e.area,
+        widths.empty() ? float(filter.width) : widths[i], frame.surfaces[e.surface].material,      0};
+  }
+  return samples;
+}
+
+void put_light(const std::vector<Rgbd>& light, std::vector<formats::MeshElement>& elements) {
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    elements[i].irradiance = {float(light[i].r), float(light[i].g), float(light[i].b)};
 }
 
 }  // namespace
@@ -192,8 +238,8 @@ double kernel_width(double area, double photons, double in_kernel) {
   return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons));
 }
 
-MeshOptions window_widths(double area, double photons) {
-  const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
+MeshOptions window_widths(double area, double photons, double in_kernel) {
+  const double width = kernel_width(area, std::max(1.0, photons), in_kernel);
   MeshOptions result;
   result.filter.width = width > 0 ? width : 1;  // for a scene without surfaces
   result.cell = kCellOfWindows * result.filter.width;
@@ -320,31 +366,53 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements) {
 
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements) {
-  std::vector<Sample> samples(elements.size());
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    const formats::MeshElement& e = elements[i];
-    const auto n = formats::decode_normal(e.normal);
-    samples[i] = {
-        {e.position[0], e.position[1], e.position[2]},    {float(n[0]), float(n[1]), float(n[2])}, flux[i], e.area,
-        widths.empty() ? float(filter.width) : widths[i], frame.surfaces[e.surface].material};
-  }
-  std::vector<Rgbd> irradiance(samples.size(), Rgbd(0.0));
+  const std::vector<Sample> samples = samples_of(frame, flux, filter, widths, elements);
+  Smoothed smoothed(samples.size());
   if (filter.kind == MeshFilter::Kind::none) {
     for (std::size_t i = 0; i < samples.size(); ++i)
-      if (samples[i].area > 0) irradiance[i] = flux[i] * (1 / double(samples[i].area));
+      if (samples[i].area > 0) smoothed.light[i] = flux[i] * (1 / double(samples[i].area));
   } else {
     MeshFilter first = filter;
     if (filter.kind == MeshFilter::Kind::bilateral) first.kind = MeshFilter::Kind::gaussian;
-    smooth_all(samples, first, irradiance);
+    smooth_all(samples, first, smoothed);
     if (filter.kind == MeshFilter::Kind::bilateral) {
       std::vector<float> alike;
-      for (const Rgbd& e : irradiance) alike.push_back(float(std::log(std::max(1e-30, (e.r + e.g + e.b) / 3))));
-      smooth(samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, irradiance);
+      for (const Rgbd& e : smoothed.light) alike.push_back(float(std::log(std::max(1e-30, (e.r + e.g + e.b) / 3))));
+      smooth(samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, smoothed);
     }
-    put_right(samples, elements, irradiance);
+    put_right(samples, elements, smoothed.light);
   }
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    elements[i].irradiance = {float(irradiance[i].r), float(irradiance[i].g), float(irradiance[i].b)};
+  put_light(smoothed.light, elements);
+}
+
+void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double width, std::span<const float> widths,
+                      std::vector<formats::MeshElement>& elements) {
+  const MeshFilter filter{MeshFilter::Kind::gaussian, width};
+  std::vector<Sample> samples = samples_of(frame, flux.mean, filter, widths, elements);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].squares = flux.squares[i];
+  const auto widen = [&] {
+    for (Sample& s : samples) s.width *= 2;
+  };
+  const Smoothed fine = gaussian_of(samples, width);
+  widen();
+  const Smoothed middle = gaussian_of(samples, 2 * width);
+  widen();
+  const Smoothed coarse = gaussian_of(samples, 4 * width);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double a = luminance(fine.light[i] - middle.light[i]), b = luminance(middle.light[i] - coarse.light[i]);
+    samples[i].flux = Rgbd(a * a, b * b, 0) * double(samples[i].area);
+  }
+  const Smoothed energy = gaussian_of(samples, 4 * width);  // mean squares of the two bands around each place
+  std::vector<Rgbd> light(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double a = kept_share(energy.light[i].r, fine.variance[i]),
+                 b = std::max(a, kept_share(energy.light[i].g, middle.variance[i]));
+    // a convex sum, so that no light becomes negative by rounding
+    light[i] = coarse.light[i] * (1 - b) + middle.light[i] * (b - a) + fine.light[i] * a;
+    samples[i].flux = flux.mean[i];
+  }
+  put_right(samples, elements, light);
+  put_light(light, elements);
 }
 
 }  // namespace tempolux

@@ -85,14 +85,12 @@ inline constexpr double kPhotonsInKernel = 256;
 /// The Gaussian averages over an area of 4 pi deviations squared.
 double kernel_width(double area, double photons, double in_kernel = kPhotonsInKernel);
 
-/// Mean number of photons under the filter for light textures of a full window, which hold the photons of many frames:
-/// a noise of 1/50.
-inline constexpr double kPhotonsInWindow = 2500;
 /// Edge length of elements in standard deviations of the filter. Light is interpolated linearly between elements, so
 /// smaller ones would not show more.
 inline constexpr double kCellOfWindows = 2;
-/// Widths for surfaces of this area [m^2] at which `photons` photons arrive in all frames of a full window.
-MeshOptions window_widths(double area, double photons);
+/// Widths for surfaces of this area [m^2] at which `photons` photons arrive in all frames of a full window, `in_kernel`
+/// of them under the filter.
+MeshOptions window_widths(double area, double photons, double in_kernel = kPhotonsInKernel);
 
 /// Area of all surfaces of the frame, one side [m^2].
 double surface_area(const SceneFrame& frame);
@@ -120,5 +118,18 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements);
 /// the filter's width everywhere.
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
+
+/// Flux by element.
+struct MeshFlux {
+  std::vector<Rgbd> mean;       ///< W
+  std::vector<double> squares;  ///< W^2: variance of its luminance
+};
+
+/// Computes the irradiance of all_elements() as smooth_elements() does, but as smooth as the light allows: light is
+/// divided into bands by Gaussians of the deviations `width`, twice and four times that (`widths` likewise). Of the two
+/// finer bands each place keeps the share signal / (signal + noise), where signal + noise is the mean square of the
+/// band around the place and noise follows from the photons (Wiener). Each object keeps its total flux.
+void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double width, std::span<const float> widths,
+                      std::vector<formats::MeshElement>& elements);
 
 }  // namespace tempolux

@@ -91,6 +91,7 @@ class FramePilot {
   }
 
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
+  double kernel() { return pilot_kernel({tracer_, aimed()}, kinds_, 0); }
   SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
   MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
   /// Mean share of a picture of the segment that the picture before does not show.
@@ -258,12 +259,14 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
+  double kernel = 0;
   for (const int frame : d.looked) {
     FramePilot pilot(wish, source, frame, d.kinds);
+    if (frame == d.looked[d.looked.size() / 2]) kernel = pilot.kernel();
     d.learn_lights |= pilot.look(kPlaces, [](const Look&) { return true; }).learn;
     pilots.push_back(pilot.preview());
   }
-  const PreviewChoice choice = choose_preview(pilots, wish.photons, kPreviewWindow);
+  const PreviewChoice choice = choose_preview(pilots, kernel, wish.photons, kPreviewWindow);
   d.photon_paths = choice.paths;
   d.texture_width = choice.width;
   d.view = view_of(segment, wish.width, wish.height, source);

@@ -198,9 +198,9 @@ std::string preview_light(GraphBuilder& g, int lit) {
   const PlannedSegment& s = g.segment(lit);
   Command c = g.at(lit);
   if (s.states().size() == 1) {
-    c.option("--kinds " + s.decisions.kinds + " " + width_words(g, lit));
+    c.option("--kinds " + s.decisions.kinds + " --reach 0 " + width_words(g, lit));
     c.file("--photons", preview_photons(g, lit, true));
-    return g.add(stage::textures, lit, c);
+    return g.add(stage::windows, lit, c);
   }
   c.option(width_words(g, lit) + " --counts");
   for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(g, f));

@@ -5,19 +5,20 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 #include <unordered_map>
 
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
-#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  ///< elements that one task processes
 constexpr int kRegions = 3;           ///< regions whose tests can reject constant light: element, kernel, ring
-/// Expected photons that a block needs to be tested: with fewer, the tails of its distribution are not Gaussian.
+/// Expected photons, counted as photons of equal power, that a block needs to be tested: with fewer, the tails of its
+/// distribution are not Gaussian.
 constexpr double kPhotonsInBlock = 8;
 
 constexpr double kLargestSum = 0x1p55;  ///< of one frame, so that the sums of 255 frames do not overflow
@@ -57,7 +58,7 @@ void each_step(int reach, const Visit& visit) {
   }
 }
 
-/// Number of tests for a region of `rate` photons per frame while a window grows to its full size.
+/// Number of tests for a region of `rate` photons of equal power per frame while a window grows to its full size.
 int tests_of(double rate, const Added& most, int reach) {
   int tests = 0;
   each_step(reach, [&](int from, int to) {
@@ -76,7 +77,7 @@ class Grower {
       : series_(series), at_(at) {
     int tests = 0;
     for (const HitSeries* region : {series.element, series.kernel, series.ring})
-      tests += tests_of(region->block(0, frames - 1).photons / frames, most, thresholds.reach());
+      tests += tests_of(region->block(0, frames - 1).equal_photons() / frames, most, thresholds.reach());
     threshold_ = thresholds.of(tests);
   }
 
@@ -113,7 +114,7 @@ class Grower {
     const int old_frames = w.before + 1 + w.after;
     const HitBlock old = old_of(s, w), added = added_of(s, w, a);
     const double p = double(std::min(old_frames, a.frames())) / (old_frames + a.frames());
-    if ((old.photons + added.photons) * p < kPhotonsInBlock) return false;
+    if ((old + added).equal_photons() * p < kPhotonsInBlock) return false;
     return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
   }
   /// True if joining the frames would shift the region's mean by more than the noise that the kernel's mean would
@@ -264,25 +265,28 @@ struct PlacedWindow {
 };
 
 /// Writes the window's photons into the element. Returns their mean flux per frame [unit of the counts], scaled to the
-/// element's present area.
-Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
-                const PlacedWindow& placed, formats::MeshElement& e) {
+/// element's present area, and its variance.
+std::pair<Rgbd, double> put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
+                                   const PlacedWindow& placed, formats::MeshElement& e) {
   const auto& [now, window, changes_size] = placed;
   e.before = std::uint8_t(window.before);
   e.after = std::uint8_t(window.after);
   Rgbd flux{0.0};
+  double squares = 0;
   for (const HitTable::Entry& entry : entries) {
     if (int(entry.frame) < now - window.before || int(entry.frame) > now + window.after) continue;
     const formats::MeshElement& counted = *entry.counted;
     const double size = changes_size && counted.area > 0 ? double(e.area) / double(counted.area) : 1;
     e.photons += counted.photons;
+    squares += size * size * hits_of(counted, unit_of(frames, entry)).squares;
     for (std::size_t c = 0; c < 3; ++c) {
       const double sum = unit_of(frames, entry) * double(counted.sums[c]);
       e.sums[c] += std::llrint(std::min(sum, kLargestSum));
       flux[int(c)] += size * sum;
     }
   }
-  return flux * (1 / double(window.before + 1 + window.after));
+  const double per_frame = 1 / double(window.before + 1 + window.after);
+  return {flux * per_frame, squares * per_frame * per_frame};
 }
 
 }  // namespace
@@ -343,9 +347,12 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
   const HitTable table = table_of(frames, elements);
   const Surroundings around(frames, table, elements, std::sqrt(4 * std::numbers::pi) * options.width);
   const WindowThresholds thresholds(options);
-  const double widest =
-      options.width * std::sqrt(std::max(1.0, (2 * options.reach + 1) * kPhotonsInKernel / kPhotonsInWindow));
-  CollectedLight result{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<float>(elements.size(), 0)};
+  const double full = 2 * options.reach + 1;  // frames
+  double area = 0;                            // m^2, one side
+  for (const formats::MeshElement& e : elements) area += double(e.area) / 2;
+  const double density = around.all().block(0, int(frames.size()) - 1).photons / double(frames.size()) * full / area;
+  CollectedLight result{{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<double>(elements.size(), 0)},
+                        std::vector<float>(elements.size(), 0)};
   parallel_chunks(elements.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const HitSeries& kernel = around.kernel(i);
@@ -356,10 +363,11 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
       own.sum_up();
       const Window window =
           grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
-      result.flux[i] = put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
+      std::tie(result.flux.mean[i], result.flux.squares[i]) =
+          put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
       const double photons = kernel.block(now - window.before, now + window.after).photons;
-      const double width = photons > 0 ? kernel_width(around.kernel_area(i), photons, kPhotonsInWindow) : widest;
-      result.widths[i] = float(std::clamp(width, options.width, widest));
+      const double fewer = density * around.kernel_area(i) / std::max(1.0, photons);
+      result.widths[i] = float(options.width * std::sqrt(std::sqrt(std::clamp(fewer, 1.0, full))));
     }
   });
   return result;

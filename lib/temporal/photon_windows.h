@@ -11,14 +11,16 @@
 
 #include "formats/meshirrad/meshirrad.h"
 #include "lib/core/vec.h"
+#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 
 struct WindowOptions {
   int reach = 16;               ///< most frames to each side
   double false_alarms = 0.005;  ///< share of windows that close too early under constant light
-  /// m: smallest standard deviation of the Gaussian that smooths irradiance afterwards. Where photons are few the
-  /// Gaussian widens, up to one that holds kPhotonsInKernel photons of one frame.
+  /// m: standard deviation of the Gaussian that smooths irradiance afterwards, for full windows with the mean density
+  /// of photons. Where photons are fewer by a factor f the Gaussian is wider by f^(1/4): with N photons per area its
+  /// error is about v / (N s^2) + b s^2, which is least at s^4 = v / (N b). f is at most that of a window of one frame.
   double width = 1;
 };
 
@@ -35,6 +37,8 @@ struct HitBlock {
   double photons = 0;
   double flux = 0;     ///< sum of the photons' luminance
   double squares = 0;  ///< sum of their squared luminance: the variance of `flux` (compound Poisson)
+  /// Number of photons of equal power that would scatter as much: at most `photons`.
+  double equal_photons() const { return squares > 0 ? flux * flux / squares : 0; }
   HitBlock& operator+=(const HitBlock& o) {
     photons += o.photons;
     flux += o.flux;
@@ -102,9 +106,8 @@ Window grow_window(const WindowSeries& series, int at, int frames, const WindowT
 
 /// The light that windows give to the elements of a frame; one entry per element.
 struct CollectedLight {
-  std::vector<Rgbd> flux;  ///< per frame, mean over the window, for the element's present size [unit of the counts]
-  std::vector<float>
-      widths;  ///< m: deviation of the Gaussian that holds kPhotonsInWindow photons there; 0: no photon is close
+  MeshFlux flux;              ///< per frame, mean over the window, for the element's present size [unit of the counts]
+  std::vector<float> widths;  ///< m: deviation of the Gaussian of each element; 0: no photon is close
 };
 
 /// Fills photons, sums and windows of `elements` (all_elements() at frames[at]) from `frames`, which are consecutive

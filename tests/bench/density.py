@@ -38,6 +38,7 @@ parser.add_argument("--frames", type=int, default=0, help="of a range; 0: as the
 parser.add_argument("--scenes", default="S2,S5,room", help="of equal and preview, by names separated by commas")
 parser.add_argument("--size", default="320x180")
 options = parser.parse_args()
+options.work.mkdir(parents=True, exist_ok=True)
 MIDDLE = 16
 
 

@@ -145,10 +145,10 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
       options.count.mesh.filter.width > 0 ? options.count.mesh.filter.width : here.header.cell / kCellOfWindows;
   CollectedLight light = collect_windows(window, at, std::uint32_t(frame.static_count), window_options, file.elements);
   tool.stats().phase("filter", true);
-  for (Rgbd& flux : light.flux) flux *= here.header.unit;
-  MeshFilter filter{MeshFilter::Kind::gaussian, window_options.width};
-  file.header.filter = "gaussian " + formats::text_of(filter.width);
-  smooth_elements(frame, light.flux, filter, light.widths, file.elements);
+  for (Rgbd& flux : light.flux.mean) flux *= here.header.unit;
+  for (double& squares : light.flux.squares) squares *= here.header.unit * here.header.unit;
+  file.header.filter = "gaussian " + formats::text_of(window_options.width);
+  smooth_by_scales(frame, light.flux, window_options.width, light.widths, file.elements);
   double frames = 0, lit = 0;
   for (const formats::MeshElement& e : file.elements)
     if (e.photons > 0) frames += 1 + e.before + e.after, ++lit;
@@ -192,9 +192,7 @@ int photon_windows(int argc, char** argv) {
       ->capture_default_str()
       ->check(number_between(1e-9, 0.5));
   app.add_option("--filter-width", options.count.mesh.filter.width,
-                 "least deviation of the Gaussian by which elements are smoothed, m; it is wider where fewer than 2500 "
-                 "photons count in the "
-                 "mean; 0: half of --cell")
+                 "deviation of the narrowest Gaussian by which elements are smoothed, m; 0: half of --cell")
       ->capture_default_str()
       ->check(number_between(0));
   tool.output_option(options.output, ".meshirrad file, or a pattern")->required();
