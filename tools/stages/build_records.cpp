@@ -25,7 +25,7 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
   header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
-  header.columns = formats::column_clearance;
+  header.columns = formats::column_clearance | formats::column_noise;
   header.rays = std::uint32_t(options.gather.rays);
   header.error_bound = double(options.placement.error_bound);
   header.least_cosine = double(least_cosine);
