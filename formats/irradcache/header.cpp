@@ -7,15 +7,22 @@
 namespace tempolux::formats::irradcache {
 namespace {
 
-constexpr std::uint16_t kLeastCosineSince = 1, kClearanceSince = 2;  ///< minor versions
+constexpr std::uint16_t kLeastCosineSince = 1, kClearanceSince = 2, kNoiseSince = 3;  ///< minor versions
 
-constexpr std::array<std::string_view, 8> kColumnsNames{
-    "none",      "influence",           "update",           "influence,update",
-    "clearance", "influence,clearance", "update,clearance", "influence,update,clearance"};
+constexpr std::array<std::string_view, 4> kColumnNames{"influence", "update", "clearance", "noise"};
+constexpr std::uint32_t kColumnSets = 1u << kColumnNames.size();
+
+/// Value of the key `columns`.
+std::string names_of(std::uint32_t columns) {
+  std::string names;
+  for (std::size_t i = 0; i < kColumnNames.size(); ++i)
+    if (columns >> i & 1) names += (names.empty() ? "" : ",") + std::string(kColumnNames[i]);
+  return names.empty() ? "none" : names;
+}
 
 /// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const IrradcacheHeader& h) {
-  if (h.columns >= kColumnsNames.size()) return "columns are not known";
+  if (h.columns >= kColumnSets) return "columns are not known";
   if (!std::isfinite(h.error_bound) || h.error_bound < 0) return "error-bound is not finite or is negative";
   if (!(h.least_cosine >= 0 && h.least_cosine < 1)) return "least-cosine is not from 0 to below 1";
   if (!std::isfinite(h.max_radius) || !(h.min_radius >= 0 && h.min_radius <= h.max_radius))
@@ -41,8 +48,10 @@ bool parse_ranges(std::string_view text, std::vector<std::array<std::int32_t, 2>
 Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, IrradcacheHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "columns") {
-    h.columns = std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
-    return result(!(h.columns & column_clearance) || minor >= kClearanceSince);
+    h.columns = 0;
+    while (h.columns < kColumnSets && names_of(h.columns) != value) ++h.columns;
+    return result(!(h.columns & column_clearance && minor < kClearanceSince) &&
+                  !(h.columns & column_noise && minor < kNoiseSince));
   }
   if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);
   if (key == "error-bound") return result(parse_numbers(value, &h.error_bound, 1) && h.error_bound > 0);
@@ -71,14 +80,17 @@ bool has_least_cosine(const IrradcacheHeader& h) { return h.least_cosine != kLea
 
 Format format_of(const IrradcacheHeader& h) {
   Format format = kFormat;
-  format.minor = h.columns & column_clearance ? kClearanceSince : has_least_cosine(h) ? kLeastCosineSince : 0;
+  format.minor = h.columns & column_noise       ? kNoiseSince
+                 : h.columns & column_clearance ? kClearanceSince
+                 : has_least_cosine(h)          ? kLeastCosineSince
+                                                : 0;
   return format;
 }
 
 std::string header_text(const IrradcacheHeader& h) {
   HeaderText text("irradcache");
   if (const std::string_view fault = fault_of(h); !fault.empty()) text.refuse(fault);
-  text.line("columns", kColumnsNames[h.columns]);
+  text.line("columns", names_of(h.columns));
   text.origin(h.origin);
   if (h.rays > 0) text.line("rays", text_of(h.rays));
   if (h.error_bound > 0) text.line("error-bound", text_of(h.error_bound));

@@ -23,6 +23,7 @@ enum IrradcacheColumns : std::uint32_t {
   column_influence = 1,  ///< IrradianceCacheRecord::influence
   column_update = 2,     ///< IrradianceCacheRecord::update
   column_clearance = 4,  ///< IrradianceCacheRecord::clearance_reach and clearance
+  column_noise = 8,      ///< IrradianceCacheRecord::noise
 };
 
 /// Indirect irradiance gathered at one point, its gradients, and the radius within which the record is valid.
@@ -44,10 +45,12 @@ struct IrradianceCacheRecord {
   /// m, > 0 or +inf: distance up to which clearance was measured; 0 without column_clearance
   float clearance_reach = 0;
   std::array<std::uint8_t, 16> clearance{};  ///< by spoke, in 1/255 of clearance_reach; 0 without
+  /// W/m^2: number with a random sign whose mean square is the variance of irradiance; 0 without column_noise
+  std::array<float, 3> noise{};
 
   bool operator==(const IrradianceCacheRecord&) const = default;
 };
-static_assert(sizeof(IrradianceCacheRecord) == 156);
+static_assert(sizeof(IrradianceCacheRecord) == 168);
 
 /// IrradcacheHeader::least_cosine of files without this key.
 inline constexpr double kLeastCosine = 0.94;
@@ -105,7 +108,7 @@ struct IrradcacheFile {
 
 /// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
 /// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known()
-/// is false, and the tool warns. Memory: 156 bytes per record and one block.
+/// is false, and the tool warns. Memory: 168 bytes per record and one block.
 IrradcacheFile load_irradcache(const std::string& path);
 
 /// Hash of the data without header and history (irradcache.md, section 7). Equal records in equal order have equal

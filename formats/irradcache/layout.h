@@ -14,15 +14,15 @@
 
 namespace tempolux::formats::irradcache {
 
-inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build", 1, 2};
+inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build", 1, 3};
 inline constexpr std::string_view kBlockMark = "IRRC";
 inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kClearanceSize = 20,
-                             kEndBodySize = 32;
+                             kNoiseSize = 12, kEndBodySize = 32;
 
 /// Number of bytes of one record in a block with these columns.
 constexpr std::size_t record_size(std::uint32_t columns) {
   return kRecordSize + (columns & column_influence ? kInfluenceSize : 0) + (columns & column_update ? kUpdateSize : 0) +
-         (columns & column_clearance ? kClearanceSize : 0);
+         (columns & column_clearance ? kClearanceSize : 0) + (columns & column_noise ? kNoiseSize : 0);
 }
 
 /// The format with the earliest minor version that has all keys of this header.

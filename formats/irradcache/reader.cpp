@@ -13,6 +13,7 @@ void append_records(const std::vector<char>& body, std::uint32_t columns, const 
   const char* influences = body.data() + count * kRecordSize;
   const char* updates = influences + (columns & column_influence ? count * kInfluenceSize : 0);
   const char* clearances = updates + (columns & column_update ? count * kUpdateSize : 0);
+  const char* noises = clearances + (columns & column_clearance ? count * kClearanceSize : 0);
   for (std::size_t i = 0; i < count; ++i) {
     IrradianceCacheRecord& record = records.emplace_back();
     std::memcpy(static_cast<void*>(&record), body.data() + i * kRecordSize, kRecordSize);
@@ -23,6 +24,7 @@ void append_records(const std::vector<char>& body, std::uint32_t columns, const 
       record.clearance_reach = get<float>(clearances + i * kClearanceSize);
       record.clearance = get<std::array<std::uint8_t, 16>>(clearances + i * kClearanceSize + 4);
     }
+    if (columns & column_noise) record.noise = get<std::array<float, 3>>(noises + i * kNoiseSize);
     if (const std::string_view fault = fault_of(record, columns); !fault.empty())
       in.bytes().fail(in.body_offset() + i * kRecordSize,
                       "record " + std::to_string(i) + " of the block: " + std::string(fault),

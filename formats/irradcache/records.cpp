@@ -33,11 +33,12 @@ std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t col
     return "unclamped radius is not a number or is negative";
   if (!is_finite(record.influence) || is_negative(record.influence)) return "influence is not finite or is negative";
   if (!is_finite(record.update)) return "update is not finite";
+  if (!is_finite(record.noise)) return "noise is not finite";
   if (columns & column_clearance && !(record.clearance_reach > 0)) return "clearance does not reach anywhere";
   if ((!(columns & column_clearance) &&
        (!is_zero(record.clearance_reach) || record.clearance != std::array<std::uint8_t, 16>{})) ||
       (!(columns & column_influence) && !is_zero(record.influence)) ||
-      (!(columns & column_update) && !is_zero(record.update)))
+      (!(columns & column_noise) && !is_zero(record.noise)) || (!(columns & column_update) && !is_zero(record.update)))
     return "a value of a column that the header does not name";
   return "";
 }
@@ -51,13 +52,14 @@ void RecordSums::add(const IrradianceCacheRecord& record) {
 
 std::string digest_of(const IrradcacheFile& file) {
   using namespace irradcache;
-  Hasher records, influences, updates, clearances;
+  Hasher records, influences, updates, clearances, noises;
   for (IrradianceCacheRecord record : file.records) {
     record.reserved = 0;
     records.add_bytes(&record, kRecordSize);
     influences.add_bytes(&record.influence, kInfluenceSize);
     updates.add_bytes(record.update.data(), kUpdateSize);
     clearances.add_bytes(&record.clearance_reach, kClearanceSize);
+    noises.add_bytes(record.noise.data(), kNoiseSize);
   }
   const auto column = [&](IrradcacheColumns bit, const Hasher& hash) {
     return file.header.columns & bit ? "#" + hash.hex() : std::string("none");
@@ -65,7 +67,8 @@ std::string digest_of(const IrradcacheFile& file) {
   return hash_hex("irradcache: 1\norigin: " + hex_of(file.header.origin) +
                   "\nrecords: " + std::to_string(file.records.size()) + " #" + records.hex() + "\ninfluence: " +
                   column(column_influence, influences) + "\nupdate: " + column(column_update, updates) + "\n" +
-                  (file.header.columns & column_clearance ? "clearance: #" + clearances.hex() + "\n" : ""));
+                  (file.header.columns & column_clearance ? "clearance: #" + clearances.hex() + "\n" : "") +
+                  (file.header.columns & column_noise ? "noise: #" + noises.hex() + "\n" : ""));
 }
 
 }  // namespace tempolux::formats

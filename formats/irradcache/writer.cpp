@@ -37,6 +37,8 @@ void IrradcacheWriter::State::write_block(std::span<const IrradianceCacheRecord>
       put(body, record.clearance_reach);
       put(body, record.clearance);
     }
+  if (columns & column_noise)
+    for (const IrradianceCacheRecord& record : records) put(body, record.noise);
   out.write_block(kBlockMark, {std::uint32_t(records.size())}, body);
 }
 

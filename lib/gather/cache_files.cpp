@@ -78,6 +78,7 @@ std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRe
     r.radius_unclamped = record.radius_unclamped;
     r.clearance_reach = record.clearance.reach;
     r.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(record.clearance.shares);
+    r.noise = array_of(record.noise);
     return r;
   });
 }
@@ -95,6 +96,7 @@ std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCache
     }
     record.radius = r.radius;
     record.radius_unclamped = r.radius_unclamped;
+    record.noise = rgb_of(r.noise);
     if (r.clearance_reach > 0) record.clearance = {r.clearance_reach, std::bit_cast<Clearance::Shares>(r.clearance)};
     return record;
   });

@@ -18,7 +18,7 @@ std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePo
 /// Points of a file; `shift` (the file's origin minus the frame's) brings them into scene space.
 std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointRecord> records, Vec3d shift);
 
-/// Records for a file with column_clearance.
+/// Records for a file with column_clearance, and with column_noise if their noise is known.
 std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame);
 std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCacheRecord> records, Vec3d shift);
 

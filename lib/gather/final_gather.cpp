@@ -55,6 +55,12 @@ FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const Point
     strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }
 
+FinalGather FinalGather::with_seed(std::uint64_t seed) const {
+  FinalGather other(*this);
+  other.options_.seed = seed;
+  return other;
+}
+
 void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record) const {
   const Vec3 lit = dot(from.normal_geometric, record.normal) < 0 ? -from.normal_geometric : from.normal_geometric;
   record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);
@@ -126,7 +132,9 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
   }
   sky.irradiance_and_rotational_gradient(shots.directions.frame(), record);
-  add_explicit(from, gather_key(from.position, normal, options_.seed), record, counts);
+  const std::uint64_t key = gather_key(from.position, normal, options_.seed);
+  record.noise = sky.noise(key);
+  add_explicit(from, key, record, counts);
   return record;
 }
 

@@ -32,7 +32,8 @@ class FinalGather {
   /// `rays` rays, one through each cell of equal weight, and more where light varies (hemisphere.h). Below a coat,
   /// light is weighted by Bsdf::arrival_weight, as photons are: the coat reflects more of it at grazing angles.
   /// radius_unclamped receives distance(); limit_radius computes the radius from it. Random numbers are keyed by the
-  /// position, so a record does not depend on other records. ray_share in [1/8, 1]: the share of `rays` that the place
+  /// position, so a record does not depend on other records. `noise` is Hemisphere::noise, whose mean square is above
+  /// the variance: place_records() measures by how much. ray_share in [1/8, 1]: the share of `rays` that the place
   /// needs, rounded up to a power of two.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// R [m], the harmonic mean distance of hits of cosine-distributed rays; infinite if all rays miss. Sends 64 rays,
@@ -41,6 +42,9 @@ class FinalGather {
   /// bright object would get a smaller radius and so less weight than a record that misses it, and the interpolated
   /// light would be too dark.
   float distance(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
+  /// The same gathering with other random numbers.
+  FinalGather with_seed(std::uint64_t seed) const;
+  std::uint64_t seed() const { return options_.seed; }
   /// Sets the clearance of a gathered record up to its radius; call after limit_radius.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
   /// Adds GatherOptions::bright_samples explicit samples to a record of gather rays, if there are bright points. Random

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "lib/core/random.h"
+
 namespace tempolux {
 namespace {
 
@@ -101,6 +103,15 @@ void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& re
       gradient[c] += u * (along[c][k] * 2 * M_PI / double(N)) + v_lower * across[c][k];
   }
   for (std::size_t c = 0; c < 3; ++c) record.translational[c] = frame.to_world(Vec3(gradient[c]));
+}
+
+Rgb Hemisphere::noise(std::uint64_t key) const {
+  Rgbd sum{0.0};
+  for (std::size_t c = 0; c + 1 < radiance.size(); c += 2) {
+    const Rgbd difference = Rgbd(radiance[c]) - Rgbd(radiance[c + 1]);
+    sum += mix64(key + c) & 1 ? difference : difference * -1.0;
+  }
+  return Rgb(sum * (M_PI / double(std::max<std::size_t>(1, radiance.size()))));
 }
 
 void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {

@@ -40,6 +40,15 @@ class Hemisphere {
   /// holds the radiance and distance of one ray: the mean of several rays in a cell that an edge cuts has no distance.
   void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
+  /// A number with a random sign whose mean square is at least the variance of the irradiance [W/m^2]:
+  ///
+  ///     pi/(M N) sum_p s_p (L_2p - L_2p+1),   s_p = -1 or 1 at random,
+  ///
+  /// over pairs of neighbouring cells in their order of index. Its mean square is the variance of the irradiance plus
+  /// (pi/(M N))^2 times the squared differences of the light that arrives in the two cells of each pair. `key`: of the
+  /// signs.
+  Rgb noise(std::uint64_t key) const;
+
   /// Number of further rays for each cell: the standard deviation of the cells around it (eight, five at the rims) over
   /// the mean of all others, rounded, at most kMostFurther. More rays are sent where light varies [Neyman 1934]. A
   /// cell's own ray has no influence on the number, so the mean over its rays is unbiased. If a bright ray caused

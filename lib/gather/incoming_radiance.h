@@ -19,6 +19,8 @@ namespace tempolux {
 /// light is not that of the hit. unanswered: rays that continued because no point represents the hit.
 struct GatherCounts {
   std::uint64_t rays = 0, distance_rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
+  /// Records that were gathered twice: their variance, and the mean square of their noise (place_records.h).
+  double twice_variance = 0, twice_noise = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
     rays += o.rays;
     distance_rays += o.distance_rays;
@@ -26,6 +28,8 @@ struct GatherCounts {
     shadow_rays += o.shadow_rays;
     points_read += o.points_read;
     unanswered += o.unanswered;
+    twice_variance += o.twice_variance;
+    twice_noise += o.twice_noise;
     return *this;
   }
 };

@@ -56,16 +56,35 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
   return pixels;
 }
 
+/// Adds a record that was gathered twice to `counts`. Squares count as they are seen: the sRGB curve's slope squared is
+/// level^(-7/6). Errors of gradients are left out: with them, added at the mean distance of interpolation, the noise of
+/// a hut's picture was 1.12 times the difference of two seeds, and without them 1.02 times.
+void compare(const IrradianceRecord& once, const IrradianceRecord& again, GatherCounts& counts) {
+  const Rgbd a(once.irradiance), b(again.irradiance), n(once.noise), m(again.noise);
+  const double level = channel_mean(a + b);
+  if (!(level > 0)) return;
+  const double seen = std::pow(level, -7.0 / 6) / 2;
+  counts.twice_variance += seen * channel_mean((a - b) * (a - b));
+  counts.twice_noise += seen * channel_mean(n * n + m * m);
+}
+
 /// Adds records at points that none covers yet.
 class Placement {
  public:
   Placement(const FinalGather& gather, const PixelView& view, const PlacementOptions& options, RecordStore& store,
             GatherCounts& counts, const RecordSource* source)
-      : gather_(gather), view_(view), options_(options), store_(store), counts_(counts), source_(source) {}
+      : gather_(gather),
+        again_(gather.with_seed(gather.seed() ^ 0x616761696eull)),
+        view_(view),
+        options_(options),
+        store_(store),
+        counts_(counts),
+        source_(source) {}
 
   /// Points of pixels, in a fixed shuffled order. look(pixel): where to look; note(pixel, seen): what was seen.
+  /// checked: every fourth point is gathered twice.
   template <class LookAt, class Note>
-  void cover(const std::vector<std::size_t>& pixels, const LookAt& look, const Note& note) {
+  void cover(const std::vector<std::size_t>& pixels, bool checked, const LookAt& look, const Note& note) {
     // What is covered now stays covered: only the rest is put into order and looked at again, batch by batch.
     constexpr std::size_t kChunk = 1024;
     std::vector<std::vector<Open>> found((pixels.size() + kChunk - 1) / kChunk);
@@ -82,7 +101,7 @@ class Placement {
     std::sort(open.begin(), open.end(),
               [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
     for (std::size_t start = 0; start < open.size(); start += kPlacedTogether)
-      add_batch(std::span(open).subspan(start, std::min(kPlacedTogether, open.size() - start)));
+      add_batch(std::span(open).subspan(start, std::min(kPlacedTogether, open.size() - start)), checked && !source_);
   }
 
  private:
@@ -97,8 +116,14 @@ class Placement {
                          options_.min_radius_px * seen.footprint);
   }
 
-  void add_batch(std::span<const Open> points) {
-    std::vector<std::optional<IrradianceRecord>> records(points.size());
+  IrradianceRecord gathered(const FinalGather& gather, const SeenPoint& seen, GatherCounts& counts) const {
+    IrradianceRecord record = gather.gather(seen.surface, seen.normal, counts);
+    limit_radius(record, seen.footprint, options_);
+    return record;
+  }
+
+  void add_batch(std::span<const Open> points, bool checked) {
+    std::vector<std::optional<IrradianceRecord>> records(points.size()), again(points.size());
     std::mutex mutex;
     parallel_chunks(points.size(), 8, [&](std::size_t first, std::size_t last) {
       GatherCounts local;
@@ -109,18 +134,23 @@ class Placement {
           records[i] = source_->gather(seen, i, local);
           continue;
         }
-        records[i] = gather_.gather(seen.surface, seen.normal, local);
-        limit_radius(*records[i], seen.footprint, options_);
+        records[i] = gathered(gather_, seen, local);
+        if (checked && i % kCheckedOneIn == 0) again[i] = gathered(again_, seen, local);
         gather_.look_around(seen.surface, *records[i]);
       }
       const std::lock_guard lock(mutex);
       counts_ += local;
     });
     for (std::size_t i = 0; i < records.size(); ++i)
-      if (records[i] && store_.add(*records[i]) && source_) source_->added(i);
+      if (records[i] && store_.add(*records[i])) {
+        if (source_) source_->added(i);
+        if (again[i]) compare(*records[i], *again[i], counts_);
+      }
   }
 
+  static constexpr std::size_t kCheckedOneIn = 4;
   const FinalGather& gather_;
+  const FinalGather again_;
   const PixelView& view_;
   const PlacementOptions& options_;
   RecordStore& store_;
@@ -173,7 +203,7 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
     placement.cover(
-        pixels,
+        pixels, stride == kCoarsest,
         [&](std::size_t pixel) {
           return look_at(pixel, {0.5f, 0.5f});
         },
@@ -191,9 +221,10 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
       at.random.emplace(mix64(pixel), k);
       return at;
     };
-    placement.cover(edges, look, [](std::size_t, const SeenPoint&) {});
+    placement.cover(edges, false, look, [](std::size_t, const SeenPoint&) {});
     advance(edges.size() / 4);
   }
+  if (counts.twice_noise > 0) store.scale_noise(before, float(std::sqrt(counts.twice_variance / counts.twice_noise)));
   return store.records().size() - before;
 }
 

@@ -53,6 +53,11 @@ inline constexpr std::size_t kPlacedTogether = 256;
 /// and gathered in parallel, and its records are added in order. Then takes four more points in each pixel at an edge
 /// or behind glass, so that a frame's samples find records there, too. Same records for any number of threads. Returns
 /// the number of added records.
+///
+/// Every fourth record of the coarsest lattice is gathered twice, with independent random numbers. Half of the squared
+/// difference of the two is the variance of one. The `noise` of all added records is scaled by the root of that
+/// variance over the mean square of `noise`, both summed in `counts` over all calls. Records of a `source` are gathered
+/// once.
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);

@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t kMostLevels = 277;  ///< powers of two between the smallest and the largest radius in float
 
 bool is_usable(const IrradianceRecord& r) {
-  bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance));
+  bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance)) &&
+                std::isfinite(channel_sum(r.noise));
   for (std::size_t c = 0; c < 3; ++c) finite = finite && is_finite(r.rotational[c]) && is_finite(r.translational[c]);
   return finite && std::isfinite(r.radius) && r.radius > 0;
 }
@@ -168,6 +169,7 @@ inline void RecordStore::accumulate(const Entry& entry, float radius, float leas
         r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
     sum[c] += w * std::max(0.0f, there);
   }
+  result.noise += w * r.noise;
   result.weight += w;
   ++result.count;
 }
@@ -185,7 +187,10 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, f
     accumulate(entry, entry.radius, least_cosine, position, normal, sum, result);
     return false;
   });
-  if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
+  if (result.weight > 0) {
+    result.irradiance = sum * (1 / result.weight);
+    result.noise *= 1 / result.weight;
+  }
   return result;
 }
 
@@ -220,6 +225,10 @@ bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_r
   };
   if (covered(options_.least_cosine, INFINITY)) return true;
   return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
+}
+
+void RecordStore::scale_noise(std::size_t first, float factor) {
+  for (std::size_t i = first; i < records_.size(); ++i) records_[i].noise *= factor;
 }
 
 std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal) const {

@@ -26,6 +26,8 @@ struct IrradianceRecord {
   float further_share = 0;   ///< further rays per cell that the unevenness of its light calls for; not in files
   Clearance clearance;       ///< the record does not count beyond it; measured about `normal`
   std::uint32_t object = 0;  ///< the object it lies on
+  /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (gathered_record.h); 0: unknown
+  Rgb noise{0.0f};
 };
 
 struct InterpolationOptions {
@@ -68,6 +70,7 @@ class RecordStore {
 
   struct Interpolated {
     Rgb irradiance{0.0f};  ///< >= 0
+    Rgb noise{0.0f};       ///< sum w_i noise_i / sum w_i: its mean square is the variance of irradiance
     float weight = 0;      ///< sum of the records' weights, each in [0, 1]; 0: no record is valid here
     int count = 0;
   };
@@ -92,6 +95,8 @@ class RecordStore {
   /// all radii limited to least_reach and within the angle of kWideCosine: where normals turn quickly, records need not
   /// be denser than the smallest radius allows.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
+  /// Multiplies IrradianceRecord::noise of the records from `first` on.
+  void scale_noise(std::size_t first, float factor);
   /// Irradiance by interpolate(); nothing where no record counts.
   std::optional<Rgb> irradiance(Vec3 position, Vec3 normal) const;
 

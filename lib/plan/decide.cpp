@@ -81,7 +81,7 @@ class FramePilot {
       Look look;
       look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
       look.paths = rough.paths_of_light;
-      look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays},
+      look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays, wish_.filter != 0},
                                 kinds_.find("caustic") != std::string::npos);
       return look;
     };

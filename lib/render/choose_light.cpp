@@ -13,6 +13,9 @@ namespace {
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
 constexpr double kFewestRays = 64;  ///< of a record: with fewer its distances say too little of how far it holds
 constexpr double kLeastError = 1e-12;
+/// Squared error of a raw frame over that of the filtered one, where no records carry the light: geometric mean of
+/// seven scenes (docs/pixels.md).
+constexpr double kFilterGain = 2.4;
 
 /// What n samples leave of light that photons show and paths do not meet: at most all.
 double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
@@ -29,7 +32,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (map || method != IndirectMethod::paths)
     fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
-  Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted};
+  Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
   if (rough.wanted_of > 0 && variance > rough.wanted_of)
     way.pixel_error = error_for_variance(variance / rough.wanted_of);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;

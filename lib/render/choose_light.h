@@ -20,6 +20,7 @@ struct Order {
   double pixels = 0;                ///< of a picture
   std::uint64_t photons = 700'000;  ///< paths of light
   int rays = 500;                   ///< of a record at most
+  bool filtered = true;             ///< lib/filter reduces the noise of samples
 };
 
 /// One way to a frame's light.
@@ -37,11 +38,13 @@ struct Way {
 /// All ways, the best one first: the least work x squared error. With n samples a pixel, c work for each, V their
 /// variance, and M records of k rays, e / k their squared error, g the work for a ray:
 ///
-///     work = fixed + P c n + M g k,   error = E + e / k + what stays wrong,   n = V / E
+///     work = fixed + P c n + M g k,   error = E / G + e / k + what stays wrong,   n = V / E
 ///
-/// E is what the wish leaves of light that all ways find alike. Least for k = sqrt(e (fixed + P c n) / (M g (E + what
-/// stays wrong))): so work goes to records in proportion to the root of error x cost, as to samples. Wrong stay
-/// caustics by a density of photons, and light that photons show and paths do not meet.
+/// E is what the wish leaves of light that all ways find alike. G is what the filter makes of the noise of samples: a
+/// pixel's noise is independent of its neighbours', a record's error is not, so the filter leaves e / k as it is. Least
+/// for k = sqrt(e (fixed + P c n) / (M g (E / G + what stays wrong))): so work goes to records in proportion to the
+/// root of error x cost, as to samples. Wrong stay caustics by a density of photons, and light that photons show and
+/// paths do not meet.
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
 /// The same for several frames together: of each way the work and the error of all, and the most rays.

@@ -11,6 +11,7 @@
 #include "formats/large_pages.h"
 #include "lib/core/parallel.h"
 #include "lib/render/adaptive_frame.h"
+#include "lib/render/known_light.h"
 #include "lib/render/pixel_samples.h"
 
 namespace tempolux {
@@ -25,9 +26,10 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   FrameOptions of_pass = options;
   of_pass.seed = seed;
   for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count},
-                      image.halves_of(pixel), counts),
-         first, count, image.pixels[pixel]);
+    const PixelSum sum = sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count},
+                                      image.halves_of(pixel), counts);
+    join(sum, first, count, image.pixels[pixel]);
+    if (!image.known_noise.empty()) join(sum.known_noise, first, count, image.known_noise[pixel]);
   });
   image.samples += count;
 }
@@ -48,7 +50,7 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
     check.again(slot).own = mean;
   });
   const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };
-  frame.noise = check.measure(frame.mean.pixels, as_sampled);
+  frame.noise = check.measure(frame.mean.pixels, as_sampled, frame.mean.known_noise);
   if (options.sample_halves) frame.mean.difference_share = check.shares(frame.mean.sample_halves, as_sampled);
 }
 
@@ -61,6 +63,7 @@ LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
   formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
   image.pixels.resize(count);
   if (options.sample_halves) image.sample_halves.resize(count);
+  if (options.known && options.known->records) image.known_noise.resize(count);
   return image;
 }
 

@@ -11,10 +11,14 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const {
+std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise) const {
   if (mesh) return mesh->irradiance(surface, geometric);
   if (localised) return localised->at(surface, shading);
-  if (records) return records->irradiance(surface.position, shading);
+  if (records) {
+    const RecordStore::Interpolated found = records->interpolate(surface.position, shading);
+    if (noise) *noise = found.noise;
+    return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
+  }
   return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric))
                                             : std::nullopt;
 }

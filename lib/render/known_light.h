@@ -39,7 +39,8 @@ class KnownLight {
 
   /// Indirect irradiance at the first Lambert lobe of a camera path. Both normals are unit vectors on the side that is
   /// seen. Empty where no record is valid: a gather ray must then estimate the light.
-  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const;
+  /// noise: also receives that of the records (RecordStore::Interpolated::noise).
+  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise = nullptr) const;
   bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
   /// Caustic irradiance; call only if has_caustic(). 0 if indirect() includes caustic light.
   Rgb caustic(Vec3 position, const LitSurface& surface) const {

@@ -385,10 +385,12 @@ KnownHere EyeTracer::add_known_light(const ShadingPoint& x, Vec3 smooth, const W
     sample_bright(1);
     return here;
   }
-  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal)) {
+  Rgb noise(0.0f);
+  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, &noise)) {
     ++counts_.lookups;
     here.indirect = true;
     result[layer] += reflected * *indirect;
+    if (layer == Layer::indirect) parts_.known_noise += reflected * noise;
   } else {
     ++counts_.gathered;
     sample_bright(known.bright_samples);

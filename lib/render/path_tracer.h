@@ -120,6 +120,8 @@ struct PathParts {
   Layers own;
   Layers lit;     ///< light sampled at the first matte surface
   Layers onward;  ///< light found by rays from the first matte surface's Lambert lobe
+  /// Noise of the records that layer indirect is read from (IrradianceRecord::noise). `own` does not include it.
+  Rgb known_noise{0.0f};
   Layers sum() const {
     Layers all = own;
     for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += lit.value[l] + onward.value[l];

@@ -19,6 +19,7 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
+  Rgbd known_noise{0.0};
   /// Sums of squares of single samples: of seen(), mirrored() of `own` and value() of `onward`.
   double seen_square = 0, mirrored_square = 0, onward_square = 0;
   bool for_filter = false;  ///< FrameOptions::for_filter: only noise of layer specular counts
@@ -26,6 +27,7 @@ struct PixelSum {
     add(sample.own, own);
     add(sample.lit, lit);
     add(sample.onward, onward);
+    known_noise += Rgbd(sample.known_noise);
     const auto square = [](double v) { return v * v; };
     seen_square += square(seen(sample.own));
     mirrored_square += square(mirrored(sample.own));
@@ -33,6 +35,7 @@ struct PixelSum {
   }
   PixelSum operator+(const PixelSum& more) const {
     PixelSum sum = *this;
+    sum.known_noise += more.known_noise;
     for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) {
       for (std::size_t l = 0; l < kLayerCount; ++l) (sum.*part).value[l] += (more.*part).value[l];
       (sum.*part).coverage += (more.*part).coverage;
@@ -79,6 +82,11 @@ inline void join(const LayersT<double>& sum, int first, int count, Layers& mean)
   for (std::size_t l = 0; l < kLayerCount; ++l)
     mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.value[l] * new_weight);
   mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
+}
+
+/// The same for one colour.
+inline void join(const Rgbd& sum, int first, int count, Rgb& mean) {
+  if (count > 0) mean = Rgb((Rgbd(mean) * double(first) + sum) * (1.0 / (first + count)));
 }
 
 /// The same for samples that have one of each part.

@@ -127,7 +127,9 @@ void add_variance_channels(const LayerImage& layers, const std::vector<std::stri
     for (std::size_t l = 0; l < kLayerCount; ++l)
       if (layers.media || l != std::size_t(Layer::volume))
         add_colour(std::string(kLayerNames[l]) + ".noise", image, [&](std::size_t p) {
-          return noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]);
+          const Rgb noise = noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]);
+          const bool known = l == std::size_t(Layer::indirect) && !layers.known_noise.empty();
+          return known ? noise + layers.known_noise[p] : noise;
         });
   if (!asked(channels, "samples")) return;
   std::vector<float>& samples = image.add("samples").values;

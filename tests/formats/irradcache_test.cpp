@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-constexpr std::uint32_t kAllColumns = column_influence | column_update | column_clearance;
+constexpr std::uint32_t kAllColumns = column_influence | column_update | column_clearance | column_noise;
 const std::string kPage = "../formats/irradcache/irradcache.md", kFiles = "formats/irradcache/";
 
 std::string bytes_of(const IrradcacheHeader& header, const std::vector<std::vector<IrradianceCacheRecord>>& parts) {
@@ -43,6 +43,7 @@ IrradianceCacheRecord record(std::uint32_t i, std::uint32_t columns = 0) {
   if (columns & column_influence) r.influence = x + 0.5f;
   if (columns & column_update) r.update = {-x, x, 1};
   if (columns & column_clearance) r.clearance_reach = x + 1, r.clearance = {std::uint8_t(i), 0, 255};
+  if (columns & column_noise) r.noise = {x, -x, -1};
   return r;
 }
 std::vector<IrradianceCacheRecord> records(std::uint32_t count, std::uint32_t columns = 0, std::uint32_t first = 0) {
@@ -135,7 +136,8 @@ TEST(Irradcache, WhatIsNotKnownOfTheGatheringComesBackAsNotKnown) {
   EXPECT_TRUE(file.records.empty());
 }
 
-// Columns: 4, 12 and 20 bytes per record; "none", "influence", "influence,update,clearance" are 4, 9 and 26 letters.
+// Columns: 4, 12, 20 and 12 bytes per record; "none", "influence", "influence,update,clearance,noise" are 4, 9 and 32
+// letters.
 TEST(Irradcache, ColumnsThatAreNotNamedTakeNoRoom) {
   IrradcacheHeader header;
   const auto size_of = [&](std::uint32_t columns) {
@@ -143,7 +145,7 @@ TEST(Irradcache, ColumnsThatAreNotNamedTakeNoRoom) {
     return bytes_of(header, {records(100, columns)}).size();
   };
   EXPECT_EQ(size_of(column_influence) - size_of(0), 400u + 9 - 4);
-  EXPECT_EQ(size_of(kAllColumns) - size_of(column_influence), 3200u + 26 - 9);
+  EXPECT_EQ(size_of(kAllColumns) - size_of(column_influence), 4400u + 32 - 9);
 }
 
 TEST(Irradcache, ManyRecordsAreCutIntoBlocksAndComeBackInOrder) {
@@ -234,6 +236,7 @@ TEST(Irradcache, DigestIsOfTheDataAlone) {
   EXPECT_NE(changed([](auto& r) { r.influence += 1; }), whole);
   EXPECT_NE(changed([](auto& r) { r.update[2] += 1; }), whole);
   EXPECT_NE(changed([](auto& r) { r.clearance[1] ^= 1; }), whole);
+  EXPECT_NE(changed([](auto& r) { r.noise[2] += 1; }), whole);
   EXPECT_EQ(changed([](auto& r) { r.reserved = 1; }), whole);
   IrradcacheFile file = load_irradcache(folder / "a");
   file.records[1].reserved = 1;  // never so in a file that was read, but in one made in memory
@@ -265,6 +268,7 @@ TEST(Irradcache, TheWriterWritesNothingThatAReaderWouldRefuse) {
   refused([&](auto& r) { r.influence = 1e-45f; });  // columns the header does not name
   refused([&](auto& r) { r.update[0] = -1; });
   refused([&](auto& r) { r.clearance_reach = 1; });
+  refused([&](auto& r) { r.noise[1] = 1; });
   std::vector<IrradianceCacheRecord> good = records(3);
   good[0].normal = {0, 0, 1.00009f};
   EXPECT_NO_THROW(writer.write(good));
@@ -275,7 +279,7 @@ TEST(Irradcache, TheWriterWritesNothingThatAReaderWouldRefuse) {
     change(bad);
     EXPECT_THROW(IrradcacheWriter(sink, bad), std::invalid_argument);
   };
-  header_refused([&](auto& h) { h.columns = 8; });
+  header_refused([&](auto& h) { h.columns = 16; });
   header_refused([&](auto& h) { h.error_bound = double(nan); });
   header_refused([&](auto& h) { h.min_radius = 3; });
   header_refused([&](auto& h) { h.max_radius = double(inf); });

@@ -193,10 +193,12 @@ def make_cache():
     m = Maker("irradcache", cache.encode_irradcache, good)
     m.common()
     m.save("accept/worked-example", good)
-    for columns in ("influence", "update", "influence,update", "clearance", "influence,update,clearance"):
+    for columns in ("influence", "update", "influence,update", "clearance", "influence,update,clearance", "noise",
+                    "influence,update,clearance,noise"):
         c = m.with_header(columns=columns)
         c.records[0].influence, c.records[0].update = 0.75, (0.5, -0.25, 1)
         c.records[0].clearance = (0.515625, *range(0, 240, 16), 255)
+        c.records[0].noise = (0.5, -0.25, 0)
         m.save("accept/columns-" + columns.replace(",", "-"), c)
     empty = copy.deepcopy(good)
     empty.records = []
@@ -247,6 +249,10 @@ def make_cache():
         cleared.records = [dataclass_with(record, clearance=(reach, *[0] * 16))]
         m.save("refuse/clearance-reach-" + name, cache.encode_irradcache(cleared))
     m.save("refuse/clearance-before-1.2", m.with_text(text.replace(b"columns: none", b"columns: clearance"), minor=1))
+    m.save("refuse/noise-before-1.3", m.with_text(text.replace(b"columns: none", b"columns: noise"), minor=2))
+    noisy = m.with_header(columns="noise")
+    noisy.records = [dataclass_with(record, noise=(0, NAN, 0))]
+    m.save("refuse/noise-nan", cache.encode_irradcache(noisy))
     m.save("refuse/update-nan", m.with_block(12 + 124, struct.pack("<f", NAN), data))
 
 

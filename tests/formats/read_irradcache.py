@@ -19,13 +19,13 @@ from containers import cut, encode_container, exact_sums, integers, read_contain
 MAGIC, MARK = b"\x89TIRRC\r\n", b"IRRC"
 # Section 3: position, normal, object, set, reserved, irradiance, rotational, translational, radius, radius_unclamped
 RECORD = struct.Struct("<3f3fHBB3f9f9fff")
-INFLUENCE, UPDATE, CLEARANCE = struct.Struct("<f"), struct.Struct("<3f"), struct.Struct("<f16B")      # section 4
+INFLUENCE, UPDATE, CLEARANCE, NOISE = map(struct.Struct, ("<f", "<3f", "<f16B", "<3f"))               # section 4
 END = "<Q3d"                                                       # section 5, without mark and chain
-NAMES = ["influence", "update", "clearance"]
-COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(8))}
-SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size, "clearance": CLEARANCE.size}
+NAMES = ["influence", "update", "clearance", "noise"]
+COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(16))}
+SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size, "clearance": CLEARANCE.size, "noise": NOISE.size}
 KEYS = ["columns", "origin", "rays", "error-bound", "least-cosine", "radii", "placed"]
-SINCE = {"least-cosine": 1, "clearance": 2}                         # section 9; clearance is no key but a column
+SINCE = {"least-cosine": 1, "clearance": 2, "noise": 3}             # section 9; the last two are no keys but columns
 
 
 def good_radii(text):
@@ -65,6 +65,7 @@ class Record:
     influence: float = 0
     update: tuple = (0, 0, 0)
     clearance: tuple = (0,) * 17      # reach, then a share for each spoke
+    noise: tuple = (0, 0, 0)
 
 
 @dataclasses.dataclass
@@ -75,7 +76,7 @@ class Irradcache:
 
 
 def is_good(r):
-    finite = [*r.position, *r.normal, *r.irradiance, *r.rotational, *r.translational, r.radius, r.influence, *r.update]
+    finite = [*r.position, *r.normal, *r.irradiance, *r.rotational, *r.translational, r.radius, r.influence, *r.update, *r.noise]
     return (all(map(math.isfinite, finite)) and abs(sum(x * x for x in r.normal) - 1) <= 2e-4 and r.set <= 1 and
             min(r.irradiance) >= 0 and r.radius > 0 and r.radius_unclamped >= 0 and r.influence >= 0)
 
@@ -95,6 +96,8 @@ def read_irradcache(path):
                 r.update = UPDATE.unpack_from(columns["update"], UPDATE.size * i)
             if "clearance" in columns:
                 r.clearance = CLEARANCE.unpack_from(columns["clearance"], CLEARANCE.size * i)
+            if "noise" in columns:
+                r.noise = NOISE.unpack_from(columns["noise"], NOISE.size * i)
             if not is_good(r) or ("clearance" in columns and not r.clearance[0] > 0):
                 refuse(offset + RECORD.size * i, f"record out of range: {r}")
             records.append(r)
@@ -122,8 +125,11 @@ def encode_irradcache(c):
             parts.append(b"".join(UPDATE.pack(*r.update) for r in records))
         if "clearance" in columns:
             parts.append(b"".join(CLEARANCE.pack(*r.clearance) for r in records))
+        if "noise" in columns:
+            parts.append(b"".join(NOISE.pack(*r.noise) for r in records))
         blocks.append((len(records), parts))
-    minor = 2 if "clearance" in COLUMNS.get(c.header["columns"], []) else int("least-cosine" in c.header)
+    columns = COLUMNS.get(c.header["columns"], [])
+    minor = 3 if "noise" in columns else 2 if "clearance" in columns else int("least-cosine" in c.header)
     return encode_container(MAGIC, MARK, KEYS, c.header, c.history, blocks, struct.pack(END, *totals(c)), minor)
 
 

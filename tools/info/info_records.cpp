@@ -56,6 +56,7 @@ std::string column_names(std::uint32_t columns) {
   if (columns & column_influence) names = "influence";
   if (columns & column_update) names += names.empty() ? "update" : ",update";
   if (columns & column_clearance) names += names.empty() ? "clearance" : ",clearance";
+  if (columns & column_noise) names += names.empty() ? "noise" : ",noise";
   return names.empty() ? "none" : names;
 }
 
@@ -191,7 +192,8 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
   const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
              update = csv && file.header.columns & column_update,
-             clearance = csv && file.header.columns & column_clearance;
+             clearance = csv && file.header.columns & column_clearance,
+             noise = csv && file.header.columns & column_noise;
   if (csv)
     for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
       for (const char* channel : {"_r", "_g", "_b"})
@@ -201,6 +203,7 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   if (update) columns.push_back({"update", "W_m2", 3});
   if (clearance)
     for (int k = 0; k < 16; ++k) columns.push_back({"clearance_" + std::to_string(k), "m", 1});
+  if (noise) columns.push_back({"noise", "W_m2", 3});
   PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
                    columns);
   for (const IrradianceCacheRecord& record : file.records) {
@@ -218,6 +221,8 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
     if (clearance)
       for (std::size_t k = 0; k < 16; ++k)
         table.add(double(record.clearance_reach) * double(record.clearance[k]) / 255);
+    if (noise)
+      for (const float e : record.noise) table.add(double(e));
     add_colour(table, record.irradiance, white);
     table.end_row(record.object, std::uint8_t(record.set));
   }

@@ -23,6 +23,7 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   formats::IrradcacheHeader header = records_header(frame, records, least_cosine, options.gather, options.placement);
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
   header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
+  header.columns |= formats::column_noise;
   std::vector<int> sorted = frames;
   std::sort(sorted.begin(), sorted.end());
   for (int f : sorted) {

@@ -20,6 +20,27 @@ TEST(Hemisphere, UniformLight) {
   EXPECT_NEAR(record.irradiance.g, 0.7 * M_PI, 1e-5);
 }
 
+/// Cells whose light is 0 or 2 at random, independently: the irradiance has the variance (pi/(M N))^2 M N, and so has
+/// the noise by expectation. 4000 hemispheres: each mean square is within 3 sqrt(2/4000) = 7 %. The noise of even light
+/// is 0.
+TEST(Hemisphere, NoiseHasTheVarianceOfTheIrradiance) {
+  constexpr int kRings = 3, kSectors = 10, kMany = 4000;
+  Hemisphere sky;
+  sky.reset(kRings, kSectors);
+  double mean = 0, square = 0;
+  for (int i = 0; i < kMany; ++i) {
+    for (std::size_t c = 0; c < sky.radiance.size(); ++c)
+      sky.radiance[c] = Rgb(float(mix64(mix64(std::uint64_t(i)) + c) & 2));
+    const double noise = double(sky.noise(mix64(~std::uint64_t(i))).g);
+    mean += noise / kMany, square += noise * noise / kMany;
+  }
+  const double variance = M_PI * M_PI / (kRings * kSectors);
+  EXPECT_NEAR(square / variance, 1, 0.07);
+  EXPECT_NEAR(mean, 0, 3 * std::sqrt(variance / kMany));
+  for (Rgb& l : sky.radiance) l = Rgb(0.7f);
+  EXPECT_EQ(sky.noise(1).g, 0);
+}
+
 /// All cells on one side of a meridian are lit: only cells along the border get further rays. Next to the border three
 /// of eight neighbours are dark, and the mean of all cells is a half: sqrt(15/64) / (1/2) = 0.97, one further ray.
 /// Other cells get none.

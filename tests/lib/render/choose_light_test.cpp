@@ -26,7 +26,7 @@ RoughFrame example() {
   rough.record_error = 1;
   return rough;
 }
-constexpr Order kOrder{1e6, 0, 500};
+constexpr Order kOrder{1e6, 0, 500, false};
 constexpr double kPoints = 40'000 * Work::kPoint;
 
 Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
@@ -59,6 +59,15 @@ TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   const std::vector<Way> ways = ways_to_light(rough, kOrder, false);
   EXPECT_NEAR(way(ways, IndirectMethod::paths).pixel_error, std::pow(2, -9.0 / 14), 1e-12);
   EXPECT_EQ(way(ways, IndirectMethod::records).pixel_error, 1);
+}
+
+/// A filter that leaves 1/2.4 of the samples' squared error leaves that of records: they get 2.4^(1/2) times the rays.
+TEST(WaysToLight, AFilterHelpsSamplesAlone) {
+  const std::vector<Way> ways = ways_to_light(example(), {1e6, 0, 500}, false);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1 / 2.4, 1e-12);
+  const Way records = way(ways, IndirectMethod::records);
+  EXPECT_EQ(records.rays, int(std::lround(std::sqrt((6e7 + kPoints) / 1e4 * 2.4))));
+  EXPECT_NEAR(records.error, 0.1 / 2.4 + 1.0 / records.rays, 1e-12);
 }
 
 /// Ways that were not measured are reported as lower bounds ("at least").
@@ -96,7 +105,7 @@ TEST(WaysToLight, FollowTheIndirectLight) {
       << "a sample of it is cheaper here";
   rough.gather.work = 10;
   EXPECT_EQ(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::paths);
-  EXPECT_EQ(ways_to_light(example(), {1e4, 0, 500}, false).front().method, IndirectMethod::paths)
+  EXPECT_EQ(ways_to_light(example(), {1e4, 0, 500, false}, false).front().method, IndirectMethod::paths)
       << "10^4 pixels do not pay for points";
 }
 

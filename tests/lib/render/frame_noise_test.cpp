@@ -35,6 +35,23 @@ TEST(FrameNoise, ExposureIsByTheMedian) {
   EXPECT_EQ(exposure_of(std::vector<Layers>(4), {}), 1);
 }
 
+/// Samples without noise that read records whose noise is .02 in layer indirect: the frame has that noise, in the layer
+/// and in the image, and no other layer has any.
+TEST(FrameNoise, IncludesTheNoiseOfRecords) {
+  const Cornell c;
+  NoiseCheck check(c.view, 1, {});
+  Layers sample;
+  sample[Layer::indirect] = Rgb(0.5f);
+  for (std::uint32_t slot = 0; slot < check.size(); ++slot) check.again(slot).own = sample;
+  const std::vector<Layers> picture(64 * 36, sample);
+  const std::vector<Rgb> known(picture.size(), Rgb(0.02f));
+  const FrameNoise noise = check.measure(
+      picture, [&](std::size_t pixel) { return picture[pixel]; }, known);
+  EXPECT_NEAR(noise.image.linear, 0.02, 1e-6);
+  EXPECT_NEAR(noise.layer[std::size_t(Layer::indirect)].linear, 0.02, 1e-6);
+  EXPECT_EQ(noise.layer[std::size_t(Layer::direct)].linear, 0);
+}
+
 /// Mean squares that frames report over 12 seeds, against the variance between the seeds' pictures, with fixed and
 /// adaptive samples. Each frame renders 84 pixels twice, so a frame's variance is known within 15 to 30 % and the mean
 /// over seeds within 10 %; the band is 25 %. Halves of the pixels' own samples would report 1.9 times the variance of
