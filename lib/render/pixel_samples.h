@@ -88,36 +88,26 @@ inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   join(all, first, count, mean);
 }
 
-/// Calls body(pixel, x, y) for every pixel, row by row within a tile, with tiles in parallel. Each tile has its own
-/// body = make_body(counts).
-template <class MakeBody>
-void for_each_tile(const CameraView& view, const FrameOptions& options, RayCounts& rays,
-                   const std::function<void(double)>& progress, const MakeBody& make_body) {
+/// Calls body(pixel, x, y, counts) for every pixel, row by row within a tile, with tiles in parallel.
+template <class Body>
+void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
+                    const std::function<void(double)>& progress, const Body& body) {
   constexpr int kTile = 16;
   const int tiles_x = (view.width() + kTile - 1) / kTile, tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
   std::mutex mutex;
   int done = 0;
   parallel_chunks(std::size_t(tiles), 1, [&](std::size_t tile, std::size_t) {
     RayCounts counts;
-    auto body = make_body(counts);
     const int x0 = int(tile) % tiles_x * kTile, y0 = int(tile) / tiles_x * kTile;
     for (int y = y0; y < std::min(y0 + kTile, view.height()); ++y)
       for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x) {
         const std::size_t pixel = std::size_t(y) * std::size_t(view.width()) + std::size_t(x);
-        if (options.mask.empty() || options.mask[pixel]) body(pixel, x, y);
+        if (options.mask.empty() || options.mask[pixel]) body(pixel, x, y, counts);
       }
     const std::lock_guard lock(mutex);
     rays += counts;
     if (progress) progress(double(++done) / tiles);
   });
-}
-
-/// Calls body(pixel, x, y, counts) for every pixel, with tiles in parallel.
-template <class Body>
-void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
-                    const std::function<void(double)>& progress, const Body& body) {
-  for_each_tile(view, options, rays, progress,
-                [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
 /// Distributes samples of the parts lit and onward over a pixel's camera rays, as uniformly as whole numbers allow. One
