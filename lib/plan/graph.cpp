@@ -84,7 +84,6 @@ class Builder {
   Builder(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants)
       : plan_(plan), wish_(wish), tool_hash_(tool_hash), majorants_(majorants) {
     size_ = "--size " + std::to_string(wish.width) + "x" + std::to_string(wish.height);
-    pixels_ = without(wish.pixels, "--learn-lights");
     preview_ = wish.method == FrameMethod::preview;
   }
 
@@ -373,18 +372,6 @@ class Builder {
     return add(stage::windows, lit, c);
   }
 
-  /// Visibility of distant lights for the cameras of the segment, learned once.
-  std::string lights(int frame) {
-    if (!decided(frame).learn_lights || !has_word(wish_.pixels, "--learn-lights")) return "";
-    const std::vector<int> all = segment(frame).pictures();
-    std::vector<int> pictures;  // first, last and two between, since the view changes slowly
-    for (std::size_t i = 0; i < 4; ++i)
-      if (const int f = all[i * (all.size() - 1) / 3]; pictures.empty() || pictures.back() != f) pictures.push_back(f);
-    Command c{"--frames " + joined(pictures) + " --learn-lights " + size_, {}, cameras(pictures)};
-    for (const int f : pictures) c.content += state(f).light;
-    return add(stage::lights, segment(frame).first, c);
-  }
-
   // ---- pixels ---------------------------------------------------------------------------------------------------
   /// What lights a frame.
   void add_light(int frame, Command& c) {
@@ -407,7 +394,6 @@ class Builder {
       if (moved(lit)) c.file("--photons", stands_photons(lit));
       c.file(moved(lit) ? "--dynamic" : "--photons", photons(lit));
     }
-    c.file("--lights", lights(frame));
   }
   /// Words for the pixels of a frame.
   std::string pixels_of(int frame) const {

@@ -21,7 +21,6 @@ Json decisions_json(const Decisions& d) {
                {"paths", d.photon_paths},
                {"rays", d.record_rays},
                {"pixel_error", d.pixel_error},
-               {"learn_lights", d.learn_lights},
                {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
                {"new_share", d.new_share},
@@ -134,7 +133,6 @@ Decisions read_decisions(const std::string& text) {
     d.record_rays = json.at("rays");
     d.pixel_error = json.at("pixel_error");
     d.texture_width = json.value("texture_width", 0.0);
-    d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
     d.moving = named<MovingMethod>(kMovingMethods, json.at("moving")).value();
     d.new_share = json.at("new_share");

@@ -19,7 +19,7 @@ namespace tempolux::tools {
 
 using Facts = nlohmann::ordered_json;
 
-enum class FileType { photons, paths, irradpoints, irradcache, radsamples, meshirrad, lightgrid, image, json };
+enum class FileType { photons, paths, irradpoints, irradcache, radsamples, meshirrad, image, json };
 /// From the first bytes, not from the name; "-" is a stream of photons. Throws InputError.
 FileType file_type(const std::string& path);
 
@@ -36,7 +36,6 @@ Facts irradpoints_facts(const std::string& path);
 Facts irradcache_facts(const std::string& path);
 Facts radsamples_facts(const std::string& path);
 Facts meshirrad_facts(const std::string& path);
-Facts lightgrid_facts(const std::string& path);
 Facts image_facts(const std::string& path, bool allow_nan);
 Facts json_facts(const std::string& path);
 Facts facts_of(const std::string& path, bool allow_nan);
@@ -51,7 +50,6 @@ Facts irradpoints_difference(const std::string& a, const std::string& b);
 Facts irradcache_difference(const std::string& a, const std::string& b);
 Facts radsamples_difference(const std::string& a, const std::string& b);
 Facts meshirrad_difference(const std::string& a, const std::string& b);
-Facts lightgrid_difference(const std::string& a, const std::string& b);
 Facts image_difference(const std::string& a, const std::string& b);
 Facts json_difference(const std::string& a, const std::string& b);
 /// Throws InputError if the types differ.
