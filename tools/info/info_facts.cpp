@@ -118,8 +118,6 @@ Facts facts_of(const std::string& path, bool allow_nan) {
   return json_facts(path);
 }
 
-std::string digest_of_file(const std::string& path) { return facts_of(path, true)["digest"]; }
-
 Facts difference_of(const std::string& a, const std::string& b) {
   const FileType type = file_type(a);
   if (type != file_type(b)) throw InputError(b + ": of another type than " + a + "; nothing to compare");

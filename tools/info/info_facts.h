@@ -39,8 +39,6 @@ Facts meshirrad_facts(const std::string& path);
 Facts image_facts(const std::string& path, bool allow_nan);
 Facts json_facts(const std::string& path);
 Facts facts_of(const std::string& path, bool allow_nan);
-/// Hash of a file's data without header and history.
-std::string digest_of_file(const std::string& path);
 
 /// The differences of two files of each type. "equal" is true if their digests are equal: history and identity are
 /// compared and reported, but do not count.
