@@ -25,9 +25,8 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   FrameOptions of_pass = options;
   of_pass.seed = seed;
   for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count},
-                      image.halves_of(pixel), counts),
-         first, count, image.pixels[pixel]);
+    const PixelPass pass{pixel, x, y, {first, first, first}, {count, count, count}};
+    join(sample_pixel({scene, view, of_pass}, pass, image.halves_of(pixel), counts), first, count, image.pixels[pixel]);
   });
   image.samples += count;
 }
@@ -43,8 +42,8 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
     const std::uint32_t slot = check.slot(x, y);
     if (slot == kNone) return;
     Layers mean;
-    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, &check.again_halves(slot), counts), 0, options.samples,
-         mean);
+    join(sample_pixel({scene, view, again}, {pixel, x, y, {}, all}, &check.again_halves(slot), counts), 0,
+         options.samples, mean);
     check.again(slot).own = mean;
   });
   const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };
