@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <iomanip>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -25,17 +26,10 @@ std::string joined(const std::vector<int>& frames) {
   return text;
 }
 
-/// Options without one of them.
-std::string without(const std::string& words, const std::string& word) {
-  std::istringstream stream(words);
-  std::string text;
-  for (std::string w; stream >> w;)
-    if (w != word) text += (text.empty() ? "" : " ") + w;
-  return text;
-}
-
 bool has_word(const std::string& words, const std::string& word) {
-  return without(words, word).size() != without(words, "").size();
+  std::istringstream stream(words);
+  using Words = std::istream_iterator<std::string>;
+  return std::find(Words(stream), Words(), word) != Words();
 }
 
 bool has_channel(const std::string& channels, const std::string& name) {
@@ -397,9 +391,9 @@ class Builder {
   }
   /// Words for the pixels of a frame.
   std::string pixels_of(int frame) const {
-    if (!wish_.preset_pixels) return pixels_;
+    if (!wish_.preset_pixels) return wish_.pixels;
     std::ostringstream words;
-    words << pixels_ << " --pixel-error " << std::setprecision(2) << decided(frame).pixel_error;
+    words << wish_.pixels << " --pixel-error " << std::setprecision(2) << decided(frame).pixel_error;
     return words.str();
   }
   Command frame_command(int frame, const std::string& pixels, const std::string& channels) {
@@ -566,7 +560,7 @@ class Builder {
   const Wish& wish_;
   const ToolHash& tool_hash_;
   const MajorantsText& majorants_;
-  std::string size_, pixels_;
+  std::string size_;
   bool preview_ = false;
   Graph graph_;
   std::map<int, std::string> majorants_known_, records_;
