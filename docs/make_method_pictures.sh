@@ -53,7 +53,7 @@ glass=../shared/scenes/found/gltf/playcanvas/AttenuationTest.glb sky=../shared/s
 if [ -f $glass ]; then
   "$bin/photon-trace" $glass --environment $sky --frame 10 --kinds caustic -o "$work/c.photons" -q
   for map in '' "--photons $work/c.photons"; do
-    "$bin/frame-render" $glass --environment $sky --frame 10 --camera auto --size 320x180 --spp 4 --pixel-error 0.016 --learn-lights $map -o "$work/glass${map:+map}.exr" -q
+    "$bin/frame-render" $glass --environment $sky --frame 10 --camera auto --size 320x180 --spp 4 --pixel-error 0.016 $map -o "$work/glass${map:+map}.exr" -q
     "$info" --png "$work/glass${map:+map}.png" "$work/glass${map:+map}.exr"
   done
   "$info" --sheet $out/caustics-paths.png --columns 2 --tile 320 "$work/glass.png" "$work/glassmap.png"
@@ -66,7 +66,7 @@ window=../shared/scenes/made/S8_window_room.glb
 if [ -f $window ]; then
   for keep in '' ' --keep-outliers'; do
     make -s -f Makefile.example BIN="$(realpath "$bin")" OUT="$work/window" SCENE=$window FRAMES=17 SIZE=320x180 CAMERA=auto \
-      LIGHT_UNITS=spec SKY=1.1,1.5,2 PIXELS="--spp 4 --pixel-error 0.016 --learn-lights$keep" "$work/window/frames/0017.exr"
+      LIGHT_UNITS=spec SKY=1.1,1.5,2 PIXELS="--spp 4 --pixel-error 0.016$keep" "$work/window/frames/0017.exr"
     "$info" --png "$work/window${keep:+kept}.png" "$work/window/frames/0017.exr"
   done
   "$info" --sheet $out/outliers.png --columns 2 --tile 480 "$work/windowkept.png" "$work/window.png"

@@ -60,9 +60,6 @@ counts/%.meshirrad:
 	$(run)/st-filter mesh $(scene) -o $@ --stats counts/$*.json
 windows/%.meshirrad:
 	$(run)/gather-temporal density $(scene) -o $@ --stats windows/$*.json
-# The directions from which light of sky and suns reaches the places that the cameras of a segment see.
-lights/%.lightgrid:
-	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json
 
 .INTERMEDIATE: $(passing)# removed when read, not made again where what is made from it is there
 # Pixels. raw: frames in two halves of samples, for the filter; removed after a frame was filtered alone. keys: frames

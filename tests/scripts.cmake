@@ -28,7 +28,7 @@ add_test(NAME formats.read_radsamples COMMAND sh formats/read_radsamples_test.sh
 add_test(NAME formats.read_flow COMMAND sh formats/read_flow_test.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 
-foreach(format paths meshirrad lightgrid)
+foreach(format paths meshirrad)
   add_test(NAME formats.read_${format} COMMAND sh formats/read_totals_test.sh ${format} $<TARGET_FILE:${format}_test>
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 endforeach()

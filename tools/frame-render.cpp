@@ -20,7 +20,6 @@
 #include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
-#include "lib/render/learn_lights.h"
 #include "lib/render/seen_channels.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
@@ -31,7 +30,6 @@
 #include "tools/stages/frame_account.h"
 #include "tools/stages/frame_output.h"
 #include "tools/stages/indirect_light.h"
-#include "tools/stages/light_grid_file.h"
 #include "tools/stages/influence_options.h"
 
 using namespace tempolux;
@@ -39,16 +37,15 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, output, integrator = "auto", compression = "zip", mask, base, lights;
+  std::string scene, output, integrator = "auto", compression = "zip", mask, base;
   std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
   FrameOptions frame;
   tools::IndirectLightOptions light;
   double pixel_error = -1;
-  bool half_float = false, learn_lights = false, keep_outliers = false;
+  bool half_float = false, keep_outliers = false;
   int width = 640, height = 360;
   double audit = 0;  ///< share of the frame's camera rays
 
-  bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const {
     return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty();
   }
@@ -137,21 +134,11 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   }
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
-  Lights lights(frame, input.emission(frame.frame));
-  const bool yardstick = options.integrator == "path" && !options.learn_lights && options.lights.empty();
+  const Lights lights(frame, input.emission(frame.frame));
+  const bool yardstick = options.integrator == "path";
   const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
   const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
-  std::unique_ptr<LightGrid> grid;
-  if (!options.lights.empty()) {
-    tool.stats().phase("read lights");
-    grid = tools::read_light_grid(tool, tools::frame_name(options.lights, number), frame);
-  } else if (options.learn_lights) {
-    tool.stats().phase("learn lights", true);
-    grid = learn_lights(scene, {&view, 1}, {.seed = tool.common().seed_for_frame(number)});
-    if (grid) tool.stats().count("light_cells", double(grid->size()));
-  }
-  lights.use(grid.get());
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
   // With the frame's own random numbers a reference would have the frame's noise, and the frame's error would seem too
@@ -187,34 +174,9 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tools::report_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
 
-constexpr std::size_t kMostViews = 8;
 /// Relative error of a pixel of linear value .18 that changes its 8-bit code by one. The slope of the sRGB curve there
 /// is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
 constexpr double kPixelErrorOfCode = 1 / (305 * 0.18);
-
-/// Learns the visibility of distant lights, for the cameras of the named frames (at most kMostViews), in the scene of
-/// the middle frame.
-void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, const std::vector<int>& frames) {
-  tools::Output output(options.output, tool.common().no_clobber);
-  tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(frames[frames.size() / 2]);
-  const int camera = input.scene().camera_node(tool.common().camera);
-  std::vector<CameraView> views;
-  const std::size_t count = std::min(frames.size(), kMostViews);
-  for (std::size_t i = 0; i < count; ++i) {
-    const int number = frames[i * (frames.size() - 1) / std::max<std::size_t>(1, count - 1)];
-    views.emplace_back(input.at(number, false).camera(camera), frame.origin, options.width, options.height);
-  }
-  tool.stats().phase("build");
-  const Tracer tracer(frame);
-  const Lights lights(frame, input.emission(frame.frame));
-  tool.stats().phase("learn lights", true);
-  const std::unique_ptr<LightGrid> grid =
-      learn_lights({tracer, lights, lights.has_suns()}, views, {.seed = tool.common().seed_for_frame(frame.frame)});
-  tool.stats().phase("write");
-  tools::write_light_grid(tool, grid.get(), frame, output);
-  tool.stats().end_phase();
-}
 
 /// A scene without light may be intended (unlit materials, depth only), but a black frame needs an explanation.
 void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
@@ -225,13 +187,7 @@ void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
 }
 
 void check(Options& options, const std::vector<int>& frames) {
-  if (options.only_learns() && !options.learn_lights)
-    throw InputError(
-        "--output " + options.output +
-        ": what is learned of lights is written with --learn-lights alone; a frame is OpenEXR, name it f.exr");
-  if (options.learn_lights && !options.lights.empty())
-    throw InputError("--lights and --learn-lights: read or learn; leave out one");
-  if (frames.size() > 1 && !options.only_learns() && !tools::has_frame_pattern(options.output))
+  if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.exr");
   if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
   for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
@@ -371,13 +327,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "take about this share of the frame's rays; 0: off")
       ->capture_default_str()
       ->check(tools::number_between(0.0, 100.0));
-  app.add_flag("--learn-lights", options.learn_lights,
-               "first trace rays to learn from where sky, suns and lamps reach the visible places, and aim light "
-               "samples accordingly; with -o FILE.lightgrid learn for the cameras of all named frames and write a file "
-               "instead of a frame");
-  app.add_option("--lights", options.lights,
-                 ".lightgrid file from --learn-lights, or a pattern: read it instead of learning for each frame")
-      ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr, halves of spp/2 samples each; the halves are independent of each "
                "other, and of a frame with the same --seed but without --halves");
@@ -404,7 +353,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--compression", options.compression, "EXR compression")
       ->capture_default_str()
       ->check(CLI::IsMember({"zip", "none"}));
-  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr; or a .lightgrid file")->required();
+  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 
 }  // namespace
@@ -424,10 +373,6 @@ int main(int argc, char** argv) {
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
     warn_of_darkness(tool, input.scene());
-    if (options.only_learns()) {
-      learn(tool, input, options, frames);
-      return tools::exit_ok;
-    }
     StaticTree standing;
     for (int frame : frames) render(tool, input, options, frame, standing);
     return tools::exit_ok;

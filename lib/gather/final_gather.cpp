@@ -47,10 +47,7 @@ struct Shots {
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                          const GatherOptions& options)
-    : tracer_(tracer),
-      reach_(tracer),
-      incoming_(tracer, lights, points, options.near_factor, options.bright),
-      options_(options) {
+    : tracer_(tracer), reach_(tracer), incoming_(tracer, lights, points, options.bright), options_(options) {
   for (std::size_t i = 0; i < strata_.size(); ++i)
     strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }

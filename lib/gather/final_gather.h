@@ -17,8 +17,6 @@ struct GatherOptions {
   std::uint64_t seed = 0;
   /// Number of rays where light is uniform; rounded to M rings x N_phi sectors with N_phi about pi M.
   int rays = 500;
-  /// Hits closer than this many radii of their point's density estimate are close.
-  float near_factor = PointLookup::kNear;
   const BrightPoints* bright = nullptr;  ///< points that are sampled explicitly, if any (bright_points.h)
   int bright_samples = 100;              ///< explicit samples per record
 };

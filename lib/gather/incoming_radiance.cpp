@@ -62,8 +62,8 @@ struct IncomingRadiance::Gathered {
 };
 
 IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points,
-                                   float near_factor, const BrightPoints* bright)
-    : tracer_(tracer), lights_(lights), points_(points), near_factor_(near_factor), bright_(bright) {
+                                   const BrightPoints* bright)
+    : tracer_(tracer), lights_(lights), points_(points), bright_(bright) {
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
 }
@@ -203,8 +203,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   if (bsdf.has_diffuse()) {
     const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
     // Most hits are clearly not close: they need no random number.
-    const bool near = point && depth == 0 && met.distance < 1.5f * near_factor_ * point->radius &&
-                      PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather), near_factor_);
+    const bool near = point && depth == 0 && PointLookup::is_near(*point, met.distance, 1) &&
+                      PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather));
     if (point && !near && points_.is_uniform_indirect(*point)) {
       ++to.counts.points_read;
       const bool even = lights_.empty() || points_.is_uniform(*point);

@@ -54,7 +54,7 @@ class IncomingRadiance {
   /// bright: points whose high part is sampled explicitly, so that rays contribute the rest
   /// (BrightPoints::remaining_share); may be null.
   IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points,
-                   float near_factor = PointLookup::kNear, const BrightPoints* bright = nullptr);
+                   const BrightPoints* bright = nullptr);
 
   /// Computes the radiance [W/m^2/sr] that arrives along rays and counts as indirect light at their starts, and the
   /// distance to each ray's first hit in m (infinity: none). keys: one random key per ray. Fastest if successive rays
@@ -91,7 +91,6 @@ class IncomingRadiance {
   const Tracer& tracer_;
   const Lights& lights_;
   const PointLookup& points_;
-  float near_factor_;
   const BrightPoints* bright_;
   std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from the back, from the front
 };

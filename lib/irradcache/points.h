@@ -121,8 +121,8 @@ class PointLookup {
   static constexpr float kNear = 2;
   /// True if a hit at `distance` m from the last Lambert lobe along the path is too close to read its point. u in [0,
   /// 1) moves the limit between half and one and a half of its value, so that it leaves no visible seam.
-  static bool is_near(const Light& light, float distance, float u, float radii = kNear) {
-    return distance < radii * light.radius * (0.5f + u);
+  static bool is_near(const Light& light, float distance, float u) {
+    return distance < kNear * light.radius * (0.5f + u);
   }
   /// Share of the values of u for which a hit is not too close; `radius` is Light::radius.
   static float share_of_far(float radius, float distance) {

@@ -71,16 +71,6 @@ bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probabil
   return true;
 }
 
-/// Fills the sample with light from a direction of the environment that was drawn with density `pdf` [1/sr].
-bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const {
-  s.wi = found.direction;
-  s.position = point + s.wi * distance_beyond();
-  s.facing_irradiance = Rgb(Rgbd(found.radiance) / pdf);
-  s.pdf_solid_angle = float(pdf);
-  s.distant = true;
-  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
-}
-
 /// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
 /// up u.
 bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
@@ -89,7 +79,13 @@ bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
   if (!environment->sample(u1, u2, found)) return false;
-  return take_from_sky(found, point, found.pdf_solid_angle * probability, s);
+  const double pdf = found.pdf_solid_angle * probability;
+  s.wi = found.direction;
+  s.position = point + s.wi * distance_beyond();
+  s.facing_irradiance = Rgb(Rgbd(found.radiance) / pdf);
+  s.pdf_solid_angle = float(pdf);
+  s.distant = true;
+  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
 }
 
 /// Fills the sample with a point or spot light.
@@ -134,18 +130,9 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double pro
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.facing_irradiance);
 }
 
-Lights::Impl::Shares Lights::Impl::shares_of(const LightGrid::Cell& cell, From from) {
-  const double sky = double(cell.sky), sun = double(cell.suns);
-  if (from == From::all) return {sky, sun};
-  return sun < 1 ? Shares{std::min(1.0, sky / (1 - sun)), 0} : Shares{sky > 0 ? 1.0 : 0.0, 0};
-}
-
 bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from,
                           LightSample& sample) const {
   sample = {};
-  if (const LightGrid::Cell* cell = known(point, normal))
-    return sample_learned(*cell, point, normal, u_choice, u, joint, from, sample) &&
-           is_finite(sample.facing_irradiance);
   const LightTree::Start start = tree.start(point, normal);
   const double distant = distant_irradiance(normal, from),
                share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
@@ -165,24 +152,6 @@ bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability
   LightTree::Choice choice;
   if (!tree.choose(start, point, normal, u_choice, choice)) return false;
   return sample_slot(tree_slot[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
-}
-
-bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
-                                  bool joint, From from, LightSample& s) const {
-  const Shares shares = shares_of(cell, from);
-  const auto sky = float(shares.sky), sun = float(shares.suns);
-  if (u_choice < sky) {
-    EnvironmentLight::Sample found;
-    double density;
-    if (!grid->sample_sky(cell, u_choice / sky, joint ? u.y : u.x, found, density)) return false;
-    return take_from_sky(found, point, density * double(sky), s);
-  }
-  u_choice -= sky;
-  if (u_choice < sun) return sample_sun(point, normal, u_choice / sun, double(sun), s);
-  const float lamps = 1 - sky - sun;
-  if (!(lamps > 0)) return false;
-  return sample_tree(tree.start(point, normal), double(lamps), point, normal,
-                     to_float(double((u_choice - sun) / lamps)), u, joint, s);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
@@ -209,14 +178,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const LightGrid::Cell* cell = m.known(point, normal);
-  double share;
-  if (cell) {
-    const Impl::Shares shares = Impl::shares_of(*cell, from);
-    share = double(float(shares.sky) + float(shares.suns));
-  } else {
-    share = m.distant_share(point, normal, from, total);
-  }
+  const double share = m.distant_share(point, normal, from, total);
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }
@@ -224,10 +186,6 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
 float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction,
                               From from) const {
   if (!(impl_->environment_weight > 0)) return 0;
-  if (const LightGrid::Cell* cell = impl_->known(point, normal)) {
-    const float learned = float(Impl::shares_of(*cell, from).sky * impl_->grid->sky_density(*cell, direction));
-    return learned < INFINITY ? learned : 0;
-  }
   double total = 0;
   const double share = impl_->distant_share(point, normal, from, total);
   const float pdf = float(environment_->pdf_solid_angle(place, direction) * share * impl_->environment_weight / total);

@@ -122,7 +122,6 @@ Lights::Lights(const SceneFrame& frame, const EmissionTable& table)
 Lights::~Lights() = default;
 Lights::Lights(Lights&&) noexcept = default;
 
-void Lights::use(const LightGrid* grid) { impl_->grid = grid; }
 bool Lights::has_distant() const { return impl_->any_distant; }
 bool Lights::has_placed() const { return !impl_->tree.empty(); }
 

@@ -12,7 +12,6 @@
 #include "lib/core/vec.h"
 #include "lib/light/aim.h"
 #include "lib/light/environment_light.h"
-#include "lib/light/light_grid.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/triangle_light.h"
 #include "lib/scene/at_frame.h"
@@ -90,9 +89,6 @@ class Lights {
   ~Lights();
   Lights(Lights&&) noexcept;
 
-  /// From now on, where the grid has a cell, samples are drawn by the cell's probabilities; nullptr: no longer. The
-  /// grid must outlive this object. The expectation does not change.
-  void use(const LightGrid* grid);
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const;
   /// True if any light inside the scene shines.

@@ -30,10 +30,9 @@ struct Lights::Impl {
   std::vector<std::uint32_t> tree_slot;   // and back
   std::vector<std::uint32_t> suns;        // indices of the directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
-  double environment_weight = 0;    // irradiance from the environment, averaged over all normals; 0: none or black
-  Aim aim;                          // of photons from directional lights and environment
-  bool any_distant = false;         // true if the environment is not black or a directional light shines
-  const LightGrid* grid = nullptr;  // learned visibility of distant light; nullptr: none
+  double environment_weight = 0;  // irradiance from the environment, averaged over all normals; 0: none or black
+  Aim aim;                        // of photons from directional lights and environment
+  bool any_distant = false;       // true if the environment is not black or a directional light shines
   LightTree tree{{}};
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
@@ -41,18 +40,9 @@ struct Lights::Impl {
 
   Rgbd slot_flux(std::size_t slot) const;  ///< W
   std::vector<LightBounds> tree_bounds() const;
-  bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
-                      From from, LightSample& sample) const;
   bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
                    bool joint, LightSample& sample) const;
-  bool take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
-  const LightGrid::Cell* known(Vec3 point, Vec3 normal) const { return grid ? grid->find(point, normal) : nullptr; }
-  /// Probabilities of the sky and of the directional lights; the remainder goes to lights inside the scene.
-  struct Shares {
-    double sky, suns;
-  };
-  static Shares shares_of(const LightGrid::Cell& cell, From from);
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal, From from) const {
     return !any_distant ? 0 : from == From::all ? sum_distant(normal) : environment_weight;

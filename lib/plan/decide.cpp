@@ -13,7 +13,6 @@
 #include "lib/render/choose_light.h"
 #include "lib/render/choose_preview.h"
 #include "lib/render/choose_split.h"
-#include "lib/render/learn_lights.h"
 #include "lib/render/places_seen.h"
 #include "lib/render/seen_spheres.h"
 
@@ -60,7 +59,6 @@ struct Look {
     return std::ranges::all_of(ways, [&](const Way& way) { return way.method != method || way.measured; });
   }
   std::uint64_t paths = 0;  ///< of light
-  bool learn = false;
 };
 
 class FramePilot {
@@ -79,7 +77,6 @@ class FramePilot {
     const Lights& aimed_lights = aimed();
     const auto look_of = [&](const RoughFrame& rough) {
       Look look;
-      look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
       look.paths = rough.paths_of_light;
       look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays, wish_.filter != 0},
                                 kinds_.find("caustic") != std::string::npos);
@@ -174,10 +171,7 @@ std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool
 
 /// Joins what the looked frames ask for.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
-  for (const Look& look : looks) {
-    d.photon_paths = std::max(d.photon_paths, look.paths);
-    d.learn_lights |= look.learn;
-  }
+  for (const Look& look : looks) { d.photon_paths = std::max(d.photon_paths, look.paths); }
   const std::vector<Way> ways = joined_ways(looks);
   std::string words = because(ways);
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
@@ -254,8 +248,7 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   d.reasons.push_back({"ibr-warp", because});
 }
 
-/// For light textures: the number of light paths that give the wanted photons, the width of the filter, and whether
-/// distant lights are learned.
+/// For light textures: the number of light paths that give the wanted photons, the width of the filter.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
@@ -263,7 +256,6 @@ void decide_preview(const PlannedSegment& segment, const Wish& wish, const Scene
   for (const int frame : d.looked) {
     FramePilot pilot(wish, source, frame, d.kinds);
     if (frame == d.looked[d.looked.size() / 2]) kernel = pilot.kernel();
-    d.learn_lights |= pilot.look(kPlaces, [](const Look&) { return true; }).learn;
     pilots.push_back(pilot.preview());
   }
   const PreviewChoice choice = choose_preview(pilots, kernel, wish.photons, kPreviewWindow);

@@ -86,10 +86,9 @@ struct Decisions {
   bool caustic_map = false;  ///< true: visible caustic light is read from photons; false: camera paths find it
   std::uint64_t photon_paths = 700'000;  ///< light paths of a photon map
   int record_rays = 500;
-  double pixel_error = 0;     ///< --pixel-error of frames, if the wish leaves their pixels to the preset
-  double texture_width = 0;   ///< m, standard deviation of the filter of a preview's light textures; 0: no preview
-  bool learn_lights = false;  ///< true if light comes through openings: the distant lights are learned
-  bool split = false;         ///< true: bright points are divided from the other points and sampled explicitly
+  double pixel_error = 0;    ///< --pixel-error of frames, if the wish leaves their pixels to the preset
+  double texture_width = 0;  ///< m, standard deviation of the filter of a preview's light textures; 0: no preview
+  bool split = false;        ///< true: bright points are divided from the other points and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
   double new_share = 0;  ///< mean share of a picture that the picture before does not show
   int together = 1;      ///< number of consecutive pictures whose cameras share records

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -58,16 +59,10 @@ std::string joined(const std::vector<int>& frames) {
   return text;
 }
 
-std::string without(const std::string& words, const std::string& word) {
-  std::istringstream stream(words);
-  std::string text;
-  for (std::string w; stream >> w;)
-    if (w != word) text += (text.empty() ? "" : " ") + w;
-  return text;
-}
-
 bool has_word(const std::string& words, const std::string& word) {
-  return without(words, word).size() != without(words, "").size();
+  std::istringstream stream(words);
+  using Words = std::istream_iterator<std::string>;
+  return std::find(Words(stream), Words(), word) != Words();
 }
 
 bool has_channel(const std::string& channels, const std::string& name) {

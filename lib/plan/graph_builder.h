@@ -57,8 +57,6 @@ struct GraphBuilder {
 };
 
 // Options are words separated by blanks, channels names separated by commas.
-/// Options without one of them.
-std::string without(const std::string& words, const std::string& word);
 bool has_word(const std::string& words, const std::string& word);
 bool has_channel(const std::string& channels, const std::string& name);
 /// Adds the channels of `more` that are missing.

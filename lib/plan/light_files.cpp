@@ -207,18 +207,6 @@ std::string preview_light(GraphBuilder& g, int lit) {
   return g.add(stage::windows, lit, c);
 }
 
-/// Visibility of distant lights for the cameras of the segment, learned once.
-std::string lights(GraphBuilder& g, int frame) {
-  if (!g.decided(frame).learn_lights || !has_word(g.wish.pixels, "--learn-lights")) return "";
-  const std::vector<int> all = g.segment(frame).pictures();
-  std::vector<int> pictures;  // first, last and two between, since the view changes slowly
-  for (std::size_t i = 0; i < 4; ++i)
-    if (const int f = all[i * (all.size() - 1) / 3]; pictures.empty() || pictures.back() != f) pictures.push_back(f);
-  Command c{"--frames " + joined(pictures) + " --learn-lights " + g.size, {}, g.cameras(pictures)};
-  for (const int f : pictures) c.content += g.state(f).light;
-  return g.add(stage::lights, g.segment(frame).first, c);
-}
-
 }  // namespace
 
 std::string photon_map(GraphBuilder& g, int lit) {
@@ -282,7 +270,6 @@ void add_light(GraphBuilder& g, int frame, Command& c) {
     if (moved(g, lit)) c.file("--photons", static_photons(g, lit));
     c.file(moved(g, lit) ? "--dynamic" : "--photons", photon_map(g, lit));
   }
-  c.file("--lights", lights(g, frame));
 }
 
 }  // namespace tempolux

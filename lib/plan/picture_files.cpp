@@ -36,10 +36,9 @@ std::string in_motion(const GraphBuilder& g, int frame, const std::string& chann
 }
 
 std::string pixels_of(const GraphBuilder& g, int frame) {
-  const std::string wished = without(g.wish.pixels, "--learn-lights");
-  if (!g.wish.preset_pixels) return wished;
+  if (!g.wish.preset_pixels) return g.wish.pixels;
   std::ostringstream words;
-  words << wished << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error;
+  words << g.wish.pixels << " --pixel-error " << std::setprecision(2) << g.decided(frame).pixel_error;
   return words.str();
 }
 

@@ -40,7 +40,6 @@ void each_decision(AnyDecisions& d, const Visit& visit) {
   visit("rays", d.record_rays);
   visit("pixel_error", d.pixel_error);
   visit("texture_width", d.texture_width);
-  visit("learn_lights", d.learn_lights);
   visit("split", d.split);
   visit("moving", d.moving);
   visit("new_share", d.new_share);

@@ -32,9 +32,7 @@ Wish with_preset(Wish wish) {
   if (wish.filter == Wish::kAutoFilter)
     wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
   if (wish.pixels.empty()) {
-    std::ostringstream words;
-    words << "--spp " << preset.first_samples << " --learn-lights";
-    wish.pixels = words.str();
+    wish.pixels = "--spp " + std::to_string(preset.first_samples);
     wish.preset_pixels = true;
   }
   return wish;

@@ -37,7 +37,6 @@ inline constexpr StageInfo textures{"st-filter mesh", "textures", ".meshirrad", 
 inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
 inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal",
                                    "read counts,windows,filter,write"};
-inline constexpr StageInfo lights{"frame-render --learn-lights", "lights", ".lightgrid", "frame-render", "learn"};
 inline constexpr StageInfo raw{"frame-render --for-filter", "raw", ".exr", "frame-render",
                                "render,data channels,write"};
 inline constexpr StageInfo keys{"frame-render (keys)", "keys", ".exr", "frame-render", "render,data channels,write"};
@@ -51,12 +50,12 @@ inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare",
 }  // namespace stage
 
 /// In the order in which they run.
-inline constexpr std::array kStages{stage::static_photons, stage::photons,   stage::moved_photons,  stage::refined,
-                                    stage::static_points,  stage::points,    stage::split,          stage::textures,
-                                    stage::counts,         stage::windows,   stage::static_records, stage::records,
-                                    stage::kept,           stage::lights,    stage::keys,           stage::walk,
-                                    stage::walked,         stage::raw,       stage::filtered,       stage::pictures,
-                                    stage::smoke,          stage::reference, stage::error};
+inline constexpr std::array kStages{
+    stage::static_photons, stage::photons, stage::moved_photons, stage::refined,  stage::static_points,
+    stage::points,         stage::split,   stage::textures,      stage::counts,   stage::windows,
+    stage::static_records, stage::records, stage::kept,          stage::keys,     stage::walk,
+    stage::walked,         stage::raw,     stage::filtered,      stage::pictures, stage::smoke,
+    stage::reference,      stage::error};
 
 /// Fills in what the wish leaves open; all presets are defined here. draft is coarser and takes less than half of the
 /// time of final.

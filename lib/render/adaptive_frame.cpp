@@ -33,9 +33,9 @@ constexpr std::size_t kJudgedTogether = 64;  ///< pixels per piece of parallel w
 class AdaptiveFrame {
  public:
   AdaptiveFrame(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame)
-      : scene_(scene),
-        view_(view),
+      : view_(view),
         options_(options),
+        camera_{scene, view, options},
         frame_(frame),
         noise_(view, options),
         check_(view, options.seed, options.mask),
@@ -58,7 +58,7 @@ class AdaptiveFrame {
  private:
   void take_first();
   std::uint64_t take_further(double times, const std::function<void(double)>& progress);
-  void take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count);
+  void take_again(const PixelPass& pass);
   void put_together();
   void spread();
   void keep_confirmed(std::size_t pixel, const Layers& before);
@@ -66,9 +66,9 @@ class AdaptiveFrame {
   void finish();
   bool shown(std::size_t pixel) const { return options_.mask.empty() || options_.mask[pixel]; }
 
-  const RenderScene& scene_;
   const CameraView& view_;
   const FrameOptions& options_;
+  const CameraSampler camera_;
   RenderedFrame& frame_;
   PixelNoise noise_;
   NoiseCheck check_;
@@ -80,12 +80,11 @@ class AdaptiveFrame {
   ParallelArray<BrightestSamples> brightest_;
 };
 
-void AdaptiveFrame::take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count) {
-  const std::uint32_t slot = check_.slot(x, y);
-  if (slot == kNone || !shown(pixel)) return;
-  join_parts(
-      sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, &check_.again_halves(slot), again_rays_[slot]),
-      first, count, check_.again(slot));
+void AdaptiveFrame::take_again(const PixelPass& pass) {
+  const std::uint32_t slot = check_.slot(pass.x, pass.y);
+  if (slot == kNone || !shown(pass.pixel)) return;
+  join_parts(sample_pixel({camera_.scene, view_, of_check_}, pass, &check_.again_halves(slot), again_rays_[slot]),
+             pass.first, pass.count, check_.again(slot));
 }
 
 void AdaptiveFrame::take_first() {
@@ -96,14 +95,14 @@ void AdaptiveFrame::take_first() {
     PixelSum half[2];
     half[0].for_filter = half[1].for_filter = options_.for_filter;
     const std::uint64_t before = counts.onward;
-    for_each_sample(scene_, view_, options_, pixel, x, y, {}, first, image.halves_of(pixel), counts,
-                    [&](int s, const PathParts& sample) {
-                      half[noise_.half(s)].add(sample);
-                      if (spreads) brightest_[pixel].note(sample, options_.for_filter);
-                    });
+    const PixelPass pass{pixel, x, y, {}, first};
+    for_each_sample(camera_, pass, image.halves_of(pixel), counts, [&](int s, const PathParts& sample) {
+      half[noise_.half(s)].add(sample);
+      if (spreads) brightest_[pixel].note(sample, options_.for_filter);
+    });
     noise_.note(pixel, half[0], half[1], counts.onward - before);
     join_parts(half[0] + half[1], {}, first, parts_[pixel]);
-    take_again(pixel, x, y, {}, first);
+    take_again(pass);
   });
   noise_.all_noted();
 }
@@ -116,14 +115,14 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
     PartCounts& have = counts_[pixel];
     const PartCounts more = missing(have, noise_.wanted_at(x, y, times));
     if (more.own == 0) return;
+    const PixelPass pass{pixel, x, y, have, more};
     PixelSum sum;
-    for_each_sample(scene_, view_, options_, pixel, x, y, have, more, frame_.mean.halves_of(pixel), counts,
-                    [&](int, const PathParts& sample) {
-                      sum.add(sample);
-                      if (options_.spread_outliers) brightest_[pixel].note(sample, options_.for_filter);
-                    });
+    for_each_sample(camera_, pass, frame_.mean.halves_of(pixel), counts, [&](int, const PathParts& sample) {
+      sum.add(sample);
+      if (options_.spread_outliers) brightest_[pixel].note(sample, options_.for_filter);
+    });
     join_parts(sum, have, more, parts_[pixel]);
-    take_again(pixel, x, y, have, more);
+    take_again(pass);
     have = {have.own + more.own, have.lit + more.lit, have.onward + more.onward};
   });
   return frame_.rays.camera - before;
@@ -160,9 +159,8 @@ void AdaptiveFrame::spread() {
       const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
       further_of[pixel] = std::uint32_t(i);
       further[i].count = more;
-      join_parts(sample_pixel(scene_, view_, options_, pixel, int(pixel % width), int(pixel / width), have, more,
-                              nullptr, rays[first / kJudgedTogether]),
-                 {}, more, further[i].mean);
+      const PixelPass pass{pixel, int(pixel % width), int(pixel / width), have, more};
+      join_parts(sample_pixel(camera_, pass, nullptr, rays[first / kJudgedTogether]), {}, more, further[i].mean);
     }
   });
   for (const RayCounts& counts : rays) frame_.rays += counts;

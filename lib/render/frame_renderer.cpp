@@ -26,8 +26,8 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   FrameOptions of_pass = options;
   of_pass.seed = seed;
   for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    const PixelSum sum = sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count},
-                                      image.halves_of(pixel), counts);
+    const PixelPass pass{pixel, x, y, {first, first, first}, {count, count, count}};
+    const PixelSum sum = sample_pixel({scene, view, of_pass}, pass, image.halves_of(pixel), counts);
     join(sum, first, count, image.pixels[pixel]);
     if (!image.known_noise.empty()) join(sum.known_noise, first, count, image.known_noise[pixel]);
   });
@@ -45,8 +45,8 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
     const std::uint32_t slot = check.slot(x, y);
     if (slot == kNone) return;
     Layers mean;
-    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, &check.again_halves(slot), counts), 0, options.samples,
-         mean);
+    join(sample_pixel({scene, view, again}, {pixel, x, y, {}, all}, &check.again_halves(slot), counts), 0,
+         options.samples, mean);
     check.again(slot).own = mean;
   });
   const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };

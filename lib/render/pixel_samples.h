@@ -96,36 +96,26 @@ inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   join(all, first, count, mean);
 }
 
-/// Calls body(pixel, x, y) for every pixel, row by row within a tile, with tiles in parallel. Each tile has its own
-/// body = make_body(counts).
-template <class MakeBody>
-void for_each_tile(const CameraView& view, const FrameOptions& options, RayCounts& rays,
-                   const std::function<void(double)>& progress, const MakeBody& make_body) {
+/// Calls body(pixel, x, y, counts) for every pixel, row by row within a tile, with tiles in parallel.
+template <class Body>
+void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
+                    const std::function<void(double)>& progress, const Body& body) {
   constexpr int kTile = 16;
   const int tiles_x = (view.width() + kTile - 1) / kTile, tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
   std::mutex mutex;
   int done = 0;
   parallel_chunks(std::size_t(tiles), 1, [&](std::size_t tile, std::size_t) {
     RayCounts counts;
-    auto body = make_body(counts);
     const int x0 = int(tile) % tiles_x * kTile, y0 = int(tile) / tiles_x * kTile;
     for (int y = y0; y < std::min(y0 + kTile, view.height()); ++y)
       for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x) {
         const std::size_t pixel = std::size_t(y) * std::size_t(view.width()) + std::size_t(x);
-        if (options.mask.empty() || options.mask[pixel]) body(pixel, x, y);
+        if (options.mask.empty() || options.mask[pixel]) body(pixel, x, y, counts);
       }
     const std::lock_guard lock(mutex);
     rays += counts;
     if (progress) progress(double(++done) / tiles);
   });
-}
-
-/// Calls body(pixel, x, y, counts) for every pixel, with tiles in parallel.
-template <class Body>
-void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
-                    const std::function<void(double)>& progress, const Body& body) {
-  for_each_tile(view, options, rays, progress,
-                [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
 /// Distributes samples of the parts lit and onward over a pixel's camera rays, as uniformly as whole numbers allow. One
@@ -150,59 +140,56 @@ class Dealt {
   Vec2 offset_;
 };
 
-/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0. The pass continues the pixel's
-/// sequence. Its first half belongs to one half of the pixel's samples, its second half to the other; each is
-/// stratified nearly as well as a pass of its size can be.
-class SampleSequence {
- public:
-  SampleSequence(const FrameOptions& options, std::size_t pixel, const PartCounts& first, const PartCounts& count)
-      : random_(options.seed, pixel, 0),
-        first_(first.own),
-        count_(count.own),
-        dealt_(options.seed, pixel, first, count) {}
-  PixelRandom random(int i) const { return random_.of_sample(std::uint32_t(first_ + i)); }
-  PathEffort effort(int i) const { return dealt_(i); }
-  /// The half of the pass to which sample i belongs.
-  int half(int i) const { return 2 * i >= count_; }
-  /// The half of the pixel's samples to which sample i belongs: a single sample goes to the half that has fewer.
-  int half(int i, const SampleHalves& halves) const {
-    return count_ == 1 ? halves.half[1].own.count < halves.half[0].own.count : half(i);
-  }
-
- private:
-  PixelRandom random_;
-  int first_, count_;
-  Dealt dealt_;
+/// What samples of pixels are taken of.
+struct CameraSampler {
+  const RenderScene& scene;
+  const CameraView& view;
+  const FrameOptions& options;
 };
 
-/// Takes the samples of a pixel one after the other, with indices from `first`, and calls add(i, sample). halves:
-/// SampleHalves of the pixel, or nullptr.
+/// A pixel, and the samples of it that one pass takes: `count`, which continue its sequences after `first`. The first
+/// half of a pass belongs to one half of the pixel's samples, the second half to the other; each is stratified nearly
+/// as well as a pass of its size can be.
+struct PixelPass {
+  std::size_t pixel;
+  int x, y;
+  PartCounts first, count;
+
+  /// The half (0 or 1) of the pass to which its sample i belongs.
+  int half(int i) const { return 2 * i >= count.own; }
+};
+
+/// Takes the samples of a pass one after the other and calls add(i, sample). halves: SampleHalves of the pixel, or
+/// nullptr; a single sample goes to the half that has fewer.
 template <class Add>
-void for_each_sample(const RenderScene& scene, const CameraView& view, const FrameOptions& options, std::size_t pixel,
-                     int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves,
-                     RayCounts& counts, const Add& add) {
-  const SampleSequence sequence(options, pixel, first, count);
+void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleHalves* halves, RayCounts& counts,
+                     const Add& add) {
+  const auto& [scene, view, options] = camera;
+  const PixelRandom of_pixel(options.seed, pass.pixel, 0);
+  const Dealt dealt(options.seed, pass.pixel, pass.first, pass.count);
   CausticMemory caustics;
-  for (int i = 0; i < count.own; ++i) {
-    const PixelRandom random = sequence.random(i);
-    const PathEffort effort = sequence.effort(i);
+  for (int i = 0; i < pass.count.own; ++i) {
+    const PixelRandom random = of_pixel.of_sample(std::uint32_t(pass.first.own + i));
+    const PathEffort effort = dealt(i);
     const Vec2 jitter = random.get2(0, Purpose::pixel);
-    const Ray ray = view.ray(float(x) + jitter.x, float(y) + jitter.y);
+    const Ray ray = view.ray(float(pass.x) + jitter.x, float(pass.y) + jitter.y);
     Hit hit;
     scene.tracer.intersect(ray, hit);
-    caustics.use_half(sequence.half(i));
+    caustics.use_half(pass.half(i));
     const PathParts parts = trace_eye_path(scene, ray, hit, random, options.known, counts, view.cone(), effort);
-    if (halves) halves->add(sequence.half(i, *halves), parts, effort);
+    if (halves) {
+      const bool single = pass.count.own == 1;
+      halves->add(single ? halves->half[1].own.count < halves->half[0].own.count : pass.half(i), parts, effort);
+    }
     add(i, parts);
   }
 }
 
-inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
-                             std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count,
-                             SampleHalves* halves, RayCounts& counts) {
+/// Sum over the samples of a pass.
+inline PixelSum sample_pixel(const CameraSampler& camera, const PixelPass& pass, SampleHalves* halves,
+                             RayCounts& counts) {
   PixelSum sum;
-  for_each_sample(scene, view, options, pixel, x, y, first, count, halves, counts,
-                  [&](int, const PathParts& sample) { sum.add(sample); });
+  for_each_sample(camera, pass, halves, counts, [&](int, const PathParts& sample) { sum.add(sample); });
   return sum;
 }
 

@@ -57,15 +57,14 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
       if (!point) continue;
       SeenPlace& place = seen.places[i];
       const Vec3 front = point->surface.normal_geometric;
-      place = {point->surface, point->normal, dot(front, point->normal) < 0 ? -front : front, false};
+      place = {point->surface, point->normal, dot(front, point->normal) < 0 ? -front : front};
       const Vec3 travel = Frame(place.normal).to_world(sample_hemisphere_cos(random.get2(0, Purpose::test)));
       if (!(dot(travel, place.geometric) > 0)) continue;
       Hit hit;
-      place.open = !scene.tracer.intersect(spawn_ray(place.surface, travel), hit);
-      if (place.open) continue;
+      if (!scene.tracer.intersect(spawn_ray(place.surface, travel), hit)) continue;
       const SurfacePoint met = scene.tracer.surface_point(hit);
       const SeenSide side(met, -travel);
-      seen.next_places[i] = {met, side.normal, side.normal_geometric, false};
+      seen.next_places[i] = {met, side.normal, side.normal_geometric};
     }
   });
   return seen;

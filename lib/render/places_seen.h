@@ -14,7 +14,6 @@ namespace tempolux {
 struct SeenPlace {
   SurfacePoint surface;
   Vec3 normal, geometric;  ///< on the side that is seen; zero vectors: there is no place
-  bool open = false;       ///< the ray that continued from here left the scene
 
   bool exists() const { return normal != Vec3{}; }
   bool sees(Vec3 wi) const { return dot(wi, geometric) > 0 && dot(wi, normal) > 0; }

@@ -310,16 +310,6 @@ MissedLight missed_light(const SeenPhotons& photons, double found, double sample
   return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
 }
 
-/// Places that are seen, and how many of their rays leave the scene.
-void look_at_places(const RenderScene& scene, const CameraView& view, const RoughOptions& options, RoughFrame& rough) {
-  int open = 0;
-  for (const SeenPlace& place : places_seen(scene, view, options.places, options.seed ^ 0x70696c6f74ull).places) {
-    rough.places += place.exists();
-    open += place.exists() && place.open;
-  }
-  rough.open_share = rough.places > 0 ? double(open) / rough.places : 0;
-}
-
 /// By photons: what paths miss, and what a map of caustics would err by.
 void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
   const double allowed2 = picture.levels.picture * picture.levels.picture;
@@ -363,7 +353,8 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
                        const RoughOptions& options) {
   RoughFrame rough;
   rough.paths_of_light = options.photons;
-  look_at_places(scene, view, options, rough);
+  const SeenPlaces seen = places_seen(scene, view, options.places, options.seed ^ 0x70696c6f74ull);
+  rough.places = int(std::ranges::count_if(seen.places, &SeenPlace::exists));
   RayCounts counts;
   const Samples paths = take_samples(scene, view, nullptr, options, counts);
   const Picture picture{scene, view, options, Levels(paths, view, options.seed)};

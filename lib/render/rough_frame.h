@@ -48,7 +48,6 @@ struct RoughFrame {
   bool gathered = false, recorded = false;  ///< are gathering and records measured?
   int places = 0;                           ///< seen that have a Lambert lobe; 0: none is
   double radiance = 0;                      ///< mean of the picture, as paths find it [W/m^2/sr]
-  double open_share = 0;                    ///< of the rays of the surfaces' hemispheres: leave the scene
   /// Mean squared error that the wish leaves of all light but layer indirect, and the variance of a sample of that
   /// light; at least the wish's own error, and what the first samples make it of.
   double wanted = 0, wanted_of = 0;

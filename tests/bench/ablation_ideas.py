@@ -16,8 +16,6 @@ class Idea:
 
 IDEAS = (
     # ---- samples of light
-    Idea("learned lights", "a grid of what reaches places through openings, by which lights are drawn", "frames",
-         (("lib/render/learn_lights.cpp", "if (!scene.lights.has_distant()) return nullptr;", "if (scene.lights.count() > 0) return nullptr;"),)),
     Idea("suns apart", "a ray to a sun beside that to another light", "frames",
          (("tools/frame-render.cpp", "!yardstick && lights.has_suns()}", "false}"),)),
     Idea("matte rays meet lamps", "a ray that leaves a matte surface counts lamps it meets, weighed against light samples", "frames",

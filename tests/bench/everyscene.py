@@ -5,7 +5,7 @@
     python3 tests/bench/everyscene.py --quick                               a dozen scenes at 160x90: some minutes
     python3 tests/bench/everyscene.py --quick --json new.json --against old.json      two programs compared
     python3 tests/bench/everyscene.py --scenes 'hut|S8' --sizes 320x180,960x540 --seeds 8
-    python3 tests/bench/everyscene.py --scenes S8 --set 'PIXELS=--spp 4 --seen-error 2 --learn-lights'
+    python3 tests/bench/everyscene.py --scenes S8 --set 'PIXELS=--spp 4 --seen-error 2'
 
 The chain is run as Makefile.example runs it (`make OUT/frames/NNNN.exr`), all processes counted. Beside it the path tracer with 4,
 16, 64, ... samples until it is better, which gives its curve. Both are judged against the halves of a reference, which is kept in

@@ -110,4 +110,4 @@ def preset(project, name="final"):
     row = re.search(rf"constexpr Preset k{name.capitalize()}\{{(.*)\}};", (project / "lib" / "plan" / "stages.cpp").read_text()).group(1)
     photons, points, rays, records, error, samples = (part.strip().strip('"') for part in row.split(", "))
     return {"photons": int(photons.replace("'", "")), "points": points.split(), "records": ["--rays", rays, *records.split()],
-            "pixels": ["--spp", samples, "--pixel-error", error, "--learn-lights"]}
+            "pixels": ["--spp", samples, "--pixel-error", error]}

@@ -119,7 +119,7 @@ def costs():
                "fresh_records": fresh["counts"]["records"], "time_records": over["counts"]["records"], "removed": over["counts"]["records_removed"], "fresh_rays": fresh["counts"]["gather_rays"],
                **{k: over["counts"][k] for k in ("cells", "cells_moved", "cells_lost", "cells_unanchored", "cells_near", "cells_aged", "birth_rays", "update_rays")}}
         if options.pixels and f % 8 == 1:
-            pixels(f"t.{name}.irradcache", f, "pixels.exr", "--spp", 4, "--pixel-error", 0.016, "--learn-lights")
+            pixels(f"t.{name}.irradcache", f, "pixels.exr", "--spp", 4, "--pixel-error", 0.016)
             row["pixels"] = stats("r.json")["cpu_s"]
         rows.append(row)
     (options.work / "rows.json").write_text(json.dumps(rows))
@@ -184,7 +184,7 @@ def paths(f):
     """A frame by path tracing, and by the chain: relMSE against many paths, CPU seconds."""
     for name, spp, seed in (("paths", options.paths, 0), ("many", 64 * options.paths, 1)):
         run("frame-render", scene, "--frame", f, *size, "--integrator", "path", "--spp", spp, "--seed", seed, "-o", f"{name}.exr", "--stats", f"{name}.json")
-    pixels(f"t.{f:04}.irradcache", f, "chain.exr", "--spp", 4, "--pixel-error", 0.016, "--learn-lights")
+    pixels(f"t.{f:04}.irradcache", f, "chain.exr", "--spp", 4, "--pixel-error", 0.016)
     for name in ("paths", "chain"):
         run("aqm-compare", f"{name}.exr", "many.exr", "--json", "e.json", "--allow-stale")
         print(f"frame {f}: {name}: RMSE {stats('e.json')['total']['rmse']:.5f}, {stats('r.json' if name == 'chain' else 'paths.json')['cpu_s']:.2f} CPU s of its pixels")

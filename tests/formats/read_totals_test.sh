@@ -2,7 +2,7 @@
 # A second reader (read_FORMAT.py, written from the page) and the C++ agree: on files that the C++ wrote, on bytes when it writes
 # them again, and on the folders accept and refuse.
 #
-#     read_totals_test.sh FORMAT PATH-OF-ITS-TEST       in the folder tests; FORMAT: paths, meshirrad or lightgrid
+#     read_totals_test.sh FORMAT PATH-OF-ITS-TEST       in the folder tests; FORMAT: paths or meshirrad
 format=$1 program=$2
 . formats/second_reader.sh
 cpp

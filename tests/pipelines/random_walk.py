@@ -222,7 +222,7 @@ class Workplace:
     def digests(self, paths):
         """{path: digest}. Ours by tempolux-info, pictures by their bytes."""
         digests = {}
-        ours = [p for p in paths if p.suffix in (".exr", ".photons", ".irradpoints", ".irradcache", ".radsamples", ".meshirrad", ".paths", ".lightgrid")]
+        ours = [p for p in paths if p.suffix in (".exr", ".photons", ".irradpoints", ".irradcache", ".radsamples", ".meshirrad", ".paths")]
         for start in range(0, len(ours), 200):
             part = ours[start:start + 200]
             done = subprocess.run([self.real / "tempolux-info", "--digest", *part], capture_output=True, text=True)

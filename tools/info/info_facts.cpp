@@ -96,7 +96,6 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
   if (head.starts_with("\x89TRADS")) return FileType::radsamples;
   if (head.starts_with("\x89TMESH")) return FileType::meshirrad;
-  if (head.starts_with("\x89TLGRD")) return FileType::lightgrid;
   if (path == "-") return FileType::photons;  // the reader of photons reports any error
   if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{') return FileType::json;
   for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
@@ -113,14 +112,11 @@ Facts facts_of(const std::string& path, bool allow_nan) {
     case FileType::irradcache: return irradcache_facts(path);
     case FileType::radsamples: return radsamples_facts(path);
     case FileType::meshirrad: return meshirrad_facts(path);
-    case FileType::lightgrid: return lightgrid_facts(path);
     case FileType::image: return image_facts(path, allow_nan);
     case FileType::json: break;
   }
   return json_facts(path);
 }
-
-std::string digest_of_file(const std::string& path) { return facts_of(path, true)["digest"]; }
 
 Facts difference_of(const std::string& a, const std::string& b) {
   const FileType type = file_type(a);
@@ -132,7 +128,6 @@ Facts difference_of(const std::string& a, const std::string& b) {
     case FileType::irradcache: return irradcache_difference(a, b);
     case FileType::radsamples: return radsamples_difference(a, b);
     case FileType::meshirrad: return meshirrad_difference(a, b);
-    case FileType::lightgrid: return lightgrid_difference(a, b);
     case FileType::image: return image_difference(a, b);
     case FileType::json: break;
   }
@@ -147,7 +142,6 @@ void export_points(const std::string& path, const std::string& format, Output& o
     case FileType::paths:
     case FileType::radsamples:
     case FileType::meshirrad:
-    case FileType::lightgrid:
     case FileType::image:
     case FileType::json: break;
   }

@@ -19,7 +19,7 @@ namespace tempolux::tools {
 
 using Facts = nlohmann::ordered_json;
 
-enum class FileType { photons, paths, irradpoints, irradcache, radsamples, meshirrad, lightgrid, image, json };
+enum class FileType { photons, paths, irradpoints, irradcache, radsamples, meshirrad, image, json };
 /// From the first bytes, not from the name; "-" is a stream of photons. Throws InputError.
 FileType file_type(const std::string& path);
 
@@ -36,12 +36,9 @@ Facts irradpoints_facts(const std::string& path);
 Facts irradcache_facts(const std::string& path);
 Facts radsamples_facts(const std::string& path);
 Facts meshirrad_facts(const std::string& path);
-Facts lightgrid_facts(const std::string& path);
 Facts image_facts(const std::string& path, bool allow_nan);
 Facts json_facts(const std::string& path);
 Facts facts_of(const std::string& path, bool allow_nan);
-/// Hash of a file's data without header and history.
-std::string digest_of_file(const std::string& path);
 
 /// The differences of two files of each type. "equal" is true if their digests are equal: history and identity are
 /// compared and reported, but do not count.
@@ -51,7 +48,6 @@ Facts irradpoints_difference(const std::string& a, const std::string& b);
 Facts irradcache_difference(const std::string& a, const std::string& b);
 Facts radsamples_difference(const std::string& a, const std::string& b);
 Facts meshirrad_difference(const std::string& a, const std::string& b);
-Facts lightgrid_difference(const std::string& a, const std::string& b);
 Facts image_difference(const std::string& a, const std::string& b);
 Facts json_difference(const std::string& a, const std::string& b);
 /// Throws InputError if the types differ.

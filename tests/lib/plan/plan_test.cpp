@@ -357,7 +357,6 @@ TEST(PlanFiles, DecisionsAreReadBackAsTheyWere) {
   d.new_share = 0.125;
   d.together = 8;
   d.photon_paths = 12345678901;
-  d.learn_lights = true;
   d.view = "tempolux view 1.0\n1 2 3 4 5\n";
   d.looked = {0, 5};
   d.reasons = {{"photonmap-split", "a test"}};

@@ -54,8 +54,8 @@ Told tell(const RenderScene& scene, const CameraView& view, Layer layer, const P
     options.seed = seed;
     for (int y = 0; y < view.height(); ++y)
       for (int x = 0; x < view.width(); ++x) {
-        const PixelSum of =
-            sample_pixel(scene, view, options, std::size_t(y * view.width() + x), x, y, {}, count, nullptr, rays);
+        const PixelPass pass{std::size_t(y * view.width() + x), x, y, {}, count};
+        const PixelSum of = sample_pixel({scene, view, options}, pass, nullptr, rays);
         all += of.own[layer].g / count.own + of.lit[layer].g / count.lit + of.onward[layer].g / count.onward;
       }
     sum += all;

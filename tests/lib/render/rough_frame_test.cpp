@@ -38,7 +38,6 @@ TEST(RoughFrame, OfAClosedRoom) {
   test::HandMadeScene scene;
   const RoughFrame rough = rough_of(room(scene));
   EXPECT_GT(rough.places, 2000);
-  EXPECT_EQ(rough.open_share, 0);
   EXPECT_GT(rough.path.work, 2 * Work::kRay);
   EXPECT_LT(rough.gather.work, rough.path.work);
   EXPECT_LT(rough.record_sample - Work::kRecordLookUp, rough.path.work) << "no ray after the first onward";
