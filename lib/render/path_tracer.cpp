@@ -101,8 +101,8 @@ void LightAdder::add(const LightSample& light, bool behind, float share, Layers&
   result[path.after(false).layer()] += arriving * glossy;
 }
 
-/// What a path remembers of its last event D (a Lambert lobe or a collision in a medium): which light was added there
-/// already, and how far its rays have spread since.
+/// What a path stores about its last event D (a Lambert lobe or a collision in a medium): the light that was added
+/// there already, and how far its rays have spread since.
 struct SinceDiffuse {
   bool matte = false;           ///< there was an event D
   bool caustic_known = false;   ///< light that arrives there by events S was added
@@ -110,7 +110,7 @@ struct SinceDiffuse {
   bool specular = false;        ///< the path has had events S since
   /// Bright points were sampled explicitly there: a Lambert lobe that the path meets contributes only the rest.
   bool bright_sampled = false;
-  /// m: the distance from a Lambert lobe at which rays would have spread as far. Equal to the path's length since the
+  /// m: a ray from a Lambert lobe would have spread as far after this distance. Equal to the path's length since the
   /// last event D; 0 if the path has met only smooth mirrors and glass.
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
@@ -356,7 +356,7 @@ KnownHere EyeTracer::add_known_light(const ShadingPoint& x, Vec3 smooth, const W
   const Rgb reflected = walk.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.remaining_share);
   // The layer indirect, or the layer of the surface that the path has seen before.
   const Layer layer = path.after(true).after(true).layer();
-  // With bright points, a point's irradiance stands for the remaining light only. A glossy ray has not sampled bright
+  // With bright points, a point's irradiance represents only the remaining light. A glossy ray has not sampled bright
   // points, so the path continues.
   if (since.matte || (since.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::PointLight> stored =

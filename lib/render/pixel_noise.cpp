@@ -92,10 +92,10 @@ void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) co
     }
 }
 
-/// Variance of light that has edges: the variance of the neighbours' samples, and a share of the variance between
-/// neighbours above what their samples explain. If neighbours agree in themselves but differ from each other, an edge
-/// may run through this pixel alone, such as the rim of a lamp that just reaches into a row of dark pixels, and the
-/// pixel's first samples may miss the bright part or find too much of it.
+/// Variance of light that has edges: the variance of the neighbours' samples, plus a share of the variance between
+/// neighbours that their samples do not explain. If each neighbour's samples agree but neighbours differ, an edge may
+/// run through this pixel alone: for example the rim of a lamp that just reaches into a row of dark pixels. The
+/// pixel's first samples may then miss the bright part or overestimate it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_neighbour(x, y, kNearSharp, [&](const Pixel& pixel, int, int) {
