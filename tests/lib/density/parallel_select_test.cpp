@@ -28,8 +28,8 @@ TEST(ParallelPartition, PutsInFrontWhatIsBelow) {
       }
 }
 
-/// Large enough that samples are taken; shuffled, in order, backwards, and with a sample that tells lies: all it meets
-/// are the smallest values, so that what is sought lies far outside of it.
+/// Large enough that samples are taken: shuffled, ascending, descending, and with a misleading sample. The misleading
+/// sample holds the smallest values only, so the wanted value lies far outside of it.
 TEST(ParallelNthElement, IsTheNth) {
   constexpr std::size_t kCount = 400000;
   std::vector<std::uint32_t> up(kCount), down, lies(kCount);

@@ -173,8 +173,9 @@ TEST(PhotonIndex, IsExactAlongAPathOfQueriesThroughManyPhotons) {
 }
 
 TEST(PhotonIndex, ManyCoincidentPhotonsDoNotMakeASearchLong) {
-  // 400 000 photons in one point against 400: the same search but for the tree's depth. A search that cannot
-  // leave out equal distances reads them all and takes hundreds of times as long. Best of five, for quiet.
+  // 400 000 photons at one point against 400: the same search except for the tree's depth. A search that cannot skip
+  // equal distances reads all photons and takes hundreds of times as long. The best of five runs, because the machine
+  // may be busy.
   const PhotonIndex few(photons_of(Shape::coincident, 400)), many(photons_of(Shape::coincident, 400000));
   NeighbourList list;
   const auto seconds = [&](const PhotonIndex& index) {

@@ -49,8 +49,8 @@ TEST(PixelSurfaces, ObjectsAndNormalsSeparate) {
   EXPECT_TRUE(surfaces.same(0, 1, 1));
 }
 
-/// Nothing but colour: all is one surface. Depth 0, infinite, negative, not a number: no number comes out of it that is
-/// not one.
+/// A picture that has only colour is one surface. Depths of 0, infinity, NaN or below 0 lead to no result that is not
+/// a finite number.
 TEST(PixelSurfaces, WhatIsNotKnownAgrees) {
   const PixelSurfaces none(Image{4, 4, {}, {}, {}, {}});
   for (const std::uint8_t edge : none.edges()) EXPECT_EQ(edge, 0);

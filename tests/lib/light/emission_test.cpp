@@ -88,7 +88,8 @@ TEST(Emission, ProbabilitiesFollowTheLuminanceOfTheFlux) {
   EXPECT_NEAR(table.probability[0] + table.probability[1], 1, 1e-15);
 }
 
-// One by one or many at once, of a lamp with two sides, one with one and a point light; dark lights never.
+// Slots drawn one by one or many at once, for a lamp with two sides, a lamp with one side and a point light. Dark
+// lights are never drawn.
 TEST(Emission, SlotsAreChosenByTheirPartOfTheUnitInterval) {
   LightScene scene;
   scene.add(square_facing_down({0, 0, 1}, 1), Rgb(0.0f));
@@ -203,7 +204,7 @@ TEST(Emission, DirectionalLightsStartOnADiscOutsideTheScene) {
   EXPECT_NEAR(square, 24, 0.05);
 }
 
-// Three frames: a lamp dims to nothing, another shrinks to nothing. Slots and probabilities stay, weights
+// In three frames one lamp dims to nothing and another shrinks to nothing. Slots and probabilities stay, and weights
 // change.
 TEST(Emission, TableIsFrozenOverTheSegment) {
   std::vector<LightScene> scenes(3);

@@ -23,9 +23,9 @@ Albedo entry(int row, double position, const GaussLegendre& rule) {
   return {e.total, (1 - std::pow(e.b / e.total, 0.2)) / (mu + alpha)};
 }
 
-/// What the table holds. The fifth root bends sharply next to normal incidence, where b is below 1e-5 and m
-/// of no weight: m of the last column is such that the cubic is exact at cos = 0.5, or in the middle of the
-/// last interval if that is nearer to the end.
+/// The value of a table node. The fifth power bends sharply close to normal incidence, where b is below 1e-5 and m
+/// has no weight: the m of the last column is chosen so that the cubic is exact at cos = 0.5, or in the middle of the
+/// last interval if that is closer to the end.
 Albedo node(int row, int column, const GaussLegendre& rule) {
   Albedo e = entry(row, double(column) / (kColumns - 1), rule);
   if (column < kColumns - 1) return e;

@@ -426,8 +426,8 @@ TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
     EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
-/// Bytes count 255ths, float colours stay what they are, RGB has alpha 1; the material is told that it varies, no other
-/// is.
+/// Bytes count 255ths, float colours keep their values, and RGB has alpha 1. Only the material of these vertices is
+/// marked as varying.
 TEST(GltfLoad, ColoursOfVertices) {
   GltfMaker maker;
   for (int i = 0; i < 4; ++i) maker.add_material(Json::object());

@@ -217,8 +217,8 @@ TEST(Tracer, ARoomIsClosedAtEveryScale) {
   }
 }
 
-/// Rays aimed at the very edges of a long room, and what leaves the points they meet: rounding must not put such
-/// a point behind the neighbouring wall, from where the next ray would find the way out.
+/// Rays aimed exactly at the edges of a long room, and rays that leave the points they meet. Rounding must not put
+/// such a point behind the neighbouring wall, from where the next ray would leave the room.
 TEST(Tracer, WhatLeavesAnEdgeStaysInTheRoom) {
   HandMadeScene scene;
   scene.add_room({-5, -0.5f, -0.5f}, {5, 0.5f, 0.5f}, matte(Rgb(0.5f)));
@@ -260,7 +260,7 @@ TEST(Tracer, AShadowRayIsFreeBetweenTwoWallsAndBlockedByAThird) {
   EXPECT_TRUE(tracer.occluded(spawn_shadow_ray(tracer.surface_point(hit), {0.2f, 1, 0.1f}, 1e-6f)));
 }
 
-/// A room of many triangles, as one surface and as an instance of the same primitive with the same transform.
+/// A room of many triangles twice: as one surface, and as an instance of the same primitive with the same transform.
 struct TwoRooms {
   static constexpr std::uint32_t kCells = 24;
   Primitive primitive;

@@ -36,8 +36,8 @@ Affine scaled(double s, Vec3d t = {}) {
   return a;
 }
 
-/// A cube of n blocks, density 1, `edge` m from its first to its last voxel's border; along an axis its depth is edge x
-/// sigma_t: the ramps at both ends, a voxel long, hold half a voxel each.
+/// A cube of n blocks of density 1, `edge` m from the border of its first voxel to that of its last. Its depth along
+/// an axis is edge x sigma_t: the ramps at both ends, each a voxel long, hold half a voxel each.
 Media cube(int n, double edge, MediumOptions options) {
   const double voxel = edge / (8 * n);
   std::vector<Medium> media;
@@ -98,7 +98,7 @@ TEST(VoxelGrid, RefusesWhatIsNoDensity) {
 }
 
 TEST(Medium, OpticalDepthIsExact) {
-  // sigma = z / 10 between the voxels, so a way along z from 2.3 to 9.1 holds (9.1^2 - 2.3^2) / 20.
+  // sigma = z / 10 between the voxels, so a path along z from 2.3 to 9.1 has the depth (9.1^2 - 2.3^2) / 20.
   std::vector<Medium> media;
   media.emplace_back(grid_of(2, [](int, int, int z) { return 0.1f * float(z); }), scaled(1), MediumOptions{});
   const Media linear(std::move(media));
