@@ -194,11 +194,11 @@ void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
       wish.split == "auto" ? pilot.split() : SplitChoice{wish.split == "on", "--split " + wish.split};
   if (wish.split == "on" && wish.moving == "records")
     throw InputError(
-        "--split on with --moving records: records that follow from those of what stands know no bright points; use "
+        "--split on with --moving records: records that follow from static records have no bright points; use "
         "--moving time or anew");
   d.split = choice.split && d.moving != MovingMethod::records;
   d.reasons.push_back(
-      {"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
+      {"photonmap-split", choice.split && !d.split ? "records follow from static records" : choice.because});
 }
 
 /// Number of pictures that share records. Joint records must cost at most twice one picture's own records, so that a

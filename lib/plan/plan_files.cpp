@@ -174,7 +174,7 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
 }
 
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
-  std::string text = "# Written by scene-plan; formats/plan/plan.md says what stands here.\n";
+  std::string text = "# Written by scene-plan; format: formats/plan/plan.md.\n";
   std::string passing;
   std::string kept;  // stats of records kept over time, for the report
   for (const GraphFile& file : graph.files) {
