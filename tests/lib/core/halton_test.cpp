@@ -47,8 +47,8 @@ TEST(RadicalInverse, NeverReachesOneAtTheWorstIndices) {
   }
 }
 
-/// docs/methods/formulas.md, photon groups: indices equal modulo N_g fall into one box of volume 1/N_g, the N_g
-/// residues into N_g boxes.
+/// docs/methods/formulas.md, photon groups: indices that are equal modulo N_g fall into one box of volume 1/N_g, and
+/// the N_g residues into N_g different boxes.
 TEST(PhotonHalton, EachGroupHasABoxOfItsOwn) {
   const PhotonHalton halton(42);
   constexpr std::uint64_t kGroups = 630;  // 2 3^2 5 7

@@ -14,7 +14,7 @@ std::vector<std::uint32_t> shuffled(std::size_t count) {
   return values;
 }
 
-/// Chunks from one value to all of them; borders at nothing, in the middle, at all.
+/// Chunks from one value to all values; the border at the start, in the middle and at the end.
 TEST(ParallelPartition, PutsInFrontWhatIsBelow) {
   for (const std::size_t count : {0, 1, 2, 7, 1000, 4099})
     for (const std::size_t chunk : {1, 3, 64, 5000})

@@ -202,7 +202,7 @@ TEST(FluxCells, SidesAndObjectsAreCellsOfTheirOwn) {
 }
 
 TEST(FluxCells, ASurfaceAtZeroIsNotDealtOutToTwoCells) {
-  // Heights of a floor at 0 come out as +-1e-8: without the grid's shift they alternate between two cubes.
+  // Heights of a floor at 0 are +-1e-8. Without the grid's shift photons would alternate between two cubes.
   FluxCells cells(1, 0);
   for (int i = 0; i < 400; ++i)
     cells.add({{float(i % 20) * 0.01f, float(i / 20) * 0.01f, i % 2 ? 1e-8f : -1e-8f}, kUp, 1}, {1, 1, 1});
@@ -246,8 +246,8 @@ TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
   EXPECT_FALSE(parts.high.photons.empty());
 }
 
-// Some photons are in one part alone: without flux in the low one, by a limit of 0 in the high one. Directions stay
-// with their photons.
+// Some photons are in one part only: photons without flux in the low part, all photons in the high part if the limit
+// is 0. Directions stay with their photons.
 TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   PhotonBlock block = floor_with_spot(3000, 6000, 6);
   for (std::size_t i = 0; i < block.photons.size(); ++i) block.directions.push_back({std::uint16_t(i), 7});

@@ -85,7 +85,7 @@ void expect_brute_force(Vec3 centre, float far) {
       ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
     const float tolerance = lost / std::max(1e-4f, r.radius);
     if (tolerance > 0.1f || std::min(found.weight, wanted.weight) < 10 * tolerance) continue;
-    // 1 - cosine is exact to 6e-8 only: sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
+    // 1 - cosine has an error of 6e-8, which is sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
     const float angle = 1e-3f * float(wanted.count);
     ASSERT_NEAR(found.weight, wanted.weight, 4 * tolerance + angle) << i;
     for (int c = 0; c < 3; ++c)

@@ -78,7 +78,8 @@ TEST(Emission, MeanFluxIsTheTotal) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kCount, total[c], 1e-3 * total[c]);
 }
 
-// A blue lamp of luminance 7 % gets at least 5 % of its largest channel; probabilities sum to one.
+// The probability of a lamp is proportional to the luminance of its flux, but at least to 5 % of its largest channel.
+// A blue lamp has 7 % of the luminance of a white one. Probabilities sum to one.
 TEST(Emission, ProbabilitiesFollowTheLuminanceOfTheFlux) {
   LightScene scene;
   scene.add(PunctualLight::Kind::point, Rgb(1.0f), {}, {0, 0, -1});
@@ -125,7 +126,8 @@ TEST(Emission, SlotsAreChosenByTheirPartOfTheUnitInterval) {
   }
 }
 
-// Triangle: centroid of the square, mean cosine 2/3 of a Lambert emitter, both sides by halves.
+// Photons of the square start in the mean at its centroid and have the mean cosine 2/3 of a Lambert emitter. If the
+// square has two sides, each emits half of them.
 TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
   for (const bool two_sided : {false, true}) {
     LightScene scene;

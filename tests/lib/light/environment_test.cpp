@@ -31,7 +31,7 @@ Paint one_bright(int bx, int by) {
   return [=](int x, int y) { return Rgb(x == bx && y == by ? 1.0f : 0.0f); };
 }
 
-/// Blobs, black parts and a sun of 10^4.
+/// A sky with blobs, black parts and a sun of 10^4.
 Rgb sky(int x, int y) {
   if (y > 9) return Rgb(0.0f);
   if (x == 5 && y == 3) return Rgb(1e4f, 8e3f, 6e3f);
@@ -63,7 +63,7 @@ TEST(EnvironmentAxes, TheMiddleIsPlusZItsLeftIsPlusXTheTopIsPlusY) {
     const Environment map = painted(64, 32, one_bright(x, y));
     EXPECT_NEAR(EnvironmentLight(map).radiance(axis).g, 0.25, 1e-5) << x << ' ' << y;  // of four pixels around it
   }
-  // Which side is left: column 30 is at longitude +1.5 pixels, towards +X.
+  // Column 30 lies at longitude +1.5 pixels, towards +X: this decides which side is left.
   const double off = 1.5 * 2 * kPiD / 64, low = 0.5 * kPiD / 32;
   const Environment left = painted(64, 32, one_bright(30, 15));
   const Vec3 towards(Vec3d{std::sin(off) * std::cos(low), std::sin(low), std::cos(off) * std::cos(low)});
@@ -98,7 +98,7 @@ TEST(EnvironmentIntegral, IsFourPiForOneEverywhereAndTheHatOfAPixel) {
     const Environment white = painted(w, h, [](int, int) { return Rgb(1.0f); });
     EXPECT_NEAR(EnvironmentLight(white).integral().g, 4 * kPiD, 1e-12) << w << 'x' << h;
   }
-  // One pixel at polar angle t away from the poles: 2 pi / w times int hat sin = sin t (2 - 2 cos D) / D, D = pi / h.
+  // One pixel at polar angle t, not at a pole: 2 pi / w times int hat sin = sin t (2 - 2 cos D) / D, D = pi / h.
   const Environment map = painted(64, 32, one_bright(9, 12));
   const double d = kPiD / 32, t = 12.5 * d;
   EXPECT_NEAR(EnvironmentLight(map).integral().g, 2 * kPiD / 64 * std::sin(t) * (2 - 2 * std::cos(d)) / d, 1e-12);
@@ -132,7 +132,7 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
       }
       area += 1 / s.pdf_solid_angle;
     }
-    // L / pdf is constant but for the sine within a cell (12 rows: +-2 %), so Halton points leave 1e-4 of the sum.
+    // L / pdf is constant except for the sine within a cell (12 rows: +-2 %), so Halton points leave 1e-4 of the sum.
     EXPECT_NEAR(sum / kCount, luminance(light.integral()), 3e-4 * luminance(light.integral())) << m;
     // The estimate of the area depends on samples where L is small. With a sun, which takes nearly all samples, too
     // few remain.

@@ -18,8 +18,8 @@ namespace {
 
 constexpr Vec3 kUp{0, 0, 1};
 
-/// Irradiance at the point by `count` samples. In `relative_error`, sigma of the mean for random numbers; the
-/// Sobol points do better.
+/// Irradiance at the point by `count` samples. `relative_error` receives sigma of the mean for random numbers; Sobol
+/// points have less.
 Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double* sigma = nullptr) {
   Rgbd sum;
   double squares = 0;
@@ -37,8 +37,8 @@ Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double
   return mean;
 }
 
-// Height and side from a lamp far above to one that fills half the sky; the tolerance is 4 sigma plus the
-// single precision of the positions.
+// Heights and sizes from a lamp far above to a lamp that fills half the sky. The tolerance is 4 sigma plus the single
+// precision of the positions.
 TEST(AreaLight, GivesLambertsIrradianceAtAnyDistance) {
   for (const auto& [height, half] :
        {std::pair{100.0f, 0.5f}, {5.0f, 0.5f}, {1.0f, 0.5f}, {0.2f, 0.5f}, {0.01f, 0.5f}, {2.0f, 30.0f}}) {
@@ -92,7 +92,7 @@ TEST(AreaLight, MirroredSurfacesShineFromTheOtherWinding) {
   EXPECT_GT(irradiance(lights, {0, 0, 2}, -kUp, 64).r, 0.1);
 }
 
-// A needle that fills 0.1 sr: where single precision would lose the sampled direction.
+// A needle that fills 0.1 sr, for which single precision could lose the sampled direction.
 TEST(AreaLight, NeedlesAreSampledUniformly) {
   const std::vector<Vec3> corners{{-20, -0.05f, 1}, {-20, 0.05f, 1}, {20, 0, 1}};
   LightScene scene;

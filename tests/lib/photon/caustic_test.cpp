@@ -75,7 +75,8 @@ TEST(Caustics, SlabPassesWhatFresnelSays) {
       expected += 2 * M_PI * (1 - f) * (1 - f) * a / (1 - f * f * a * a) * 0.975 / kSteps;
     }
     const Stored stored = trace(scene, 400000, floor);
-    // 200000 photons that arrive or not: 0.2 %; what goes around the rim (direct) is not counted. 1 %.
+    // 200000 photons either arrive or not: .2 % of noise. Light that passes the rim (direct) is not counted. The band
+    // is 1 %.
     EXPECT_NEAR(stored.caustic / expected, 1, 0.01) << color;
     EXPECT_EQ(stored.indirect, 0);
     EXPECT_NEAR(stored.gone, stored.emitted, 1e-6 * stored.emitted);

@@ -1,4 +1,5 @@
-// The camera of scenes without one: all corners are in the picture, grounds and strays are not what it looks at.
+// The camera of scenes without one: the picture shows all corners, but grounds and distant small parts do not
+// determine the view.
 #include "lib/scene/content_camera.h"
 
 #include <cmath>

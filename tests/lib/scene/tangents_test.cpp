@@ -51,8 +51,8 @@ float worst(const Primitive& p, const std::function<Vec3(Vec3)>& expected, const
 }
 
 // A cylinder of 24 flat strips, u around, y up. Within a strip the direction of u differs by 7.5 degrees from the
-// circle's tangent; projected onto the tangent plane it equals this tangent. At the seam u jumps from 1 to 0. There
-// each of two vertices belongs to one strip, and both have the same tangent.
+// circle's tangent; projected onto the tangent plane it equals this tangent. At the seam u jumps from 1 to 0, so the
+// seam has two vertices at each place, one for each strip, with equal tangents.
 TEST(Tangents, FollowACylinder) {
   const auto around = [](float u, float v) { return Vec3{std::cos(2 * kPi * u), 1 - v, -std::sin(2 * kPi * u)}; };
   const auto outwards = [](float u, float) { return Vec3{std::cos(2 * kPi * u), 0, -std::sin(2 * kPi * u)}; };

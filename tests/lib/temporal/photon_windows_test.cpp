@@ -1,5 +1,5 @@
-// Windows of photons over time: how often stationary light closes them, what changing light makes of them, what they
-// hold.
+// Windows of photons over time: how often constant light closes them, their length in changing light, and their
+// content.
 #include "lib/temporal/photon_windows.h"
 
 #include <gtest/gtest.h>

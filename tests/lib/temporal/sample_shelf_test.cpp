@@ -1,4 +1,4 @@
-// Samples in a file: places, and what goes wrong.
+// Samples in a file: their places, and errors of the file.
 #include "lib/temporal/sample_shelf.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Kept hemispheres over time: what must follow, what must stay, and that nothing is lost on the way.
+// Kept hemispheres over time: they follow changes of light and surfaces, stay the same otherwise, and lose no light.
 #include "lib/temporal/temporal_gather.h"
 
 #include <gtest/gtest.h>

@@ -184,8 +184,8 @@ TEST(Tracer, RaysThatAreNotFiniteAreMissesAndCounted) {
   EXPECT_EQ(tracer.refused_ray_count(), 2 * std::size(bad));
 }
 
-/// At every scale and offset a ray that leaves a wall of a closed room meets another wall, never its own
-/// and never nothing: no self hits, no leaks at edges.
+/// At every scale and offset, a ray that leaves a wall of a closed room meets another wall, and never its own wall or
+/// none: no self hits, no leaks at edges.
 TEST(Tracer, ARoomIsClosedAtEveryScale) {
   for (float scale : {1e-4f, 1.0f, 1e6f}) {
     HandMadeScene scene;
@@ -323,7 +323,7 @@ TEST(Tracer, AnInstanceIsTheSameSurfaceAsACopy) {
       ASSERT_TRUE(copy.intersect(ray, a) && instance.intersect(ray, b));
       EXPECT_TRUE(instance.occluded(ray));
       const SurfacePoint p = copy.surface_point(a), q = instance.surface_point(b), r = instance.surface_point(a);
-      // the same hit is the same point to the last bit; a hit found in the instance's space is off by some ulp
+      // the same hit gives the same point to the last bit; a hit found in the instance's space differs by a few ulp
       EXPECT_TRUE(p.position == r.position && p.normal == r.normal && p.normal_geometric == r.normal_geometric);
       differing += a.triangle != b.triangle;
       if (a.triangle == b.triangle) {

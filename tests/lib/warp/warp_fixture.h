@@ -67,7 +67,7 @@ inline Image painted(const View& view, const Paint& paint) {
   return image;
 }
 
-/// A target warped from keys, all in one place that outlives the result.
+/// A target warped from keys; owns everything that the result refers to.
 struct Warped {
   std::vector<std::unique_ptr<KeyFrame>> keys;
   std::vector<std::unique_ptr<ObjectMotions>> motions;

@@ -148,8 +148,9 @@ TEST(Warp, NoGhostsWhereDepthsDisagree) {
   EXPECT_LT(left_over, (occluded + outside) / 10);
 }
 
-/// An edge pixel is composed of the shares of its surfaces: blue, the object's number, averaged over 64 x 64 positions
-/// in the pixel. Eight positions, each row and column once, miss a straight edge's share by 1/8 at most.
+/// An edge pixel is composed from the shares of its surfaces: blue, the object's number, is averaged over 64 x 64
+/// positions in the pixel. With eight positions, one in each row and column, the share of a straight edge has an
+/// error of at most 1/8.
 TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
   const Cornell room;
   const View key_view(room, camera_at({0.02, 1, 1.9})), view(room, kMiddle);
@@ -216,7 +217,7 @@ TEST(Warp, EdgesOfBrightThingsAreKnownFinely) {
   EXPECT_GT(believed, 20);
 }
 
-/// A rigid object takes its colours along: painted in its own space, it looks the same wherever it is.
+/// A rigid object that is painted in its own space looks the same wherever it moves.
 TEST(Warp, AMovingObjectIsFollowed) {
   const Cornell before(8), now(14);
   const View a(before, kMiddle), view(now, kMiddle);
@@ -300,7 +301,7 @@ TEST(Warp, SpecularLightThatMattersIsMasked) {
   EXPECT_EQ(masked(0.005f, 0.018f, false), 0);  // below a fiftieth of the light
 }
 
-/// All layers are there: their sum is RGB to the bit, after warping too.
+/// The frame has all layers, and their sum is RGB to the bit, also after warping.
 TEST(Warp, LayersStillAddUp) {
   const Cornell room;
   const View view(room, kMiddle), a(room, camera_at({0.03, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
