@@ -126,11 +126,11 @@ struct PixelNoise::Around {
   }
 };
 
-/// Decides on each part separately. Light sampling: from the difference of pixels' halves, which includes the gain by
-/// stratification; with single samples from the variance between pixels. Rays onward: from the variance of samples,
-/// because few of them meet bright things. Each variance is the mean of the variance of close pixels and that of
-/// farther pixels: if one sample in 12 finds a window, all 96 samples of the close pixels miss the window in one place
-/// of 4000, and that place would stay dark.
+/// Decides on each part separately. The variance of light sampling comes from the difference of the pixels' halves,
+/// which includes the gain by stratification; with single samples it is the variance between pixels. The variance of
+/// rays onward is that of single samples, because few of them meet bright surfaces. Each is the mean of the variance
+/// of close pixels and that of farther pixels: if one sample in 12 finds a window, all 96 samples of the close pixels
+/// miss the window in one place of 4000, and that place would stay dark.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   Around near, wide;

@@ -288,11 +288,11 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
 }
 
 /// A black plate of half-width 0.5 at 0.01 above a wide floor. The points of the floor, 0.25 apart, hold an indirect
-/// light of 1 under the plate and 0 elsewhere, as below a lamp that hangs close to a ceiling. A place 1 above sees only
-/// dark floor: 0. If points were read where their light changes, light would come from 0.12 around the plate, from the
-/// share share(0.62) - share(0.5) = 0.10 of the hemisphere. A place between plate and floor sees only lit floor:
-/// exactly rho, except for 0.04 % of the rays, which leave the gap at 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or are traced on
-/// close to there.
+/// light of 1 under the plate and 0 elsewhere, as below a lamp that hangs close to a ceiling. A place 1 above sees
+/// only dark floor: 0. If points were read where their light changes, light would come from 0.12 around the plate,
+/// from the share share(0.62) - share(0.5) = 0.10 of the hemisphere. A place between plate and floor sees only lit
+/// floor and gets exactly rho, except by 0.04 % of the rays. These leave the gap at 0.5 (sin^2 > 1 - (0.01 / 0.5)^2),
+/// or hit the floor close to 0.5 and continue.
 TEST(FinalGather, LightInAGapStaysThere) {
   constexpr float gap = 0.01f, half = 0.5f, wide = 5, step = 0.25f, rho = 0.5f;
   HandMadeScene scene;
