@@ -29,12 +29,12 @@ class KnownLight {
   /// contribute the remaining light.
   const BrightPoints* bright = nullptr;
   int bright_samples = 0;  ///< explicit samples at the first such place of a camera path; later places take one each
-  /// True if a ray can meet a light: there is an environment or an emitting surface. If none can, and indirect and
-  /// caustic light are known at a place, no ray is sent from its Lambert lobe, because it would find nothing.
+  /// Can a ray meet a light, that is, is there an environment or an emitting surface? If not, and indirect and caustic
+  /// light are known at a place, no ray is sent from its Lambert lobe: the ray would find nothing.
   bool lights_are_met = true;
-  /// True if camera paths fork at the first surface with a Lambert lobe and a glossy lobe, to follow both. The glossy
-  /// lobe usually reflects 4 %: without a fork one path in 25 follows it, and a bright hit of this path is an
-  /// outlier. If no light is known, both branches are whole paths, and a fork costs as much as it gains.
+  /// Do camera paths fork at the first surface with a Lambert lobe and a glossy lobe, to follow both? The glossy lobe
+  /// usually reflects 4 %: without a fork one path in 25 follows it, and a bright hit of this path makes a dot. If no
+  /// light is known, both branches are whole paths, and a fork costs as much as it gains.
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 
   /// Indirect irradiance [W/m^2] at the first Lambert lobe of a camera path. Both normals are unit vectors on the

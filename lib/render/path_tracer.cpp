@@ -101,8 +101,8 @@ void LightAdder::add(const LightSample& light, bool behind, float share, Layers&
   result[path.after(false).layer()] += arriving * glossy;
 }
 
-/// What a path stores about its last event D (a Lambert lobe or a collision in a medium): the light that was added
-/// there already, and how far its rays have spread since.
+/// What a path remembers of its last event D (a Lambert lobe or a collision in a medium): which light was added there
+/// already, and how far its rays have spread since.
 struct SinceDiffuse {
   bool matte = false;           ///< there was an event D
   bool caustic_known = false;   ///< light that arrives there by events S was added

@@ -30,8 +30,8 @@ tool photon-trace "$work/walk.glb" --frame 2 --photons 20k --kinds indirect -o "
 "$bin/tempolux-info" --diff "$work/0.photons" "$work/2.photons" > /dev/null || bad 'only the camera moves: other photons'
 tool irradcache-build points "$work/walk.glb" --photons "$work/0.photons" --point-count 2k -o "$work/0.irradpoints"
 
-# Records for the camera's second position: the records of the first stay, and a few are added for new parts of the
-# picture. The camera moves by 1 cm in 5.5 m, at most a pixel of 160: below 5 % new records.
+# Records of the other place of the camera: those of the first stay, a few are added where something new is seen. The camera
+# moves by 1 cm in 5.5 m, a pixel of 160 at most: below 5 %.
 tool irradcache-build records "$work/walk.glb" --points "$work/0.irradpoints" --rays 50 --size 160x90 -o "$work/0.irradcache" \
   --stats "$work/0.json" --depfile "$work/0.d"
 grep -q '\.photons' "$work/0.d" && bad 'records from points: photons were read'

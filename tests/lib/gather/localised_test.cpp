@@ -161,7 +161,7 @@ TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
       const Vec2 u = random.get2(i, Purpose::scatter), v = random.get2(i, Purpose::lobe);
       const Vec3 at{20 * u.x, 0, 20 * u.y}, normal = normalize(Vec3{v.x - 0.5f, 1, v.y - 0.5f});
       const float share = field.gathered_share(at, normal);
-      // A weighted mean of ratios at the threshold may be rounded to 1e-7 above it: t^2 = 1e-11.
+      // A mean of ratios at the threshold may round to above it, by 1e-7: t^2 = 1e-11.
       ASSERT_NEAR(share, field.thresholds().gathered_share(field.at(at, normal)), 1e-9f);
       ++(share == 0 ? none : share == 1 ? all : some);
     }

@@ -252,8 +252,7 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
   EXPECT_NEAR(difference / wanted, 1, 0.1);
 }
 
-/// Photons traced with flux -1 through the old smoke cancel exactly the stored photons. Through other smoke they
-/// would not.
+/// Photons of flux -1 through the old smoke cancel exactly the stored ones; through other smoke they would not.
 TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);

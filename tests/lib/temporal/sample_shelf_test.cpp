@@ -1,4 +1,4 @@
-// Samples in a file: their places, and errors of the file.
+// Samples in a file: places, and what goes wrong.
 #include "lib/temporal/sample_shelf.h"
 
 #include <gtest/gtest.h>

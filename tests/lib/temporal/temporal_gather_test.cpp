@@ -451,7 +451,7 @@ void expect_same(const KeptHemispheres& a, const KeptHemispheres& b) {
   }
 }
 
-/// A copy of `kept` on a shelf that holds at most `limit` bytes in memory.
+/// Like kept_in(), with a shelf that holds so many bytes in memory.
 KeptHemispheres on_shelf(const KeptHemispheres& kept, std::uint64_t limit) {
   KeptHemispheres there = kept;
   there.shelf = std::make_shared<SampleShelf>(::testing::TempDir(), limit);
@@ -459,7 +459,7 @@ KeptHemispheres on_shelf(const KeptHemispheres& kept, std::uint64_t limit) {
   return there;
 }
 
-// Hemispheres read from a file are the same, and so are those of the frame that follows.
+// Coming back from a file: the same, and going on from it, too.
 TEST(TemporalGather, AFileHoldsAllThatCounts) {
   Room room(1), brighter(1.3f);
   TemporalCounts counts, a, b;
@@ -472,8 +472,8 @@ TEST(TemporalGather, AFileHoldsAllThatCounts) {
   expect_same(advanced(room, brighter, kept, a), advanced(room, brighter, again, b));
 }
 
-// Results do not depend on whether none, half or all of the samples are in a file. Static records are not read, and
-// places of removed records are used again.
+// Samples in a file, all or half of them, change nothing. What stands is not looked at; of what is given up the places
+// are used again.
 TEST(TemporalGather, SamplesOnDiskAreThoseInMemory) {
   Room room(1), brighter(1.3f), brightest(4);
   TemporalCounts counts;
@@ -494,7 +494,7 @@ TEST(TemporalGather, SamplesOnDiskAreThoseInMemory) {
     EXPECT_EQ(a.scaled, b.scaled);
     EXPECT_EQ(a.ages, b.ages);
     expect_same(advanced(brighter, brightest, next, c),
-                advanced(brighter, brightest, expected, d));  // above 2: cells are marked twice
+                advanced(brighter, brightest, expected, d));  // beyond 2: marks are made twice
     EXPECT_EQ(c.lost, c.cells);
   }
 }
