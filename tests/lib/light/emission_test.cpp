@@ -156,8 +156,8 @@ TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
   }
 }
 
-// With a = 1 - cos i and w = cos i - cos o: the share within the inner cone is a / (a + w / 3), and within
-// the angle where s = 1/2, of a quarter of the intensity, (a + w (1 - 1/8) / 3) / (a + w / 3).
+// Let a = 1 - cos i and w = cos i - cos o. The share of photons within the inner cone is a / (a + w / 3). The share
+// within the angle at which s = 1/2 (a quarter of the intensity) is (a + w (1 - 1/8) / 3) / (a + w / 3).
 TEST(Emission, SpotsEmitByTheirFalloff) {
   LightScene scene;
   const Vec3 axis = normalize(Vec3{1, -2, 0.5f});

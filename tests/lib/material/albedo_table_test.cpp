@@ -1,4 +1,4 @@
-// The table of GGX's albedo against the integrals it stands for; and the generator of the table.
+// The table of GGX's albedo against the integrals that it stores, and the generator of the table.
 #include <gtest/gtest.h>
 
 #include <algorithm>

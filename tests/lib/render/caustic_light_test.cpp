@@ -116,10 +116,10 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
   EXPECT_NEAR(sum / all, 1, 0.02);
 }
 
-/// Irradiance 1 straight down on a floor, by independent photons and by photons as stratified as a plane mirror leaves
-/// Halton's sequence. A density of the k nearest would be too dark by 1 / (2 k) in the second case. 5000 places: some
-/// 20000 x 3/4 / 30 independent values with 21 % noise in the first case, 0.5 % in the mean of four maps; the limit is
-/// 3.5 of these. Stratified photons have a third of the noise.
+/// Irradiance 1 straight down on a floor, by independent photons, and by photons that are as stratified as Halton's
+/// sequence after a plane mirror. A density of the k nearest would be too dark by 1 / (2 k) in the second case. 5000
+/// places have about 20000 x 3/4 / 30 independent values with 21 % noise in the first case, 0.5 % in the mean of four
+/// maps; the limit is 3.5 of these. Stratified photons have a third of the noise.
 TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
   HandMadeScene scene;
   scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));

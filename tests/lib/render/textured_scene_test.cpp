@@ -732,7 +732,7 @@ TEST(TexturedGloss, PhotonsFromAfarMeetWhatIsThere) {
       if (photon.kind == formats::PathKind::caustic) flux.add(kind, double(photon.flux[0]), 1);
   }
   EXPECT_NEAR(flux.mean[0], flux.expected(), 4 * flux.sigma());
-  EXPECT_LT(4 * flux.sigma(), 0.1 * flux.expected());  // else it could not tell
+  EXPECT_LT(4 * flux.sigma(), 0.1 * flux.expected());  // otherwise the test could not distinguish the two
 }
 
 TEST(TexturedGloss, EyePathsFromAfarMeetWhatIsThere) {
