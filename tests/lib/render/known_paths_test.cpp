@@ -132,7 +132,7 @@ TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
   }
 }
 
-/// Where light is known, a path forks at a smooth pane. Before the pane is a screen of radiance 1, behind the camera
+/// Where light is known, a path forks at a smooth pane. Behind the pane is a screen of radiance 1, behind the camera
 /// one of 3, and neither reflects: each single path sees (1 - F) 1 + F 3, at normal incidence 1.08 for index 1.5.
 /// (A path that draws one way sees 1 or 3.)
 TEST(Glass, IsFollowedBothWays) {
