@@ -32,8 +32,9 @@ class KnownLight {
   /// Can a ray meet a light, that is, is there an environment or an emitting surface? If not, and indirect and caustic
   /// light are known at a place, no ray is sent from its Lambert lobe: the ray would find nothing.
   bool lights_are_met = true;
-  /// Do camera paths fork at the first surface with a Lambert lobe and a glossy lobe, to follow both? The glossy lobe
-  /// usually reflects 4 %: without a fork one path in 25 follows it, and a bright hit of this path makes a dot. If no
+  /// Do camera paths fork at the first surface with two lobes (a Lambert lobe under gloss, or the reflection and the
+  /// transmission of smooth glass), to follow both? Gloss and glass usually reflect 4 %: without a fork one path in 25
+  /// follows the reflection. A bright hit of this path makes a bright dot, and before a bright sky a dark one. If no
   /// light is known, both branches are whole paths, and a fork costs as much as it gains.
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 

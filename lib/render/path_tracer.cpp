@@ -23,11 +23,12 @@ struct SampledLobes {
   float remaining_share = 1;  ///< share of the Lambert lobe's light that is to be added (KnownHere)
   bool forks = false;
 
-  /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
-  void fork(float diffuse_probability) {
+  /// probability: Bsdf::fork_probability, in (0, 1). At glass times_diffuse is the reflection's factor and
+  /// times_specular that of the transmission.
+  void fork(float probability) {
     forks = true;
-    times_diffuse = 1 / diffuse_probability;
-    times_specular = 1 / (1 - diffuse_probability);
+    times_diffuse = 1 / probability;
+    times_specular = 1 / (1 - probability);
   }
 };
 
@@ -430,7 +431,7 @@ bool EyeTracer::step(Walk& walk) const {
   SampledLobes lobes{!here.direct, !(walk.since.matte && walk.since.caustic_known)};
   lobes.remaining_share = here.remaining_share;
   if (known_ && known_->forks() && !walk.forked && walk.path.sharp() && x.bsdf.forks())
-    lobes.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+    lobes.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   add_light(x, lobes, walk.path.sharp() && x.bsdf.has_diffuse(), walk);
   return !(here.direct && !x.bsdf.has_specular()) && leave({x, material, here}, lobes, walk);
 }
