@@ -19,6 +19,11 @@
 
 namespace tempolux::formats {
 
+/// Columns beside those of the kinds, as bits of IrradpointsHeader::columns.
+enum IrradpointsColumns : std::uint32_t {
+  column_points_noise = 1,  ///< IrradiancePointRecord::noise
+};
+
 /// Irradiance at one side of a surface point, by kind of the light that arrives.
 struct IrradiancePointRecord {
   std::array<float, 3> position{};                    ///< m; world space minus the header's origin
@@ -29,10 +34,12 @@ struct IrradiancePointRecord {
   float radius = 0;           ///< m: of the density estimate behind `indirect`; 0: there was none
   /// W/m^2, linear Rec. 709, >= 0; 0 of a kind that the header does not name.
   std::array<float, 3> direct{}, caustic{}, indirect{};
+  /// W/m^2: number with a random sign whose mean square is the variance of caustic + indirect; 0 without its column
+  std::array<float, 3> noise{};
 
   bool operator==(const IrradiancePointRecord&) const = default;
 };
-static_assert(sizeof(IrradiancePointRecord) == 60);
+static_assert(sizeof(IrradiancePointRecord) == 72);
 
 /// What the header says.
 struct IrradpointsHeader {
@@ -44,7 +51,8 @@ struct IrradpointsHeader {
   std::uint64_t emitted_count = 0;  ///< photon paths behind caustic and indirect; 0: none
   /// Kinds that were estimated, in this order; the others are not in the file.
   std::string kinds = "direct,caustic,indirect";
-  std::string part;  ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
+  std::uint32_t columns = 0;  ///< IrradpointsColumns
+  std::string part;           ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
 };
 
 /// Closing totals: exact sums over the points of each kind's irradiance [W/m^2], rounded once. Times
@@ -83,7 +91,7 @@ struct IrradpointsFile {
 
 /// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
 /// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known()
-/// is false, and the tool warns. Memory: 60 bytes per point and one block.
+/// is false, and the tool warns. Memory: 72 bytes per point and one block.
 IrradpointsFile load_irradpoints(const std::string& path);
 
 /// Hash of the data without header and history (irradpoints.md, section 7): equal points in equal order have

@@ -14,7 +14,7 @@
 
 namespace tempolux::formats::irradpoints {
 
-inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcache-build points", 1, 1};
+inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcache-build points", 1, 2};
 inline constexpr std::string_view kBlockMark = "IRPT";
 inline constexpr std::size_t kPointSize = 24, kIrradianceSize = 12, kEndBodySize = 80;
 
@@ -33,9 +33,9 @@ inline constexpr std::array<Kind, 3> kKinds{
 /// order.
 unsigned kinds_of(std::string_view list);
 
-/// Bytes of one point in a block with these kinds.
-constexpr std::size_t point_size(unsigned kinds) {
-  return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1));
+/// Bytes of one point in a block with these kinds and columns.
+constexpr std::size_t point_size(unsigned kinds, std::uint32_t columns) {
+  return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1) + columns);
 }
 
 /// The version a file with this header has: the oldest that knows its keys.
@@ -49,7 +49,7 @@ std::string header_text(const IrradpointsHeader& header);
 std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradpointsHeader& header);
 
 /// Why a point is refused (irradpoints.md, section 3); "" if it is good. The predicate of the format.
-std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds);
+std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds, std::uint32_t columns);
 
 /// Counts points and adds their irradiance, kind by kind.
 class PointSums {

@@ -90,8 +90,8 @@ class PhotonTracer {
 
   std::uint64_t photon_count() const { return group_count_ * members_; }
   std::uint32_t group_count() const { return std::uint32_t(group_count_); }
-  /// Batches are in file order: groups ascending, each cut into pieces of kBatch paths. Photons of a batch are sorted
-  /// by waves of kWave paths, in a wave by bounce.
+  /// Batches are in file order: groups ascending, each cut into pieces of kBatch paths. Photons of a path
+  /// follow each other by ascending bounce; with media they are sorted by waves of kWave paths, in a wave by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
   /// The batches [first, last) of a group.
   std::pair<std::size_t, std::size_t> batches_of(std::uint32_t group) const {
