@@ -242,8 +242,10 @@ void choose_points(tools::Tool& tool, const std::string& path, const Options& op
     formats::IrradpointsHeader header = file.header;
     header.history += tool.history_line();
     header.kinds = list;
+    header.columns = 0;  // noise is of caustic and indirect light together
     std::vector<formats::IrradiancePointRecord> points = file.records;
     for (formats::IrradiancePointRecord& point : points) {
+      point.noise = {};
       if (names_in(list, {"direct"}, true).empty()) point.direct = {};
       if (names_in(list, {"caustic"}, true).empty()) point.caustic = {};
       if (names_in(list, {"indirect"}, true).empty()) point.indirect = {};

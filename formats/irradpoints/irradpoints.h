@@ -19,6 +19,11 @@
 
 namespace tempolux::formats {
 
+/// Columns beside those of the kinds, as bits of IrradpointsHeader::columns.
+enum IrradpointsColumns : std::uint32_t {
+  column_points_noise = 1,  ///< IrradiancePointRecord::noise
+};
+
 /// Irradiance on one side of a surface at a point, by kind of light.
 struct IrradiancePointRecord {
   std::array<float, 3> position{};                    ///< m; world space minus the header's origin
@@ -29,10 +34,12 @@ struct IrradiancePointRecord {
   float radius = 0;           ///< m: radius of the density estimate of `indirect`; 0: no estimate was made
   /// W/m^2, linear Rec. 709, >= 0. A kind that the header does not name is 0.
   std::array<float, 3> direct{}, caustic{}, indirect{};
+  /// W/m^2: number with a random sign whose mean square is the variance of caustic + indirect; 0 without its column
+  std::array<float, 3> noise{};
 
   bool operator==(const IrradiancePointRecord&) const = default;
 };
-static_assert(sizeof(IrradiancePointRecord) == 60);
+static_assert(sizeof(IrradiancePointRecord) == 72);
 
 /// The values of the header.
 struct IrradpointsHeader {
@@ -44,6 +51,7 @@ struct IrradpointsHeader {
   std::uint64_t emitted_count = 0;  ///< photon paths from which caustic and indirect were estimated; 0: none
   /// The estimated kinds, in this order; the file has no columns for the others.
   std::string kinds = "direct,caustic,indirect";
+  std::uint32_t columns = 0;  ///< IrradpointsColumns
   std::string part;  ///< "low" or "high": the file holds only this part of the light (photonmap-split); "": all light
 };
 
@@ -83,7 +91,7 @@ struct IrradpointsFile {
 
 /// Reads and checks a file; "-" is standard input. Throws InputError "FILE: byte OFFSET: REASON; REMEDY" for every
 /// truncation, flipped bit and value out of range. An unknown identity is no error: header.identity.known() is then
-/// false, and the tool warns. Memory: 60 bytes per point and one block.
+/// false, and the tool warns. Memory: 72 bytes per point and one block.
 IrradpointsFile load_irradpoints(const std::string& path);
 
 /// Hash of the data without header and history (irradpoints.md, section 7). Equal points in equal order have equal

@@ -14,7 +14,7 @@
 
 namespace tempolux::formats::irradpoints {
 
-inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcache-build points", 1, 1};
+inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcache-build points", 1, 2};
 inline constexpr std::string_view kBlockMark = "IRPT";
 inline constexpr std::size_t kPointSize = 24, kIrradianceSize = 12, kEndBodySize = 80;
 
@@ -33,9 +33,9 @@ inline constexpr std::array<Kind, 3> kKinds{
 /// kinds in this order.
 unsigned kinds_of(std::string_view list);
 
-/// Number of bytes of one point in a block with these kinds.
-constexpr std::size_t point_size(unsigned kinds) {
-  return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1));
+/// Number of bytes of one point in a block with these kinds and columns.
+constexpr std::size_t point_size(unsigned kinds, std::uint32_t columns) {
+  return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1) + columns);
 }
 
 /// The format with the earliest minor version that has all keys of this header.
@@ -50,7 +50,7 @@ std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_
 
 /// The reason for refusing a point (irradpoints.md, section 3); "" if the point is valid. Reader and writer both call
 /// it.
-std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds);
+std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds, std::uint32_t columns);
 
 /// Counts points and sums their irradiance by kind.
 class PointSums {

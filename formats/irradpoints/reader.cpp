@@ -7,9 +7,10 @@ namespace {
 using namespace irradpoints;
 
 /// Parses the points in the body of a block and appends them.
-void append_points(const std::vector<char>& body, unsigned kinds, const ContainerReader& in,
+void append_points(const std::vector<char>& body, const IrradpointsHeader& header, const ContainerReader& in,
                    std::vector<IrradiancePointRecord>& points, PointSums& sums) {
-  const std::size_t count = body.size() / point_size(kinds);
+  const unsigned kinds = kinds_of(header.kinds);
+  const std::size_t count = body.size() / point_size(kinds, header.columns);
   const char* column = body.data() + count * kPointSize;
   const std::size_t first = points.size();
   points.resize(first + count);
@@ -23,8 +24,11 @@ void append_points(const std::vector<char>& body, unsigned kinds, const Containe
       points[first + i].*kKinds[k].irradiance = get<std::array<float, 3>>(column + i * kIrradianceSize);
     column += count * kIrradianceSize;
   }
+  if (header.columns & column_points_noise)
+    for (std::size_t i = 0; i < count; ++i)
+      points[first + i].noise = get<std::array<float, 3>>(column + i * kIrradianceSize);
   for (std::size_t i = 0; i < count; ++i) {
-    if (const std::string_view fault = fault_of(points[first + i], kinds); !fault.empty())
+    if (const std::string_view fault = fault_of(points[first + i], kinds, header.columns); !fault.empty())
       in.bytes().fail(in.body_offset() + i * kPointSize,
                       "point " + std::to_string(i) + " of the block: " + std::string(fault),
                       "correct the program that wrote it");
@@ -55,11 +59,11 @@ IrradpointsFile load_irradpoints(const std::string& path) {
   ContainerReader in(path, kFormat);
   IrradpointsFile file;
   in.expect_good(parse_header_text(in.text(), in.minor(), file.header));
-  const unsigned kinds = kinds_of(file.header.kinds);
-  file.records.reserve(in.bytes().size() / point_size(kinds));
+  const std::size_t size = point_size(kinds_of(file.header.kinds), file.header.columns);
+  file.records.reserve(in.bytes().size() / size);
   PointSums sums;
   std::vector<char> body;
-  while (in.read_records(kBlockMark, point_size(kinds), body)) append_points(body, kinds, in, file.records, sums);
+  while (in.read_records(kBlockMark, size, body)) append_points(body, file.header, in, file.records, sums);
   file.totals = read_totals(in, sums.totals());
   return file;
 }

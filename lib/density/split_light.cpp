@@ -99,6 +99,7 @@ DividedPoints divide(std::span<const IrradiancePointRecord> points, const FluxCe
   for (const IrradiancePointRecord& point : points) {
     const double share = cells.low_share(place_of(point));
     IrradiancePointRecord low = point, high = point;
+    high.noise = {};
     for (const auto kind :
          {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect}) {
       const DividedFlux part = divide_channels(point.*kind, share);

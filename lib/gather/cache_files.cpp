@@ -43,6 +43,7 @@ std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePo
     r.direct = array_of(p.direct);
     r.caustic = array_of(p.caustic);
     r.indirect = array_of(p.indirect);
+    r.noise = array_of(p.noise);
     return r;
   });
 }
@@ -57,6 +58,7 @@ std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointR
     p.direct = rgb_of(r.direct);
     p.caustic = rgb_of(r.caustic);
     p.indirect = rgb_of(r.indirect);
+    p.noise = rgb_of(r.noise);
     return p;
   });
 }

@@ -18,6 +18,7 @@ struct Shots {
   std::vector<std::uint32_t> cells;  ///< cell of each ray
   std::vector<Rgb> radiance;
   std::vector<float> distance;
+  std::vector<RadianceSource> sources;
 
   Shots(const SurfacePoint& from, Vec3 normal, const GatherStrata& strata, std::uint64_t seed)
       : directions(from, normal, strata.rings, strata.sectors, gather_key(from.position, normal, seed)) {}
@@ -39,7 +40,8 @@ struct Shots {
   void shoot(const IncomingRadiance& incoming, GatherCounts& counts) {
     radiance.resize(rays.size());
     distance.resize(rays.size());
-    incoming(rays, keys, radiance, distance, counts);
+    sources.resize(rays.size());
+    incoming(rays, keys, radiance, distance, counts, sources);
   }
 };
 
@@ -91,6 +93,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
                                      float ray_share) const {
   thread_local Hemisphere sky;
   thread_local std::vector<std::uint8_t> further;
+  thread_local std::vector<Rgb> noise;  // by cell, of points
   std::size_t halvings = 0;
   for (; halvings < kFewer && ray_share <= 0.5f; ++halvings) ray_share *= 2;
   const GatherStrata& strata = strata_[kFewer - halvings];
@@ -103,14 +106,18 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   const auto shoot = [&] {
     shots.shoot(incoming_, counts);
     if (coated)
-      for (std::size_t i = 0; i < shots.rays.size(); ++i)
-        shots.radiance[i] *= bsdf.arrival_weight(dot(shots.rays[i].direction, normal));
+      for (std::size_t i = 0; i < shots.rays.size(); ++i) {
+        const float weight = bsdf.arrival_weight(dot(shots.rays[i].direction, normal));
+        shots.radiance[i] *= weight, shots.sources[i].noise *= weight;
+      }
   };
 
   for (const std::uint32_t c : order) shots.aim(c, 0);
   shoot();
+  noise.assign(sky.radiance.size(), Rgb(0.0f));
   for (std::size_t i = 0; i < shots.rays.size(); ++i) {
     sky.radiance[shots.cells[i]] = shots.radiance[i];
+    noise[shots.cells[i]] = shots.sources[i].noise;
     sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);  // 0 if the ray meets nothing
   }
   IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal);
@@ -123,14 +130,16 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     for (std::uint32_t sample = 1; sample <= further[c]; ++sample) shots.aim(c, sample);
   shoot();
   for (std::size_t c = 0; c < further.size(); ++c)
-    if (further[c] > 0) sky.radiance[c] *= 1 / float(1 + further[c]);
+    if (further[c] > 0) sky.radiance[c] *= 1 / float(1 + further[c]), noise[c] *= 1 / float(1 + further[c]);
   for (std::size_t i = 0; i < shots.rays.size(); ++i) {
     const std::uint32_t c = shots.cells[i];
     sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
+    noise[c] += shots.sources[i].noise * (1 / float(1 + further[c]));
   }
   sky.irradiance_and_rotational_gradient(shots.directions.frame(), record);
   const std::uint64_t key = gather_key(from.position, normal, options_.seed);
   record.noise = sky.noise(key);
+  for (const Rgb of_cell : noise) record.points_noise += of_cell * (kPi / float(noise.size()));
   add_explicit(from, key, record, counts);
   return record;
 }

@@ -8,6 +8,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
+#include "lib/density/path_signs.h"
 #include "lib/density/photon_reach.h"
 #include "lib/gather/gather_directions.h"
 #include "lib/material/seen_side.h"
@@ -42,6 +43,7 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
                                    std::uint8_t kinds, Vec3d shift)
     : options_(options), area_(tracer), index_(photons.photons, kinds, shift) {
   if (empty()) return;
+  signs_ = path_signs(photons.photons, index_);
   directed_ = photons.directed();
   if (directed_) arriving_from_.resize(index_.size());
   if (!(options_.max_radius > 0)) options_.max_radius = photon_reach(index_, options.neighbours, kMinCos, kFlattening);
@@ -234,17 +236,26 @@ struct FootprintDensity::Candidate {
   double importance;  ///< >= 0: sum of its channels
 };
 
+struct FootprintDensity::Sums {
+  Rgbd irradiance{0.0}, noise{0.0};  ///< W/m^2
+  void add(const Rgbd& light, int sign) {
+    irradiance += light;
+    noise += light * double(sign);
+  }
+};
+
 /// Light of the candidates that reach a place, estimated from options_.asked of them. They are drawn in proportion to
 /// their importance, equally spaced along its running sum, whose total is `whole`.
-Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
+FootprintDensity::Sums FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates,
+                                                  double whole) const {
   const auto reaches = [&](std::uint32_t photon) {
     return area_.reach()(index_.position(photon), normal_of(photon), position, normal);
   };
-  Rgbd sum{0.0};
+  Sums sums;
   if (options_.asked == 0 || candidates.size() <= std::size_t(options_.asked)) {
     for (const Candidate& c : candidates)
-      if (reaches(c.photon)) sum += c.irradiance;
-    return sum;
+      if (reaches(c.photon)) sums.add(c.irradiance, signs_[c.photon]);
+    return sums;
   }
   const double step = whole / options_.asked;
   double next = step * double(PathRandom(0x61736b6564ull, gather_key(position, normal, 0)).get1(0, Purpose::points)),
@@ -252,21 +263,23 @@ Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Cand
   for (const Candidate& c : candidates) {
     int times = 0;
     for (passed += c.importance; next < passed; next += step) ++times;
-    if (times > 0 && reaches(c.photon)) sum += c.irradiance * (times * step / c.importance);
+    if (times > 0 && reaches(c.photon)) sums.add(c.irradiance * (times * step / c.importance), signs_[c.photon]);
   }
-  return sum;
+  return sums;
 }
 
 /// Properties of the footprints around a place.
 struct FootprintDensity::Extents {
   bool widest = false;  ///< all footprints within the margin have the largest radius
   float inside = 0;     ///< m: largest distance between the place and the border of a footprint that covers it
+  Rgb noise{0.0f};      ///< W/m^2
 };
 
-Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
+Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over, Rgb* noise) const {
   Extents extents;
   const Rgb irradiance = estimate(position, surface, extents);
   smooth_over = extents.widest ? options_.max_radius : 0;
+  if (noise) *noise = extents.noise;
   return irradiance;
 }
 
@@ -285,7 +298,7 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
   extents.widest = find_covering(position, normal, covering) && !covering.empty();
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
-  Rgbd sum{0.0};
+  Sums sums;
   double whole = 0;
   for (const auto [photon, distance2] : covering) {
     const Extent extent = extent_of(photon);
@@ -301,15 +314,19 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
         extent.whole_disc() && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;
     const Rgbd irradiance = Rgbd(index_.flux(photon)) * (weight * double(extent.inverse_area()));
     if (in_plane) {
-      sum += irradiance;
+      sums.add(irradiance, signs_[photon]);
       continue;
     }
     const double importance = std::abs(irradiance.r) + std::abs(irradiance.g) + std::abs(irradiance.b);
     candidates.push_back({photon, irradiance, importance});
     whole += importance;
   }
-  if (!candidates.empty()) sum += of_asked(position, normal, candidates, whole);
-  return Rgb(sum);
+  if (!candidates.empty()) {
+    const Sums asked = of_asked(position, normal, candidates, whole);
+    sums.irradiance += asked.irradiance, sums.noise += asked.noise;
+  }
+  extents.noise = Rgb(sums.noise);
+  return Rgb(sums.irradiance);
 }
 
 }  // namespace tempolux

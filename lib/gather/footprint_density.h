@@ -88,7 +88,8 @@ class FootprintDensity {
   /// Irradiance [W/m^2] at a place on the lit side of a surface. Negative only if photons have negative flux.
   /// `smooth_over` receives max_radius if footprints cover the place and all footprints within `margin` have this
   /// radius, else 0.
-  Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const;
+  /// `noise` receives the same sum with the signs of paths (path_signs.h) [W/m^2].
+  Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over, Rgb* noise = nullptr) const;
   /// The same estimate. `alike_within` [m] receives a distance within which no footprint is narrower than four times
   /// that distance, so that light changes by a few per cent within it; 0 if no footprint covers the place. The radii of
   /// two photons differ by at most their distance, because both reach to a k-th neighbour. So with m = max over
@@ -134,7 +135,8 @@ class FootprintDensity {
   struct Candidate;
   struct Extents;
   Rgb estimate(Vec3 position, const LitSurface& surface, Extents& extents) const;
-  Rgbd of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const;
+  struct Sums;
+  Sums of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const;
   bool find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   bool scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   Extent extent_of(std::uint32_t photon) const;
@@ -148,6 +150,7 @@ class FootprintDensity {
   ReachableArea area_;
   PhotonIndex index_;
   bool directed_ = false;
+  std::vector<std::int8_t> signs_;   ///< in the order of the index
   std::vector<Vec3> arriving_from_;  ///< wi in the order of the index, if directed
   std::unique_ptr<Leaf[]> leaves_;   ///< in the order of the index; unused places hold NaN, which covers nothing
   BoxTree tree_;                     ///< over the boxes of footprints with their margins

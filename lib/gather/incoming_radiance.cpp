@@ -209,8 +209,10 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       ++to.counts.points_read;
       const bool even = lights_.empty() || points_.is_uniform(*point);
       if (source) source->partial |= !even;
-      result = scale * (even ? point->all : beside_edge(met, *point, from.bright_sampled, random, to.counts));
-      if (from.bright_sampled) result *= bright_->remaining_share(*point, met.distance);
+      const float remaining = from.bright_sampled ? bright_->remaining_share(*point, met.distance) : 1.0f;
+      result =
+          scale * (even ? point->all : beside_edge(met, *point, from.bright_sampled, random, to.counts)) * remaining;
+      if (source) source->noise += from.weight * scale * points_.point(*point).noise * remaining;
     } else {
       const Rgb kept =
           scale * (from.bright_sampled && point && !near ? bright_->remaining_share(*point, met.distance) : 1.0f);

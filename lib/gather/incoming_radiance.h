@@ -41,6 +41,7 @@ struct RadianceSource {
   std::uint32_t point = kNone;
   bool partial = false;  ///< the radiance is more than this point's light times a constant
   bool mover = false;    ///< the path meets a surface that moves in the segment
+  Rgb noise{0.0f};       ///< W/m^2/sr: noise that the radiance has from IrradiancePoint::noise
 };
 
 struct MediumPoint;  // lib/transport/media.h

@@ -313,8 +313,10 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
                          ? Rgb(0.0f)
                          : direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
       float unused;
-      point.caustic = caustic.estimate(point.position, scattering.lit(point.normal), unused);
-      point.indirect = indirect.estimate(point, random, point.radius);
+      Rgb of_caustic{0.0f}, of_indirect{0.0f};
+      point.caustic = caustic.estimate(point.position, scattering.lit(point.normal), unused, &of_caustic);
+      point.indirect = indirect.estimate(point, random, point.radius, &of_indirect);
+      point.noise = of_caustic + of_indirect;
     }
   });
 }

@@ -226,7 +226,8 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
     placement.cover(edges, false, look, [](std::size_t, const SeenPoint&) {});
     advance(edges.size() / 4);
   }
-  if (counts.twice_noise > 0) store.scale_noise(before, float(std::sqrt(counts.twice_variance / counts.twice_noise)));
+  store.complete_noise(before,
+                       counts.twice_noise > 0 ? float(std::sqrt(counts.twice_variance / counts.twice_noise)) : 1.0f);
   return store.records().size() - before;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "lib/core/random.h"
 #include "lib/density/photon_index.h"
@@ -41,8 +42,9 @@ class PointDensity {
   PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
-  /// Irradiance [W/m^2], >= 0. `radius` receives the half-axis of the ellipsoid [m], 0 if no photon was found.
-  Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const;
+  /// Irradiance [W/m^2], >= 0. `radius` receives the half-axis of the ellipsoid [m], 0 if no photon was found; `noise`
+  /// the same sum with the signs of paths (path_signs.h) [W/m^2].
+  Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius, Rgb* noise = nullptr) const;
 
  private:
   struct Disc {
@@ -55,6 +57,7 @@ class PointDensity {
   DensityOptions options_;
   ReachableArea area_;
   PhotonIndex index_;
+  std::vector<std::int8_t> signs_;  ///< by photon of the index
 };
 
 }  // namespace tempolux

@@ -25,6 +25,8 @@ struct IrradiancePoint {
   Rgb direct{0.0f};          ///< by light sampling (paths L D)
   Rgb caustic{0.0f};         ///< by density estimation (paths L S+ D)
   Rgb indirect{0.0f};        ///< by density estimation: all other paths
+  /// Number with a random sign whose mean square is the variance of caustic + indirect (path_signs.h); 0: unknown
+  Rgb noise{0.0f};
   Rgb total() const { return direct + caustic + indirect; }
 };
 

@@ -227,8 +227,9 @@ bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_r
   return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
 }
 
-void RecordStore::scale_noise(std::size_t first, float factor) {
-  for (std::size_t i = first; i < records_.size(); ++i) records_[i].noise *= factor;
+void RecordStore::complete_noise(std::size_t first, float factor) {
+  for (std::size_t i = first; i < records_.size(); ++i)
+    records_[i].noise = records_[i].noise * factor + records_[i].points_noise;
 }
 
 std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal) const {

@@ -28,6 +28,7 @@ struct IrradianceRecord {
   std::uint32_t object = 0;  ///< the object it lies on
   /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (gathered_record.h); 0: unknown
   Rgb noise{0.0f};
+  Rgb points_noise{0.0f};  ///< W/m^2: the part of `noise` from the points that were read; not in files
 };
 
 struct InterpolationOptions {
@@ -95,8 +96,9 @@ class RecordStore {
   /// least `weight` with all radii limited to least_reach [m] and within the angle of kWideCosine: where normals turn
   /// quickly, records need not be denser than the smallest radius allows.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
-  /// Multiplies IrradianceRecord::noise of the records from `first` on.
-  void scale_noise(std::size_t first, float factor);
+  /// Multiplies IrradianceRecord::noise of the records from `first` on, which is that of their rays, and adds
+  /// points_noise.
+  void complete_noise(std::size_t first, float factor);
   /// Irradiance by interpolate(); nothing where no record counts.
   std::optional<Rgb> irradiance(Vec3 position, Vec3 normal) const;
 

@@ -1,7 +1,9 @@
 #include "lib/photon/photon_trace.h"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
+#include <type_traits>
 
 #include "formats/error.h"
 #include "lib/core/frame.h"
@@ -233,6 +235,29 @@ struct PhotonTracer::Draw {
   Vec3 direction;  ///< sample_hemisphere_cos(u)
 };
 
+namespace {
+
+/// Sorts the photons from number `first` on by their paths; those of a path stay in their order. of: path of each.
+void sort_by_path(std::span<const std::uint8_t> of, std::size_t first, PhotonBatch& batch) {
+  std::array<std::uint32_t, 257> next{};
+  for (const std::uint8_t path : of) ++next[path + 1u];
+  for (std::size_t path = 1; path < next.size(); ++path) next[path] += next[path - 1];
+  thread_local std::vector<std::uint32_t> place;
+  place.clear();
+  for (const std::uint8_t path : of) place.push_back(next[path]++);
+  const auto sort = [&](auto& column) {
+    if (column.empty()) return;
+    thread_local std::remove_reference_t<decltype(column)> before;
+    before.assign(column.begin() + std::ptrdiff_t(first), column.end());
+    for (std::size_t i = 0; i < place.size(); ++i) column[first + place[i]] = before[i];
+  };
+  sort(batch.block.photons);
+  sort(batch.block.directions);
+  sort(batch.path_of);
+}
+
+}  // namespace
+
 /// Processes the photons of a wave step by step: the steps of different photons are independent, so the processor
 /// overlaps them.
 void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path,
@@ -265,6 +290,9 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
     if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);  // lights that are off emit nothing
   }
   batch.path_count += started;
+  thread_local std::vector<std::uint8_t> owners;  // of the photons of this wave; not in media
+  owners.clear();
+  const std::size_t first_photon = batch.block.photons.size();
 
   Hit hits[kWave];
   SurfacePoint points[kWave];
@@ -300,11 +328,13 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
         pilot_signature::meet(*paths[number].pilot, bounce, hits[i]);
       alive[count] = number;
       count += scatter(paths[number], points[i], hits[i].t, draw, batch);
+      if (!media_) owners.resize(batch.block.photons.size() - first_photon, std::uint8_t(number));
       if (batch.by_path) [[unlikely]]
         batch.path_of.resize(batch.block.photons.size(), first_path + number);
     }
     for (std::size_t i = 0; i < in_media; ++i) alive[count++] = scattered[i];
   }
+  if (!media_) sort_by_path(owners, first_photon, batch);
   if (watch_)
     for (std::size_t i = 0; i < started; ++i)
       if (touched[i]) batch.touched.push_back({path_numbers[i], touched[i]});

@@ -90,8 +90,9 @@ class PhotonTracer {
 
   std::uint64_t photon_count() const { return group_count_ * members_; }
   std::uint32_t group_count() const { return std::uint32_t(group_count_); }
-  /// Batches are in file order: group after group, each cut into pieces of kBatch paths. The photons of a batch are
-  /// sorted by waves of kWave paths, and within a wave by bounce.
+  /// Batches are in file order: group after group, each cut into pieces of kBatch paths. The photons of a path follow
+  /// each other by ascending bounce. With media the photons of a batch are sorted by waves of kWave paths, and within a
+  /// wave by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
   /// First batch of a group, and the first batch after the group.
   std::pair<std::size_t, std::size_t> batches_of(std::uint32_t group) const {

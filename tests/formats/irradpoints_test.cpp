@@ -116,6 +116,22 @@ TEST(Irradpoints, KindsThatAreNotNamedTakeNoRoom) {
   EXPECT_EQ(size_of("direct,indirect") - size_of("indirect"), 1200u);
 }
 
+// 12 bytes per point; the line `columns: noise` has 15 bytes.
+TEST(Irradpoints, NoiseComesBackAndTakesRoomOnlyIfNamed) {
+  Folder folder;
+  IrradpointsHeader header = header_of_two_kinds();
+  const std::size_t without = bytes_of(header, {points(100)}).size();
+  header.columns = column_points_noise;
+  std::vector<IrradiancePointRecord> noisy = points(100);
+  for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i].noise = {float(i), -1, 0.5f};
+  const std::string bytes = bytes_of(header, {noisy});
+  EXPECT_EQ(bytes.size() - without, 1200u + 15);
+  save(folder / "a", bytes);
+  const IrradpointsFile file = load_irradpoints(folder / "a");
+  EXPECT_EQ(file.header.columns, std::uint32_t(column_points_noise));
+  EXPECT_EQ(file.records, noisy);
+}
+
 TEST(Irradpoints, ManyPointsAreCutIntoBlocksAndComeBackInOrder) {
   Folder folder;
   save(folder / "a", bytes_of(header_of_two_kinds(), {points(150000), points(10, 150000)}));
@@ -205,6 +221,13 @@ TEST(Irradpoints, DigestIsOfTheDataAlone) {
   std::vector<IrradiancePointRecord> changed = points(5);
   changed[4].indirect[2] *= 1.0000001f;
   EXPECT_NE(digest(header, {changed}), whole);
+  other = header;
+  other.columns = column_points_noise;
+  const std::string with_noise = digest(other, {points(5)});
+  EXPECT_NE(with_noise, whole);
+  changed = points(5);
+  changed[3].noise[1] = -1;
+  EXPECT_NE(digest(other, {changed}), with_noise);
   changed = points(5);
   std::swap(changed[0], changed[1]);
   EXPECT_NE(digest(header, {changed}), whole);
@@ -231,6 +254,7 @@ TEST(Irradpoints, TheWriterWritesNothingThatAReaderWouldRefuse) {
   refused([&](auto& p) { p.radius = -1; });
   refused([&](auto& p) { p.direct[2] = inf; });
   refused([&](auto& p) { p.indirect[0] = -1e-45f; });
+  refused([&](auto& p) { p.noise[0] = 1; });         // without its column
   refused([&](auto& p) { p.caustic[0] = 1e-45f; });  // a kind the header does not name
   EXPECT_NO_THROW(writer.write(points(3)));
   EXPECT_EQ(writer.finish().point_count, 3u);
@@ -241,6 +265,7 @@ TEST(Irradpoints, TheWriterWritesNothingThatAReaderWouldRefuse) {
     EXPECT_THROW(IrradpointsWriter(sink, bad), std::invalid_argument);
   };
   header_refused([&](auto& h) { h.kinds = "indirect,direct"; });
+  header_refused([&](auto& h) { h.columns = 2; });
   header_refused([&](auto& h) { h.spacing = 0; });
   header_refused([&](auto& h) { h.spacing = double(nan); });
   header_refused([&](auto& h) { h.origin[0] = double(inf); });

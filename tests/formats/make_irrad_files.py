@@ -157,10 +157,17 @@ def make_points():
         m.save("accept/kinds-" + kinds.replace(",", "-"), p)
     for part in ("low", "high"):
         m.save("accept/part-" + part, m.with_header(part=part))
+    noisy = m.with_header(columns="noise")
+    noisy.points[0].noise, noisy.points[1].noise = (0.25, -0.5, 0), (-1e-3, 0, 2)
+    m.save("accept/columns-noise", noisy)
+    noisy.points[1].noise = (0, NAN, 0)
+    m.save("refuse/noise-nan", noisy)
+    m.headers({"columns-unknown": {"columns": "influence"}, "columns-none": {"columns": "none"}})
     m.headers({"part-unknown": {"part": "middle"}, "part-empty": {"part": ""}})
     text = m.pieces(m.bytes)[0][16:-4]
     m.save("refuse/header-part-of-a-later-version", m.with_text(text + b"part: low\n"))
-    m.save("refuse/header-key-unknown-1.1", m.with_text(text + b"colour-of-ink: blue\n", minor=1))
+    m.save("refuse/header-columns-of-a-later-version", m.with_text(text + b"columns: noise\n", minor=1))
+    m.save("refuse/header-key-unknown-1.2", m.with_text(text + b"colour-of-ink: blue\n", minor=2))
     empty = copy.deepcopy(good)
     empty.points = []
     m.save("accept/no-points", empty)

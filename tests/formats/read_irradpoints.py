@@ -23,10 +23,11 @@ IRRADIANCE = struct.Struct("<3f")               # section 4
 END = "<Q9d"                                    # section 5, without mark and chain
 KINDS = ["direct", "caustic", "indirect"]
 REQUIRED = ["kinds", "origin", "spacing", "emitted"]
-KEYS = ["kinds", "part", "origin", "spacing", "emitted"]
-SINCE = {"part": 1}                              # section 9
+KEYS = ["kinds", "columns", "part", "origin", "spacing", "emitted"]
+SINCE = {"part": 1, "columns": 2}                              # section 9
 RULES = {
     "kinds": lambda v: v != "" and ",".join(k for k in KINDS if k in v.split(",")) == v,
+    "columns": lambda v: v == "noise",
     "part": lambda v: v in ("low", "high"),
     "spacing": lambda v: (reals(v, 1) or [0])[0] > 0,
     "emitted": lambda v: integers(v, 1, 0, 2**64 - 1),
@@ -41,6 +42,7 @@ class Point:
     set: int                # 0 static, 1 dynamic
     radius: float
     irradiance: dict        # kind: three numbers
+    noise: tuple = (0, 0, 0)
 
 
 @dataclasses.dataclass
@@ -54,20 +56,26 @@ def kinds_of(header):
     return header["kinds"].split(",")
 
 
+def columns_of(header):
+    return len(kinds_of(header)) + ("columns" in header)
+
+
 def is_good(point):
     values = [point.radius] + [x for e in point.irradiance.values() for x in e]
-    return (all(map(math.isfinite, values)) and min(values) >= 0 and all(map(math.isfinite, point.position)) and
+    return (all(map(math.isfinite, values)) and min(values) >= 0 and all(map(math.isfinite, (*point.position, *point.noise))) and
             max(point.normal) <= 65534 and point.set <= 1)
 
 
 def read_irradpoints(path):
     header, history, blocks, end = read_container(path, MAGIC, MARK, REQUIRED, RULES,
-                                                  lambda h: [RECORD.size] + [IRRADIANCE.size] * len(kinds_of(h)), END, SINCE)
+                                                  lambda h: [RECORD.size] + [IRRADIANCE.size] * columns_of(h), END, SINCE)
     points = []
     for offset, _, parts in blocks:
         columns = list(zip(*(IRRADIANCE.iter_unpack(column) for column in parts[1:])))
         for i, v in enumerate(RECORD.iter_unpack(parts[0])):
             points.append(Point(v[0:3], v[3:5], v[5], v[6], v[8], dict(zip(kinds_of(header), columns[i]))))
+            if "columns" in header:
+                points[-1].noise = columns[i][-1]
             if not is_good(points[-1]):
                 refuse(offset + RECORD.size * i, f"point out of range: {points[-1]}")
     p = Irradpoints(header, history, points)
@@ -89,9 +97,11 @@ def encode_irradpoints(p):
     for points in cut(p.points):
         parts = [b"".join(RECORD.pack(*q.position, *q.normal, q.object, q.set, 0, q.radius) for q in points)]
         parts += [b"".join(IRRADIANCE.pack(*q.irradiance[kind]) for q in points) for kind in kinds_of(p.header)]
+        if "columns" in p.header:
+            parts.append(b"".join(IRRADIANCE.pack(*q.noise) for q in points))
         blocks.append((len(points), parts))
     return encode_container(MAGIC, MARK, KEYS, p.header, p.history, blocks, struct.pack(END, *totals(p)),
-                            int("part" in p.header))
+                            2 if "columns" in p.header else int("part" in p.header))
 
 
 def write_irradpoints(path, p):

@@ -47,6 +47,7 @@ Facts header_facts(const IrradpointsHeader& header) {
                  {"origin_m", header.origin},
                  {"spacing_m", header.spacing},
                  {"emitted_paths", header.emitted_count}};
+  if (header.columns & column_points_noise) facts["columns"] = "noise";
   if (!header.part.empty()) facts["part"] = header.part;
   return facts;
 }
@@ -172,13 +173,19 @@ void export_irradpoints(const std::string& path, const std::string& format, Outp
   const IrradpointsFile file = load_irradpoints(path);
   double white = 0;
   for (const IrradiancePointRecord& point : file.records) white = std::max(white, largest(all_kinds(point)));
+  const bool noise = format == "csv" && file.header.columns & column_points_noise;
+  std::vector<PointTable::Column> columns{
+      {"direct", "W_m2", 3}, {"caustic", "W_m2", 3}, {"indirect", "W_m2", 3}, {"radius", "m", 1}};
+  if (noise) columns.push_back({"noise", "W_m2", 3});
   PointTable table(format, output, file.records.size(), "irradiance points; irradiance in W/m^2, positions in m",
-                   {{"direct", "W_m2", 3}, {"caustic", "W_m2", 3}, {"indirect", "W_m2", 3}, {"radius", "m", 1}});
+                   columns);
   for (const IrradiancePointRecord& point : file.records) {
     start_row(table, file.header.origin, point, decode_normal(point.normal));
     for (const auto* irradiance : {&point.direct, &point.caustic, &point.indirect})
       for (const float e : *irradiance) table.add(double(e));
     table.add(double(point.radius));
+    if (noise)
+      for (const float e : point.noise) table.add(double(e));
     add_colour(table, all_kinds(point), white);
     table.end_row(point.object, std::uint8_t(point.set));
   }

@@ -160,6 +160,7 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   header.spacing = double(points.spacing);
   header.emitted_count = points.emitted_count;
   header.kinds = points.kinds;
+  header.columns = formats::column_points_noise;
   formats::IrradpointsWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
   writer.write(to_file(points.points, frame));
   writer.finish();

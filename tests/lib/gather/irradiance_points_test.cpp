@@ -114,6 +114,25 @@ INSTANTIATE_TEST_SUITE_P(Boxes, ClosedBoxPoints,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.0f, 0.5f, 0.8f, 0.99f)));
 
+/// A path in a closed box of reflectance .8 leaves k photons of indirect light: E k = 4, E k^2 = 36. So the mean over
+/// all points has the noise sqrt(36) / (4 sqrt(N)) with N paths, in the signs of paths; with a sign for each photon it
+/// would be a third. 24 seeds determine a root of a mean square to 1 / sqrt(2 * 24) = 14 %, so 40 % is 2.8 sigma.
+TEST(PointNoise, OfTheMeanOverAllPointsIsThatOfThePaths) {
+  test::ClosedBox box(Shape::cube, 0.8f);
+  Stage stage(box.scene);
+  double square = 0, mean = 0;
+  constexpr int kSeeds = 24, kPathsOfSeed = 1000;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    Mean noise, indirect;
+    for (const IrradiancePoint& p :
+         stage.estimate(traced_photons(stage.tracer, stage.lights, kPathsOfSeed, seed), few(1000, 0)))
+      if (dot(p.normal, p.position) < 0) noise.add(double(p.noise.g)), indirect.add(double(p.indirect.g));
+    square += noise.value() * noise.value() / kSeeds;
+    mean += indirect.value() / kSeeds;
+  }
+  EXPECT_NEAR(std::sqrt(square) / mean / (1.5 / std::sqrt(double(kPathsOfSeed))), 1, 0.4);
+}
+
 /// Uniform light in a room: 40k photons on both sides of 24 m^2 and k = 50 give a radius of 0.14 m, a seventh of half a
 /// wall, so a third of all discs are cut. An estimate has a sigma of 14 %, and neighbouring estimates share photons.
 /// Over 4 seeds, 80k photons on the inside determine the mean to 0.35 %, that of the strip (10 % of a wall) to 1.1 %

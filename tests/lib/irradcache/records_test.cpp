@@ -242,12 +242,12 @@ TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
 TEST(RecordStore, NoiseIsInterpolated) {
   RecordStore store;
   IrradianceRecord a = record_at({0, 0, 0}, {0, 0, 1}, 1, Rgb(1.0f)), b = record_at({1, 0, 0}, {0, 0, 1}, 1, Rgb(1.0f));
-  a.noise = Rgb(2.0f), b.noise = Rgb(-4.0f);
+  a.noise = Rgb(2.0f), b.noise = Rgb(-4.0f), b.points_noise = Rgb(1.0f);
   store.add(a), store.add(b);
   EXPECT_NEAR(store.interpolate({0.5f, 0, 0}, {0, 0, 1}).noise.g, -1, 1e-6);
   EXPECT_NEAR(store.interpolate({0.25f, 0, 0}, {0, 0, 1}).noise.g, 0.5, 1e-6);
-  store.scale_noise(1, 0.5f);
-  EXPECT_NEAR(store.interpolate({0.5f, 0, 0}, {0, 0, 1}).noise.g, 0, 1e-6);
+  store.complete_noise(1, 0.5f);
+  EXPECT_NEAR(store.interpolate({0.5f, 0, 0}, {0, 0, 1}).noise.g, 0.5, 1e-6);
 }
 
 TEST(RecordStore, OneRecordAndNone) {

@@ -105,6 +105,24 @@ TEST(PhotonTracer, APhotonDoesNotDependOnTheGroupsItIsCountedIn) {
   EXPECT_EQ(one, sorted(7));
 }
 
+/// In a closed box every path leaves a photon at each of its hits: bounces 0, 1, 2 ... and then the next path.
+TEST(PhotonTracer, PhotonsOfAPathFollowEachOther) {
+  test::ClosedBox box(Shape::cube, 0.7f);
+  const SceneFrame& frame = box.scene.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, box.table);
+  PhotonOptions options;
+  options.photon_count = 2000;
+  options.group_count = 1;
+  const formats::PhotonBlock block = PhotonTracer(tracer, lights, options).trace(0).block;
+  ASSERT_GT(block.photons.size(), 2000u);
+  int before = -1;
+  for (const formats::Photon& photon : block.photons) {
+    EXPECT_TRUE(photon.bounce == 0 || photon.bounce == before + 1) << int(photon.bounce) << " after " << before;
+    before = photon.bounce;
+  }
+}
+
 TEST(PhotonTracer, KindsLeftOutChangeNothingElse) {
   test::ClosedBox box(Shape::cube, 0.6f);
   const Tracer tracer(box.scene.frame());
