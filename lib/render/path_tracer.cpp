@@ -23,11 +23,12 @@ struct SampledLobes {
   float remaining_share = 1;  ///< share of the Lambert lobe's light that is to be added (KnownHere)
   bool forks = false;
 
-  /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
-  void fork(float diffuse_probability) {
+  /// probability: Bsdf::fork_probability, in (0, 1). At glass times_diffuse is the reflection's factor and
+  /// times_specular that of the transmission.
+  void fork(float probability) {
     forks = true;
-    times_diffuse = 1 / diffuse_probability;
-    times_specular = 1 / (1 - diffuse_probability);
+    times_diffuse = 1 / probability;
+    times_specular = 1 / (1 - probability);
   }
 };
 
@@ -110,7 +111,7 @@ struct SinceDiffuse {
   bool specular = false;        ///< the path has had events S since
   /// Bright points were sampled explicitly there: a Lambert lobe that the path meets contributes only the rest.
   bool bright_sampled = false;
-  /// m: the distance from a Lambert lobe at which rays would have spread as far. Equal to the path's length since the
+  /// m: a ray from a Lambert lobe would have spread as far after this distance. Equal to the path's length since the
   /// last event D; 0 if the path has met only smooth mirrors and glass.
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
@@ -356,7 +357,7 @@ KnownHere EyeTracer::add_known_light(const ShadingPoint& x, Vec3 smooth, const W
   const Rgb reflected = walk.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.remaining_share);
   // The layer indirect, or the layer of the surface that the path has seen before.
   const Layer layer = path.after(true).after(true).layer();
-  // With bright points, a point's irradiance stands for the remaining light only. A glossy ray has not sampled bright
+  // With bright points, a point's irradiance represents only the remaining light. A glossy ray has not sampled bright
   // points, so the path continues.
   if (since.matte || (since.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::PointLight> stored =
@@ -430,7 +431,7 @@ bool EyeTracer::step(Walk& walk) const {
   SampledLobes lobes{!here.direct, !(walk.since.matte && walk.since.caustic_known)};
   lobes.remaining_share = here.remaining_share;
   if (known_ && known_->forks() && !walk.forked && walk.path.sharp() && x.bsdf.forks())
-    lobes.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+    lobes.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   add_light(x, lobes, walk.path.sharp() && x.bsdf.has_diffuse(), walk);
   return !(here.direct && !x.bsdf.has_specular()) && leave({x, material, here}, lobes, walk);
 }
