@@ -54,7 +54,8 @@ segment() {   # segment FIRST LAST: prints its line of the table
     percent=$(compare "$frame" --either) || exit 3
     tell "$frame" '' "$percent"
   fi
-  echo "  {\"first\": $1, \"frame\": $frame, \"tried\": [$tried]}"
+  picture=$(sed -n "s/^ *\"$(printf %04d "$frame")\": \"\([^\"]*\)\",*\$/\1/p" "$runs/1/plan.json")
+  echo "  {\"first\": $1, \"frame\": $frame, \"picture\": \"$picture\", \"tried\": [$tried]}"
 }
 
 case $AQM in

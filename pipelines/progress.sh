@@ -74,6 +74,15 @@ of() { [ "$1" = 1 ] && echo "1 $2" || echo "$1 $2s"; }   # of 3 frame -> 3 frame
 
 begin() { echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" command) to run (V=1 shows them)"; }
 
+# The largest share of the pixels in which a viewer sees noise, in percent, if `make measure` has measured pictures of
+# this plan; else nothing.
+measured() {
+  [ -f measured.json ] || return 0
+  sed -n 's/.*"picture": "\([^"]*\)", "tried": \[{"photons": 0, "aqm": \([0-9.e+-]*\)}\].*/\1 \2/p' measured.json |
+    while read -r picture share; do ! grep -qF "\"$picture\"" plan.json || echo "$share"; done |
+    sort -g | awk 'END { if (NR) printf "%.1f", 100 * $1 }'
+}
+
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
 # with path tracing. Noise is printed in brightness steps of a screen, of which white has 255. The audit is the bias
 # that frames report of their own light.
@@ -82,7 +91,8 @@ end() {
   # shellcheck disable=SC2086
   audit=$("$BIN/tempolux-info" --account $frames)
   sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
-    awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" '
+    awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" \
+      -v seen="$(measured)" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }
       {
         folder = $0; sub("/.*", "", folder); whole = 1
@@ -97,6 +107,7 @@ end() {
         last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
         if (counted[last]) printf "; noise %.1f of 255 brightness steps", noise[last] / counted[last]
         if (last == "raw") printf " before the filter"
+        if (seen != "") printf "; a viewer sees noise in %s %% of the pixels (make measure)", seen
         printf "%s; look at %s/sheet.png\n", audit == "" ? "" : "; " audit, out
       }'
 }
