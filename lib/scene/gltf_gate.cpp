@@ -229,15 +229,13 @@ std::string resolved(const std::string& uri, const std::string& path, const std:
   if (has_scheme(uri))
     fail(path, place, shown + " is not a relative path; fetch the file and name it by a relative path");
   const fs::path relative = percent_decoded(uri, path, place);
-  if (relative.is_absolute() && !options.allow_outside)
-    fail(path, place, shown + " is an absolute path; put the file into the scene's folder");
+  if (relative.is_absolute()) fail(path, place, shown + " is an absolute path; put the file into the scene's folder");
   const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
   std::error_code error;
   const fs::path base = fs::weakly_canonical(folder, error), target = fs::weakly_canonical(folder / relative, error);
   if (error) fail(path, place, shown + ": " + error.message());
   const auto [base_end, target_at] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
-  if (base_end != base.end() && !options.allow_outside)
-    fail(path, place, shown + " leads out of the scene's folder; put the file there, or allow it with --allow-outside");
+  if (base_end != base.end()) fail(path, place, shown + " leads out of the scene's folder; put the file there");
   return (folder / relative).string();
 }
 

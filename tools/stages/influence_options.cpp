@@ -17,8 +17,6 @@ void influence_options(Tool& tool, InfluenceThresholds& thresholds) {
                  "from this influence on indirect light is gathered anew; blended in between")
       ->capture_default_str()
       ->check(number_above(0));
-  app.add_flag("--influence-absolute", thresholds.absolute,
-               "thresholds are in W/m^2, not shares of the static irradiance");
 }
 
 void check_influence(const InfluenceThresholds& thresholds) {

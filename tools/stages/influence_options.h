@@ -6,7 +6,7 @@
 
 namespace tempolux::tools {
 
-/// Adds --influence-low, --influence-high and --influence-absolute.
+/// Adds --influence-low and --influence-high.
 void influence_options(Tool& tool, InfluenceThresholds& thresholds);
 /// Throws InputError unless 0 <= low < high.
 void check_influence(const InfluenceThresholds& thresholds);

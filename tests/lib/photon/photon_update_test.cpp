@@ -251,25 +251,6 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
   EXPECT_NEAR(difference / wanted, 1, 0.1);
 }
 
-/// Photons of flux -1 through the old smoke cancel exactly the stored ones; through other smoke they would not.
-TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
-  const Room thin(0.5f, options_), thick(2, options_);
-  fresh("0.photons", thin, 0);
-  PreviousMap previous = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::oldest, {});
-  const std::vector<std::uint32_t> some{3, 17, 40};
-  const auto with = [&](const std::string& name, const std::function<const PhotonTracer&(int)>& corrective) {
-    return written(name, [&](const auto& sink) {
-      write_updated_map(*thick.photons, options_, header(1), {path("0.photons"), previous, some, true, corrective},
-                        sink);
-    });
-  };
-  EXPECT_EQ(with("a.photons", {}), with("b.photons", [&](int frame) -> const PhotonTracer& {
-              EXPECT_EQ(frame, 0);
-              return *thin.photons;
-            }));
-  EXPECT_THROW(with("c.photons", [&](int) -> const PhotonTracer& { return *thick.photons; }), InputError);
-}
-
 TEST(SpreadPaths, AddsUpAndGoesWhereVarianceFallsMost) {
   // On paper: moments 4 and 1, ten paths each; 10 more: 20 and 10 are in proportion to 2 and 1.
   EXPECT_EQ(spread_paths(std::vector<double>{4, 1}, std::vector<std::uint64_t>{10, 10}, 10),
