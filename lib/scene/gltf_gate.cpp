@@ -222,8 +222,7 @@ bool has_scheme(const std::string& uri) {
 
 /// The file that a relative URI names. Symbolic links and `..` are resolved before the check that the file is inside
 /// the folder.
-std::string resolved(const std::string& uri, const std::string& path, const std::string& place,
-                     const GltfOptions& options) {
+std::string resolved(const std::string& uri, const std::string& path, const std::string& place) {
   const std::string shown = "\"" + uri.substr(0, 80) + "\"";
   if (uri.empty()) fail(path, place, "is empty");
   if (has_scheme(uri))
@@ -281,7 +280,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
     gated.buffers.push_back(range);
     return;
   } else {
-    range.path = resolved(uri, path, place + ".uri", options);
+    range.path = resolved(uri, path, place + ".uri");
     require_file(range.path, path, place + ".uri");
     const File file(range.path);
     if (file.size() > options.max_file_bytes)
@@ -300,7 +299,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   gated.buffers.push_back(range);
 }
 
-GatedImage approve_image(const Json& image, std::size_t index, const std::string& path, const GltfOptions& options) {
+GatedImage approve_image(const Json& image, std::size_t index, const std::string& path) {
   GatedImage approved;
   approved.name = image.value("name", "");
   const std::string place = "images[" + std::to_string(index) + "].uri";
@@ -318,7 +317,7 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
     approved.refused =
         "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
   } else {
-    approved.path = resolved(uri, path, place, options);
+    approved.path = resolved(uri, path, place);
   }
   return approved;
 }
@@ -356,7 +355,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   check_total(path, options, gated);
   unpack_packed(document, path, options, gated);
   for (std::size_t i = 0; i < array_of(document, "images").size(); ++i)
-    gated.images.push_back(approve_image(document["images"][i], i, path, options));
+    gated.images.push_back(approve_image(document["images"][i], i, path));
   document.erase("images");
   gated.json = document.dump();
   return gated;

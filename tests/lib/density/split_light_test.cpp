@@ -206,13 +206,16 @@ TEST(FluxCells, ASurfaceAtZeroIsNotDealtOutToTwoCells) {
 
 TEST(FluxCells, AllInOnePointAndNothingAreNoError) {
   PhotonBlock block;
-  FluxCells none = cells_of(block, 1, {});
+  FluxCells none = cells_of(block, 1, kBrightLimit);
   EXPECT_EQ(none.mean_irradiance(), 0);
   for (int i = 0; i < 1000; ++i) block.photons.push_back(photon(1, 2, 3, 1));
-  const FluxCells cells = cells_of(block, 1, {});  // no area, no mean: nothing is above it
+  const FluxCells cells = cells_of(block, 1, kBrightLimit);  // no area, no mean: nothing is above it
   EXPECT_EQ(divide(block, cells).low.photons.size() + divide(block, cells).high.photons.size(), 1000u);
   for (Photon& p : block.photons) p.flux = {-1, 0, -2};  // a dynamic map: negative only
-  const DividedPhotons parts = divide(block, cells_of(block, 1, {4, 10}));
+  FluxCells hundredth(1, 0.01);  // with a known area the only cell has the mean irradiance
+  add_flux(block, hundredth);
+  hundredth.close(0.01);
+  const DividedPhotons parts = divide(block, hundredth);
   EXPECT_EQ(parts.high.photons.size(), 1000u);
   EXPECT_NEAR(parts.low.photons[0].flux[0], -0.01f, 0x1p-24f);  // the larger part's rounding
 }

@@ -68,7 +68,7 @@ class PhotonUpdate : public testing::Test {
     PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
     groups_ = choose_groups(previous, frame, same, how);
     return written(name, [&](const auto& sink) {
-      write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true, {}}, sink);
+      write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true}, sink);
     });
   }
   bool is_overlay(const std::string& name) const {
@@ -128,7 +128,7 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   // The same written whole, which is not possible in another folder's name.
   PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::string whole = written("whole.photons", [&](const auto& sink) {
-    write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false, {}}, sink);
+    write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false}, sink);
   });
   EXPECT_EQ(whole, two);
 }
@@ -158,7 +158,7 @@ TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
     EXPECT_EQ(
         written("kept/" + name,
                 [&](const auto& sink) {
-                  write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true, {}}, sink);
+                  write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true}, sink);
                 }),
         wanted)
         << frame;
