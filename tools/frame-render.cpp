@@ -30,7 +30,6 @@
 #include "tools/stages/frame_account.h"
 #include "tools/stages/frame_output.h"
 #include "tools/stages/indirect_light.h"
-#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 
@@ -220,7 +219,8 @@ void check(Options& options, const std::vector<int>& frames) {
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   options.light.photons_alone = options.integrator == "photons";
-  tools::check_influence(options.light.influence);
+  if (!(options.light.influence.low < options.light.influence.high))
+    throw InputError("--influence-low must be below --influence-high");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -280,7 +280,15 @@ void add_light_options(tools::Tool& tool, Options& options) {
                  "photons per density estimate of caustic light: fewer are sharper, more are smoother")
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
-  tools::influence_options(tool, options.light.influence);
+  app.add_option("--influence-low", options.light.influence.low,
+                 "up to this influence of the movers, as a share of the static irradiance, indirect light is read from "
+                 "static records, updated by dynamic photons")
+      ->capture_default_str()
+      ->check(tools::number_between(0));
+  app.add_option("--influence-high", options.light.influence.high,
+                 "from this influence on indirect light is gathered anew; blended in between")
+      ->capture_default_str()
+      ->check(tools::number_above(0));
 }
 
 void add_options(tools::Tool& tool, Options& options) {
