@@ -30,15 +30,15 @@ pair() {  # NAME LAYER-OPTIONS...
   echo "$out/trouble-$name.png $(wc -c < "$out/trouble-$name.png")"
 }
 
-look leak-bad S3_indirect_room.glb 1 20k --neighbours 400 --max-radius 3
+look leak-bad S3_indirect_room.glb 1 20k --neighbours 400
 chain leak-good S3_indirect_room.glb 1 200k
 pair leak --layer indirect
 
-chain blotch-bad S2_cornell_moving.glb 12 20k --rays 16 --error-bound 0.4 --min-weight 0.3
+chain blotch-bad S2_cornell_moving.glb 12 20k --rays 16 --error-bound 0.4
 chain blotch-good S2_cornell_moving.glb 12 200k
 pair blotch --layer indirect
 
-look corner-bad S1_cornell.glb 0 20k --neighbours 300 --max-radius 2
+look corner-bad S1_cornell.glb 0 20k --neighbours 300
 chain corner-good S1_cornell.glb 0 200k
 pair corner --layer indirect
 

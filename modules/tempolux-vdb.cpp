@@ -293,54 +293,21 @@ void warm_up() {
   tbb::parallel_for(0, 2, [](int) {});
 }
 
-/// Reads a grid of colours from standard input and writes a VDB file with it to standard output.
-void write() {
-  tempolux::VdbWriteHead head;
-  const auto take = [](void* to, std::size_t size) {
-    if (std::fread(to, 1, size, stdin) != size) throw Refused{"was given less than it was promised"};
-  };
-  take(&head, sizeof head);
-  if (head.magic != tempolux::VdbWriteHead{}.magic || head.name_size > 256)
-    throw Refused{"is of another version than its caller"};
-  std::string name(head.name_size, ' ');
-  take(name.data(), name.size());
-  auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
-  grid->setName(name);
-  openvdb::Mat4d place = openvdb::Mat4d::identity();  // for row vectors
-  for (int a = 0; a < 3; ++a) {
-    place(a, a) = head.voxel[std::size_t(a)];
-    place(3, a) = head.first_centre[std::size_t(a)];
-  }
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(place));
-  auto accessor = grid->getAccessor();
-  for (std::int32_t x = 0; x < head.counts[0]; ++x)
-    for (std::int32_t y = 0; y < head.counts[1]; ++y)
-      for (std::int32_t z = 0; z < head.counts[2]; ++z) {
-        float rgb[3];
-        take(rgb, sizeof rgb);
-        if (rgb[0] != 0 || rgb[1] != 0 || rgb[2] != 0)
-          accessor.setValue({x, y, z}, openvdb::Vec3s(rgb[0], rgb[1], rgb[2]));
-      }
-  openvdb::io::Stream(std::cout).write(openvdb::GridCPtrVec{grid});
-  if (!std::cout.flush()) throw Refused{"could not hand over the file"};
-}
-
-void run(bool writes) {
+void run() {
   warm_up();
-  std::vector<Request> requests = writes ? std::vector<Request>{} : open_all();
+  std::vector<Request> requests = open_all();
   if (const std::string trouble = tempolux::guard_process(); !trouble.empty()) throw Refused{trouble};
-  if (writes) return write();
   for (Request& request : requests) read(request);
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main() {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism,
                                        1);  // a guarded process cannot start threads
   std::string words;
   try {
-    run(argc > 1 && std::string(argv[1]) == "write");
+    run();
     std::_Exit(0);  // at a regular exit TBB would start threads
   } catch (const Refused& refused) { words = refused.words; } catch (const std::bad_alloc&) {
     words = "does not fit the memory it may use; raise --max-memory, or resample it coarser";

@@ -32,7 +32,7 @@ struct Options {
   tools::VisionWords vision;
   std::vector<std::string> halves;
   bool own_halves = false, either = false, allow_stale = false;
-  double fail_above = -1, difference_scale = 0;
+  double fail_above = -1;
   std::uint64_t min_object_pixels = 64;
 
   bool needs_vision() const { return either || metric == "aqm" || fail_by == "aqm" || vision.used(); }
@@ -68,10 +68,6 @@ void declare(tools::Tool& tool, Options& o) {
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
-  app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
-      ->type_name("VALUE")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
   app.add_option("--fail-above", o.fail_above,
                  "exit 1 if the RMSE, or the figure that --fail-by names, is above this; 5%: if AQM is")
       ->type_name("VALUE")
@@ -144,10 +140,7 @@ double relative_error(const Comparison& result) {
 class FrameOutputs {
  public:
   /// Creates the outputs of the first frame, so that an unwritable place is reported before the work.
-  FrameOutputs(tools::Tool& tool, const Options& o, std::optional<int> first)
-      : scale(o.difference_scale), tool_(tool), o_(o) {
-    open(first);
-  }
+  FrameOutputs(tools::Tool& tool, const Options& o, std::optional<int> first) : tool_(tool), o_(o) { open(first); }
   /// Creates the outputs of a later frame.
   void open(std::optional<int> frame) {
     difference_ = output(o_.difference, frame);
@@ -160,12 +153,12 @@ class FrameOutputs {
              std::optional<int> frame) {
     if (map_) tools::write_map(tool_, judged, loaded, viewing, frame, std::move(*map_));
   }
-  double scale;  ///< of the PNG of differences, set by the first frame
+  double scale = 0;  ///< of the PNG of differences, set by the first frame
 
  private:
   std::optional<tools::Output> output(const std::string& name, std::optional<int> frame) {
     if (name.empty()) return std::nullopt;
-    return tools::Output(frame ? tools::frame_name(name, *frame) : name, tool_.common().no_clobber);
+    return tools::Output(frame ? tools::frame_name(name, *frame) : name);
   }
   tools::Tool& tool_;
   const Options& o_;
@@ -213,7 +206,7 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   std::vector<std::optional<int>> frames{std::nullopt};
   if (frames_given) frames.assign(tool.common().frames.begin(), tool.common().frames.end());
   std::optional<tools::Output> json;
-  if (!o.json.empty()) json.emplace(o.json, tool.common().no_clobber, tools::Output::Kind::text);
+  if (!o.json.empty()) json.emplace(o.json, tools::Output::Kind::text);
   FrameOutputs outputs(tool, o, frames.front());
   const Comparison result = compare_frames(tool, o, frames, outputs);
 

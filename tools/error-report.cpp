@@ -21,10 +21,9 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string manifest, folder = "report", title, baseline, time = "cpu";
+  std::string manifest, folder = "report", title;
   std::vector<std::string> runs;
   bool no_plots = false;
-  double plot_timeout_s = 60;
 };
 
 void declare(tools::Tool& tool, Options& o) {
@@ -36,18 +35,7 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("WHAT STATS COMPARISON");
   tool.output_option(o.folder, "folder of report.csv, report.md, index.html, plots")->capture_default_str();
   app.add_option("--title", o.title, "title of the report")->type_name("TEXT");
-  app.add_option("--baseline", o.baseline,
-                 "curve to which speed-ups refer; if not given: the first curve of each scene")
-      ->type_name("CURVE");
-  app.add_option("--time", o.time, "cpu: processor seconds; wall: elapsed seconds")
-      ->type_name("KIND")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"cpu", "wall"}));
   app.add_flag("--no-plots", o.no_plots, "draw nothing, so that gnuplot is not needed");
-  app.add_option("--plot-timeout", o.plot_timeout_s, "seconds that gnuplot may take for a plot")
-      ->type_name("SECONDS")
-      ->capture_default_str()
-      ->check(tools::number_between(0.1, 86400.0));
   tool.common_options(0);
 }
 
@@ -57,17 +45,17 @@ ReportInput read_input(const Options& o) {
   for (std::size_t i = 0; i + 2 < o.runs.size(); i += 3) add_run(input, o.runs[i], o.runs[i + 1], o.runs[i + 2]);
   if (input.runs.empty() && input.points.empty()) throw InputError(o.manifest + ": lists no run");
   if (!o.title.empty()) input.title = o.title;
-  if (!o.baseline.empty()) input.baseline = o.baseline;
   return input;
 }
 
-Plots draw(const std::vector<SceneReport>& scenes, TimeKind kind, double timeout_s) {
+Plots draw(const std::vector<SceneReport>& scenes) {
+  constexpr double kTimeout = 60;  // s that gnuplot may take for a plot
   Plots plots;
   for (const SceneReport& scene : scenes)
     for (const PlotFormat format : {PlotFormat::svg, PlotFormat::png}) {
-      const std::string script = plot_script(scene, kind, format);
+      const std::string script = plot_script(scene, format);
       if (script.empty()) continue;
-      plots[scene.file_stem + (format == PlotFormat::svg ? ".svg" : ".png")] = run_gnuplot(script, timeout_s);
+      plots[scene.file_stem + (format == PlotFormat::svg ? ".svg" : ".png")] = run_gnuplot(script, kTimeout);
     }
   return plots;
 }
@@ -80,24 +68,22 @@ int report(tools::Tool& tool, const Options& o) {
   std::filesystem::create_directories(o.folder, error);
   if (error) throw ResourceError(o.folder + ": cannot create this folder: " + error.message());
   const std::string folder = o.folder + "/";
-  const bool keep = tool.common().no_clobber;
-  tools::Output page(folder + "index.html", keep, tools::Output::Kind::text);
+  tools::Output page(folder + "index.html", tools::Output::Kind::text);
   const auto write = [&](tools::Output output, const std::string& content) {
     output.write(content.data(), content.size());
     output.commit();
   };
 
   tool.stats().phase("fit");
-  const TimeKind kind = o.time == "cpu" ? TimeKind::cpu : TimeKind::wall;
-  const std::vector<SceneReport> scenes = scene_reports(input, kind);
+  const std::vector<SceneReport> scenes = scene_reports(input);
   tool.stats().phase("plot");
-  const Plots plots = o.no_plots ? Plots{} : draw(scenes, kind, o.plot_timeout_s);
+  const Plots plots = o.no_plots ? Plots{} : draw(scenes);
 
   tool.stats().phase("write");
   const std::string html = report_html(input, scenes, plots);
-  write(tools::Output(folder + "report.csv", keep, tools::Output::Kind::text), report_csv(input));
-  write(tools::Output(folder + "report.md", keep, tools::Output::Kind::text), report_markdown(input, scenes, plots));
-  for (const auto& [name, bytes] : plots) write(tools::Output(folder + name, keep), bytes);
+  write(tools::Output(folder + "report.csv", tools::Output::Kind::text), report_csv(input));
+  write(tools::Output(folder + "report.md", tools::Output::Kind::text), report_markdown(input, scenes, plots));
+  for (const auto& [name, bytes] : plots) write(tools::Output(folder + name), bytes);
   write(std::move(page), html);
   tool.stats().count("runs", double(input.runs.size()));
   tool.stats().count("plots", double(plots.size()));

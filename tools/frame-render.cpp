@@ -30,7 +30,6 @@
 #include "tools/stages/frame_account.h"
 #include "tools/stages/frame_output.h"
 #include "tools/stages/indirect_light.h"
-#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 
@@ -109,9 +108,21 @@ std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const R
   return audit.entries();
 }
 
+/// Options of the frame `number`, without mask and known light.
+FrameOptions options_of(tools::Tool& tool, const Options& options, int number) {
+  const bool yardstick = options.integrator == "path";
+  FrameOptions frame = options.frame;
+  frame.seed = tool.common().seed_for_frame(number);
+  // With the frame's own random numbers a reference would have the frame's noise, and the frame's error would seem too
+  // small.
+  if (yardstick) frame.seed = mix64(frame.seed ^ 0x7265666572656e63ull);
+  frame.spread_outliers = !options.keep_outliers && !yardstick;
+  frame.progress = [&tool](double fraction) { tool.progress(fraction); };
+  return frame;
+}
+
 void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing) {
-  tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves,
-                              tool.common().no_clobber);
+  tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   if (options.integrator == "path" && number == tool.common().frames.front()) {
@@ -124,7 +135,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const int camera = input.scene().camera_node(tool.common().camera);
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
-  FrameOptions frame_options = options.frame;
+  FrameOptions frame_options = options_of(tool, options, number);
   tools::BaseFrame base;
   if (!options.mask.empty()) {
     const tools::Picture picture{options.width, options.height, view.world_to_camera(), view.world_to_ndc()};
@@ -140,13 +151,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
   tool.stats().phase("render", true);
-  frame_options.seed = tool.common().seed_for_frame(number);
-  // With the frame's own random numbers a reference would have the frame's noise, and the frame's error would seem too
-  // small.
-  if (options.integrator == "path") frame_options.seed = mix64(frame_options.seed ^ 0x7265666572656e63ull);
-  if (options.integrator != "path") frame_options.known = &light.get();
-  frame_options.spread_outliers = !options.keep_outliers && options.integrator != "path";
-  frame_options.progress = [&](double fraction) { tool.progress(fraction); };
+  if (!yardstick) frame_options.known = &light.get();
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
   const std::vector<AuditEntry> audited =
@@ -173,10 +178,6 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   count_work(tool, rendered, tracer);
   tools::report_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
-
-/// Relative error of a pixel of linear value .18 that changes its 8-bit code by one. The slope of the sRGB curve there
-/// is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
-constexpr double kPixelErrorOfCode = 1 / (305 * 0.18);
 
 /// A scene without light may be intended (unlit materials, depth only), but a black frame needs an explanation.
 void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
@@ -218,7 +219,8 @@ void check(Options& options, const std::vector<int>& frames) {
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   options.light.photons_alone = options.integrator == "photons";
-  tools::check_influence(options.light.influence);
+  if (!(options.light.influence.low < options.light.influence.high))
+    throw InputError("--influence-low must be below --influence-high");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -227,14 +229,14 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--half: would round the pixels of --base, which are kept bit for bit; leave out one");
   if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.01;
   else options.frame.pixel_error = options.pixel_error;
-  const bool halves = options.frame.halves || options.frame.target_error > 0;
+  const bool halves = options.frame.halves;
   if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
   if (halves && options.pixel_error > 0)
     throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
   if (halves && options.frame.seen_error > 0)
     throw InputError("--seen-error: halves take the same samples everywhere; leave out one");
   if (options.frame.seen_error > 0 && options.pixel_error < 0)
-    options.frame.pixel_error = options.frame.seen_error * kPixelErrorOfCode;
+    options.frame.pixel_error = pixel_error_of_codes(options.frame.seen_error);
   if (options.frame.seen_error > 0 && !(options.frame.pixel_error > 0))
     throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
   if (halves) options.frame.pixel_error = 0;
@@ -270,35 +272,30 @@ void add_light_options(tools::Tool& tool, Options& options) {
                  "high part from photonmap-split, or a pattern; --points (without --points: --photons) is then the low "
                  "part. Without --irradcache bright points are sampled explicitly")
       ->type_name("FILE");
-  app.add_option("--high-samples", options.light.high_samples,
-                 "explicit samples of bright points (--high) for each sample of a pixel")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 16));
   app.add_option("--neighbours", options.light.photon_light.neighbours,
                  "photons per density estimate of indirect light")
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
-  app.add_option("--max-radius", options.light.photon_light.max_radius,
-                 "largest radius of a density estimate of indirect light, m; 0: from the photons' spacing")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
   app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
                  "photons per density estimate of caustic light: fewer are sharper, more are smoother")
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
-  app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
-                 "largest radius of a density estimate of caustic light, m; 0: from the photons' spacing")
+  app.add_option("--influence-low", options.light.influence.low,
+                 "up to this influence of the movers, as a share of the static irradiance, indirect light is read from "
+                 "static records, updated by dynamic photons")
       ->capture_default_str()
       ->check(tools::number_between(0));
-  tools::influence_options(tool, options.light.influence);
+  app.add_option("--influence-high", options.light.influence.high,
+                 "from this influence on indirect light is gathered anew; blended in between")
+      ->capture_default_str()
+      ->check(tools::number_above(0));
 }
 
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   tool.size_option("--size", options.width, options.height, "picture size in pixels");
-  app.add_option("--spp", options.frame.samples,
-                 "samples per pixel; with --pixel-error or --target-error the number of first samples")
+  app.add_option("--spp", options.frame.samples, "samples per pixel; with --pixel-error the number of first samples")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
@@ -306,10 +303,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "samples; 0: no further samples; -1: 0.01 with photons or a cache, else 0")
       ->capture_default_str()
       ->check(tools::number_between(-1.0, 1.0));
-  app.add_option("--pixel-limit", options.frame.adaptive_limit,
-                 "largest number of samples of a pixel for --pixel-error")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 20));
   app.add_option("--seen-error", options.frame.seen_error,
                  "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "
                  "the picture's median to .18; --pixel-error then only distributes the samples; 0: off")
@@ -330,13 +323,6 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr, halves of spp/2 samples each; the halves are independent of each "
                "other, and of a frame with the same --seed but without --halves");
-  app.add_option("--target-error", options.frame.target_error,
-                 "double the samples until the estimated RMSE is below this fraction of the mean; 0: off")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
-  app.add_option("--max-spp", options.frame.max_samples, "largest number of samples of a pixel for --target-error")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 24));
   app.add_option(
          "--channels", options.channels,
          "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "

@@ -12,7 +12,6 @@
 // Formats: formats/radsamples/radsamples.md, formats/irradcache/irradcache.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -34,9 +33,8 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;  // final SCENE
-  std::string points, high, previous, output, cache, age_weight = "2", refresh_rule = "adaptive";
+  std::string points, high, previous, output, cache;
   int width = 640, height = 360;
-  bool resume = false;
   GatherOptions gather;
   PlacementOptions placement;
   TemporalOptions temporal;
@@ -114,19 +112,6 @@ FramePoints read_frame_points(tools::Tool& tool, const std::string& file, const 
   return {tools::read_divided_points(tool, file, high, frame), frame};
 }
 
-/// An empty set of kept records. Samples beyond an eighth of --max-memory are stored in a file in the folder of
-/// `output`.
-KeptHemispheres nothing_kept(const tools::Tool& tool, const std::string& output) {
-  KeptHemispheres kept;
-  const std::string folder = std::filesystem::path(output).parent_path();
-  if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0)
-    kept.shelf = std::make_shared<SampleShelf>(output == "-"    ? std::filesystem::temp_directory_path().string()
-                                               : folder.empty() ? "."
-                                                                : folder,
-                                               limit / 8);
-  return kept;
-}
-
 /// Reads what the previous frame has kept, and that frame's scene.
 void read_previous(tools::Tool& tool, tools::SceneInput& input, const std::string& file, const SceneFrame& now,
                    const FramePoints& points, Chain& chain) {
@@ -140,7 +125,7 @@ void read_previous(tools::Tool& tool, tools::SceneInput& input, const std::strin
 
 /// Gathers one frame from the previous one in `chain`, and stores it there.
 void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing,
-                  Chain& chain, bool resume) {
+                  Chain& chain) {
   const bool single = !options.previous.empty();
   const std::string samples = tools::frame_name(options.output, number),
                     cache = tools::frame_name(options.cache, number);
@@ -150,23 +135,15 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   FramePoints points = read_frame_points(tool, tools::frame_name(options.points, number),
                                          options.high.empty() ? "" : tools::frame_name(options.high, number), frame);
   const std::string history = points.read.history + tool.history_line(number);
-  if (resume && std::filesystem::is_regular_file(cache))
-    if (std::optional<KeptHemispheres> found =
-            chain.files.find(samples, frame, points, history, nothing_kept(tool, samples))) {
-      chain.kept = std::move(*found);
-      chain.follow(std::move(frame), points);
-      tool.say("frame " + std::to_string(number) + ": found");
-      return;
-    }
-  tools::Output kept_output(samples, tool.common().no_clobber), cache_output(cache, tool.common().no_clobber);
+  tools::Output kept_output(samples), cache_output(cache);
   if (single && !chain.before) {
     tool.stats().phase("read samples");
-    chain.kept = nothing_kept(tool, samples);
+    chain.kept = {};
     read_previous(tool, input, options.previous, frame, points, chain);
   }
   if (chain.before && chain.before->segment.first != frame.segment.first) chain.before.reset();
   check_points(chain, tools::frame_name(options.points, number), points);
-  if (!chain.before) chain.kept = nothing_kept(tool, samples);
+  if (!chain.before) chain.kept = {};
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
@@ -212,11 +189,9 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   chain.follow(std::move(frame), points);
 }
 
-void check(const CLI::App& app, const Options& options, const std::vector<int>& frames) {
+void check(const Options& options, const std::vector<int>& frames) {
   if (options.inputs.size() != 2 || options.inputs[0] != "final")
     throw InputError("'" + options.inputs[0] + "' is not a way to gather over time: final, then the scene");
-  if (app.get_option("--high-samples")->count() > 0 && options.high.empty())
-    throw InputError("--high-samples: a run without --high does not read it; leave it out");
   if (frames.size() > 1) {
     if (!options.previous.empty())
       throw InputError("--previous: of one frame; with --frames each follows the one before");
@@ -226,8 +201,6 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
     if (!std::is_sorted(frames.begin(), frames.end()))
       throw InputError("--frames: each frame follows the one before; name them upwards");
   }
-  if (options.resume && options.previous.empty() == false)
-    throw InputError("--resume: of a range; with --previous a frame is made anew");
 }
 
 void add_options(tools::Tool& tool, Options& options) {
@@ -243,9 +216,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "high part from photonmap-split, .irradpoints, or a pattern; --points is then the low part. Samples "
                  "hold the light that rays contribute; bright points are sampled explicitly in each frame")
       ->type_name("FILE");
-  app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 20));
   tool.leave_out_of_history(
       app.add_option("--previous", options.previous,
                      ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
@@ -258,33 +228,14 @@ void add_options(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--refresh", options.temporal.refresh,
                  "share of the cells that are traced in a frame, in records whose light changed: first the cells that "
-                 "motion concerns, then cells drawn by age, at least a quarter of this share (--refresh-rule)")
+                 "motion concerns, then cells drawn by age, at least a quarter of this share")
       ->capture_default_str()
       ->check(tools::number_between(0, 1));
-  app.add_option("--refresh-rule", options.refresh_rule,
-                 "adaptive: cells traced for a reason count towards --refresh; fixed: that share of the others is "
-                 "drawn by age, whatever moves")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"adaptive", "fixed"}));
-  app.add_option("--age-weight", options.age_weight,
-                 "probability with which a cell gets a new ray: in proportion to its age (1) or to the square of its "
-                 "age (2); oldest: the oldest cells first")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"1", "2", "oldest"}));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
                  "values give more records")
       ->capture_default_str()
       ->check(tools::number_between(1e-3, 2.0));
-  app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
-      ->capture_default_str()
-      ->check(tools::number_above(0));
-  app.add_option("--min-weight", options.placement.min_weight,
-                 "sum of records' weights from which on a pixel needs no further record")
-      ->capture_default_str()
-      ->check(tools::number_between(1e-6, 0.99));
-  tool.leave_out_of_history(
-      app.add_flag("--resume", options.resume, "keep frames that an earlier run of this command has finished"));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
   tool.output_option(options.output, ".radsamples file, or a pattern: the samples from which the next frame follows")
@@ -303,17 +254,12 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    check(tool.app(), options, frames);
-    options.temporal.rule = options.refresh_rule == "fixed" ? RefreshRule::fixed : RefreshRule::adaptive;
-    options.temporal.age_weight = options.age_weight == "1"   ? AgeWeight::linear
-                                  : options.age_weight == "2" ? AgeWeight::square
-                                                              : AgeWeight::oldest;
+    check(options, frames);
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | tools::SceneInput::a_camera);
     StaticTree standing;
     Chain chain;
-    bool resume = options.resume;
-    for (const int frame : frames) { gather_frame(tool, input, options, frame, standing, chain, resume); }
+    for (const int frame : frames) gather_frame(tool, input, options, frame, standing, chain);
     return tools::exit_ok;
   });
 }

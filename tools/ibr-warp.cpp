@@ -33,11 +33,12 @@ using namespace tempolux;
 
 namespace {
 
+constexpr double kPixelsPerDegree = 30;  ///< of the display: 960 pixels across 32 degrees
+
 struct Options {
   std::vector<std::string> keys;
   std::string scene, view, output, flow, mask, compression = "zip";
   std::vector<std::string> channels{"Z", "N", "id"};
-  double pixels_per_degree = 30;
   WarpOptions warp{.slow_deg_per_s = -1};
 
   ExrWriteOptions exr() const {
@@ -58,11 +59,11 @@ struct Outputs {
   std::optional<tools::Output> flow, mask;
   std::vector<tools::Output> candidates;
 
-  Outputs(const Options& o, int number, bool keep) : frame(tools::frame_name(o.output, number), keep) {
-    if (!o.flow.empty()) flow.emplace(tools::frame_name(o.flow, number), keep);
-    if (!o.mask.empty()) mask.emplace(tools::frame_name(o.mask, number), keep);
+  Outputs(const Options& o, int number) : frame(tools::frame_name(o.output, number)) {
+    if (!o.flow.empty()) flow.emplace(tools::frame_name(o.flow, number));
+    if (!o.mask.empty()) mask.emplace(tools::frame_name(o.mask, number));
     for (std::size_t k = 0; o.warp.separate && k < o.keys.size(); ++k)
-      candidates.emplace_back(candidate_name(tools::frame_name(o.output, number), k), keep);
+      candidates.emplace_back(candidate_name(tools::frame_name(o.output, number), k));
   }
   void commit() {
     frame.commit();
@@ -128,7 +129,7 @@ void add_data(const Options& options, tools::SceneInput& input, tools::FramesOfS
 void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& input,
                 const std::vector<tools::LoadedKey>& keys, tools::FramesOfScene& frames, StaticTree& standing,
                 int number) {
-  Outputs outputs(options, number, tool.common().no_clobber);
+  Outputs outputs(options, number);
   tool.stats().phase("evaluate");
   const SceneFrame& frame = frames.at(number, true);
   const tools::KeysOfFrame placed(tool, keys, frames, number);
@@ -142,7 +143,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
   tool.stats().phase("warp", true);
   WarpTarget target{&seen.camera(), &seen.seen(), {}, &flow.speed, {}, {}};
   VisionOptions viewer{vision::display_named("office")};
-  viewer.display.pixels_per_degree = options.pixels_per_degree;
+  viewer.display.pixels_per_degree = kPixelsPerDegree;
   viewer.frames_per_second = input.time().fps;
   target.see_gloss = [&](const GlossInDoubt& doubt) {
     return error_probability(doubt.picture, doubt.error, doubt.counted, flow, viewer);
@@ -172,7 +173,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
 
 /// Warps to a view that is read from a file, without a scene.
 void warp_view(tools::Tool& tool, const Options& options, const std::vector<tools::LoadedKey>& keys) {
-  Outputs outputs(options, 0, tool.common().no_clobber);
+  Outputs outputs(options, 0);
   const Image other = load_exr(options.view, {.our_names = true});
   tool.depends_on(options.view);
   const FrameCamera camera = camera_of(other, options.view);
@@ -209,7 +210,7 @@ void check(const tools::Tool& tool, Options& options, bool several) {
       throw InputError("--channels: '" + group +
                        "' is colour, which comes from the keys; name data: Z, N, P, id, albedo, motion");
   check_channels(options.channels);
-  if (options.warp.slow_deg_per_s < 0) options.warp.slow_deg_per_s = slow_speed(options.pixels_per_degree);
+  if (options.warp.slow_deg_per_s < 0) options.warp.slow_deg_per_s = slow_speed(kPixelsPerDegree);
 }
 
 void add_options(tools::Tool& tool, Options& options) {
@@ -229,32 +230,14 @@ void add_options(tools::Tool& tool, Options& options) {
       ->delimiter(',')
       ->type_name("NAMES")
       ->default_str("Z,N,id");
-  app.add_option("--specular-share", options.warp.specular_share,
-                 "specular light that only one key shows is masked if it is more than this share of the pixel's light; "
-                 "if both keys show it, it is masked where a viewer would see their difference")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1));
   app.add_option("--edge-share", options.warp.edge_share,
                  "edge pixels are masked if the keys differ by more than this share of the light")
       ->capture_default_str()
       ->check(tools::number_between(0));
-  app.add_option("--light-share", options.warp.light_share,
-                 "pixels are masked if the keys' light differs by more than this share")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
-  app.add_option(
-         "--slow", options.warp.slow_deg_per_s,
-         "moving pixels slower than this are masked, degrees/s; -1: the speed that follows from --pixels-per-degree")
+  app.add_option("--slow", options.warp.slow_deg_per_s,
+                 "moving pixels slower than this are masked, degrees/s; -1: 1.41, half a pixel between two frames")
       ->capture_default_str()
       ->check(tools::number_between(-1));
-  app.add_option("--pixels-per-degree", options.pixels_per_degree,
-                 "pixels per degree of the display; 30 gives --slow 1.41")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1000));
-  app.add_option("--magnified", options.warp.most_magnified,
-                 "a pixel is masked if every key shows its surface this many times smaller, by area")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 64));
   app.add_option("--compression", options.compression, "EXR compression")
       ->capture_default_str()
       ->check(CLI::IsMember({"zip", "none"}));

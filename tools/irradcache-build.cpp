@@ -20,7 +20,6 @@
 #include "tools/common/tool_main.h"
 #include "tools/stages/build_records.h"
 #include "tools/stages/importance.h"
-#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 
@@ -45,27 +44,22 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "both" && options.photons.empty() == options.points.empty())
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
   if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
-  if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records", "--high"});
+  if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--high"});
   if (!options.high.empty() && (!options.update.empty() || options.map == "static"))
     throw InputError(
         "--high: parts of light are those of a whole scene's map; leave out --update and --map static, or give the "
         "whole");
-  if (options.high.empty()) refuse_unread(app, "a run without --high", {"--high-samples"});
   if (mode == "points" && options.dynamic.size() > 1)
     throw InputError("--dynamic: points take one map, that of their frame");
-  tools::check_influence(options.influence);
   if (options.update.empty() != options.dynamic.empty())
     throw InputError("--update and --dynamic go together: static points, and the change that movers make");
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(
-        app, "points",
-        {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high-samples", "--records",
-         "--rays", "--error-bound", "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
+    refuse_unread(app, "points", {"--points", "--rays", "--error-bound", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
-                  {"--photons", "--importance", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
+                  {"--photons", "--importance", "--point-count", "--light-samples", "--keep-points"});
   if (options.point_count < 1 || options.point_count > kMaxPoints)
     throw InputError("--point-count: " + std::to_string(options.point_count) + " is not from 1 to " +
                      std::to_string(kMaxPoints));
@@ -87,10 +81,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "high part from photonmap-split; --points or --photons is then the low part, in the same format. "
                  "Records sample bright points explicitly; points hold the light of both parts")
       ->type_name("FILE");
-  app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 20));
-  app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count,
                     "irradiance points per side of all static surfaces; movers get as many per area");
   app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
@@ -108,10 +98,6 @@ void add_options(tools::Tool& tool, Options& options) {
          "with --update: .photons file of this frame from photon-trace --map dynamic. For records the files of earlier "
          "frames may follow: where movers changed the light in those frames, records are gathered anew, too")
       ->type_name("FILE");
-  tools::influence_options(tool, options.influence);
-  app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
-      ->capture_default_str()
-      ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
       ->capture_default_str()
       ->check(tools::number_between(1, 4096));
@@ -125,13 +111,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "value, but at least 5 and at most 20 degrees")
       ->capture_default_str()
       ->check(tools::number_between(1e-3, 2.0));
-  app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
-      ->capture_default_str()
-      ->check(tools::number_above(0));
-  app.add_option("--min-weight", options.placement.min_weight,
-                 "sum of records' weights from which on a pixel needs no further record")
-      ->capture_default_str()
-      ->check(tools::number_between(1e-6, 0.99));
   app.add_option("--mask", options.mask,
                  "EXR file, or a pattern, such as a mask of ibr-warp: records only for pixels where a channel is not 0")
       ->type_name("FILE");

@@ -37,7 +37,6 @@ namespace {
 struct Options {
   std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", map = "global",
                              importance, paths, static_paths;
-  float volume_share = PhotonOptions{}.volume_share;
   tools::UpdateArguments updating;
 };
 
@@ -98,29 +97,10 @@ PhotonOptions photon_options_of(const tools::Tool& tool, const Options& options,
   return photon_options;
 }
 
-/// A frame and the tracer of its photons.
-struct TracedFrame {
-  SceneFrame frame;
-  Tracer tracer;
-  Lights lights;
-  PhotonTracer photons;
-  TracedFrame(SceneFrame at, EmissionTable emission, const PhotonOptions& options)
-      : frame(std::move(at)), tracer(frame), lights(frame, emission), photons(tracer, lights, options) {}
-};
-
-std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const std::vector<formats::ViewSphere>& view,
-                                              const PhotonOptions& options, int frame_number) {
-  SceneFrame frame = input.at(frame_number);
-  EmissionTable emission = input.emission(frame.frame);
-  emission.aim = spheres_in_scene(view, frame.origin);
-  const auto traced = std::make_shared<TracedFrame>(std::move(frame), std::move(emission), options);
-  return {traced, &traced->photons};
-}
-
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                  const std::vector<formats::ViewSphere>& view, int frame_number, StaticTree& standing,
                  tools::KeptMap& kept) {
-  tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
+  tools::Output output(tools::frame_name(options.output, frame_number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
   EmissionTable emission = input.emission(frame.frame);
@@ -130,7 +110,6 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   const Lights lights(frame, emission);
 
   PhotonOptions photon_options = photon_options_of(tool, options, frame_number);
-  photon_options.volume_share = options.volume_share;
   photon_options.pilots = tools::pilots_of(options.updating, photon_options, frame.frame);
   const formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
 
@@ -139,8 +118,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   const PhotonMapResult result =
       options.updating.updates()
           ? update_map(tool, options.updating,
-                       {frame, photons, photon_options, header, tools::frame_name(options.output, frame.frame),
-                        [&](int other) { return tracer_at(input, view, photon_options, other); }},
+                       {frame, photons, photon_options, header, tools::frame_name(options.output, frame.frame)},
                        sink_of(output), kept)
           : write_photon_map(photons, photon_options, header, sink_of(output),
                              [&](double fraction) { tool.progress(fraction); });
@@ -175,10 +153,9 @@ Movers movers_in(tools::SceneInput& input, const Segment& segment, std::size_t i
 /// Traces the static map of a segment and finds its touched paths.
 void trace_static(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                   const std::vector<formats::ViewSphere>& view, int frame_number) {
-  tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
+  tools::Output output(tools::frame_name(options.output, frame_number));
   std::optional<tools::Output> paths_output;
-  if (!options.paths.empty())
-    paths_output.emplace(tools::frame_name(options.paths, frame_number), tool.common().no_clobber);
+  if (!options.paths.empty()) paths_output.emplace(tools::frame_name(options.paths, frame_number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = static_scene_of(input.at(frame_number));
   const Segment& segment = frame.segment;
@@ -257,7 +234,7 @@ void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string&
 /// Traces the dynamic map of a frame: the touched paths with and without the movers.
 void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                       const std::vector<formats::ViewSphere>& view, int frame_number, StaticTree& tree) {
-  tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
+  tools::Output output(tools::frame_name(options.output, frame_number));
   const std::string file = tools::frame_name(options.static_paths, frame_number);
   tool.stats().phase("read paths");
   tool.depends_on(file);
@@ -306,7 +283,7 @@ void check(const CLI::App& app, const Options& options) {
   if (options.map != "dynamic") return;
   if (options.static_paths.empty())
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
-  for (const char* name : {"--photons", "--kinds", "--groups", "--volume-share"})
+  for (const char* name : {"--photons", "--kinds", "--groups"})
     if (app.get_option(name)->count() > 0)
       throw InputError(std::string(name) + ": of --map dynamic the static map has it");
 }
@@ -340,9 +317,6 @@ int main(int argc, char** argv) {
   app.add_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map")
       ->type_name("FILE");
   tools::add_update_options(app, options.updating);
-  app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
-      ->capture_default_str()
-      ->check(tools::number_between(0.001, 1));
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
 
   return tool.run([&] {

@@ -2,7 +2,6 @@
 //
 //     photonmap-split p.irradpoints --low low.irradpoints --high high.irradpoints
 //     photon-trace room.glb -o - | photonmap-split - --low low.photons --high high.photons --energy 8
-//     photonmap-split p.photons --kind caustic -o caustic.photons --rest others.photons
 //
 // Method: docs/methods/split.md. Formats: formats/photons/photons.md, formats/irradpoints/irradpoints.md.
 #include <CLI/CLI.hpp>
@@ -26,12 +25,9 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string input, low, high, kinds, output, rest, cell = "auto", limit;
-  double energy = BrightLimit{}.times_mean;
+  std::string input, low, high, cell = "auto";
+  double energy = kBrightLimit;
 
-  BrightLimit bright_limit() const {
-    return {energy, limit.empty() ? std::nullopt : std::optional(double(tools::parse_count(limit)))};
-  }
   /// m; empty: automatic.
   std::optional<double> cell_edge() const {
     if (cell == "auto") return std::nullopt;
@@ -42,10 +38,9 @@ struct Options {
   }
 };
 
-/// The two outputs, created before the work. `first` gets the low part or the chosen kinds.
+/// The two outputs, created before the work.
 struct Outputs {
-  tools::Output first;
-  std::optional<tools::Output> second;
+  tools::Output low, high;
 };
 
 auto sink_of(tools::Output& output) {
@@ -119,7 +114,7 @@ class PhotonFile {
 formats::PhotonHeader part_header(const tools::Tool& tool, formats::PhotonHeader header, const std::string& part) {
   header.history += tool.history_line();
   header.base_name.clear(), header.base_digest.clear();
-  if (!part.empty()) header.part = part;
+  header.part = part;
   return header;
 }
 
@@ -141,9 +136,9 @@ void split_photons(tools::Tool& tool, const std::string& path, const Options& op
   FluxCells cells(*edge, 0);
   file.read("cells", [&](const formats::PhotonBlock& block) { add_flux(block, cells); });
   refuse_part(options.input, file.header().part);
-  cells.close(options.bright_limit());
-  formats::PhotonWriter low(sink_of(outputs.first), part_header(tool, file.header(), "low"));
-  formats::PhotonWriter high(sink_of(*outputs.second), part_header(tool, file.header(), "high"));
+  cells.close(options.energy);
+  formats::PhotonWriter low(sink_of(outputs.low), part_header(tool, file.header(), "low"));
+  formats::PhotonWriter high(sink_of(outputs.high), part_header(tool, file.header(), "high"));
   file.read("divide", [&](const formats::PhotonBlock& block) {
     const DividedPhotons parts = divide(block, cells);
     low.write(parts.low);
@@ -166,7 +161,7 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
   const double edge = options.cell_edge().value_or(4 * spacing);
   FluxCells cells(edge, spacing * spacing);
   add_flux(file.records, spacing * spacing, cells);
-  cells.close(options.bright_limit());
+  cells.close(options.energy);
   tool.stats().phase("divide");
   const DividedPoints parts = divide(file.records, cells);
   const auto write = [&](tools::Output& output, const char* part,
@@ -178,104 +173,14 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
     writer.write(points);
     writer.finish();
   };
-  write(outputs.first, "low", parts.low);
-  write(*outputs.second, "high", parts.high);
+  write(outputs.low, "low", parts.low);
+  write(outputs.high, "high", parts.high);
   count_cells(tool, cells, edge);
   tool.stats().count("low", double(parts.low.size()));
   tool.stats().count("high", double(parts.high.size()));
 }
 
-/// The names of `list`, in its order, that are in `chosen`; with `in` false, those that are not.
-std::string names_in(const std::string& list, const std::vector<std::string>& chosen, bool in) {
-  std::string names;
-  for (const std::string& name : CLI::detail::split(list, ','))
-    if ((std::ranges::find(chosen, name) != chosen.end()) == in) names += (names.empty() ? "" : ",") + name;
-  return names;
-}
-
-const std::vector<std::string> kKinds{"direct", "caustic", "indirect", "volume"};
-
-/// The kinds of a file in two lists: the kinds that --kind names, and all others.
-struct KindLists {
-  std::string chosen, rest;
-};
-KindLists kinds_of(const Options& options, const std::string& held) {
-  const std::vector<std::string> wanted = tools::parse_list(options.kinds, kKinds);
-  for (const std::string& kind : wanted)
-    if (names_in(held, {kind}, true).empty())
-      throw InputError(options.input + ": holds no " + kind + " light (its kinds: " + held + "); choose among these");
-  KindLists lists{names_in(held, wanted, true), names_in(held, wanted, false)};
-  if (!options.rest.empty() && lists.rest.empty())
-    throw InputError("--rest: no kind is left beside " + options.kinds + " in " + options.input + "; leave it out");
-  return lists;
-}
-
-void choose_photons(tools::Tool& tool, const std::string& path, const Options& options, Outputs& outputs) {
-  tool.stats().phase("divide");
-  formats::PhotonReader reader(path, {.digest = false});
-  const KindLists kinds = kinds_of(options, reader.header().kinds);
-  unsigned bits = 0;
-  for (unsigned k = 0; k < kKinds.size(); ++k)
-    bits |= unsigned(!names_in(kinds.chosen, {kKinds[k]}, true).empty()) << k;
-  formats::PhotonHeader header = part_header(tool, reader.header(), "");
-  header.kinds = kinds.chosen;
-  formats::PhotonWriter chosen(sink_of(outputs.first), header);
-  header.kinds = kinds.rest;
-  std::optional<formats::PhotonWriter> rest;
-  if (outputs.second) rest.emplace(sink_of(*outputs.second), header);
-  formats::PhotonBlock block;
-  while (reader.read_block(block)) {
-    const ChosenPhotons parts = choose_kinds(block, bits);
-    chosen.write(parts.chosen);
-    if (rest) rest->write(parts.rest);
-  }
-  tool.stats().count("chosen", double(chosen.finish(reader.totals(), reader.ledger()).photon_count));
-  if (rest) tool.stats().count("rest", double(rest->finish(reader.totals(), reader.ledger()).photon_count));
-}
-
-void choose_points(tools::Tool& tool, const std::string& path, const Options& options, Outputs& outputs) {
-  tool.stats().phase("read");
-  const formats::IrradpointsFile file = formats::load_irradpoints(path);
-  const KindLists kinds = kinds_of(options, file.header.kinds);
-  tool.stats().phase("divide");
-  const auto write = [&](tools::Output& output, const std::string& list) {
-    formats::IrradpointsHeader header = file.header;
-    header.history += tool.history_line();
-    header.kinds = list;
-    header.columns = 0;  // noise is of caustic and indirect light together
-    std::vector<formats::IrradiancePointRecord> points = file.records;
-    for (formats::IrradiancePointRecord& point : points) {
-      point.noise = {};
-      if (names_in(list, {"direct"}, true).empty()) point.direct = {};
-      if (names_in(list, {"caustic"}, true).empty()) point.caustic = {};
-      if (names_in(list, {"indirect"}, true).empty()) point.indirect = {};
-    }
-    formats::IrradpointsWriter writer(sink_of(output), header);
-    writer.write(points);
-    writer.finish();
-  };
-  write(outputs.first, kinds.chosen);
-  if (outputs.second) write(*outputs.second, kinds.rest);
-  tool.stats().count("chosen", double(file.records.size()));
-  if (outputs.second) tool.stats().count("rest", double(file.records.size()));
-}
-
-void check(const CLI::App& app, const Options& options) {
-  const bool by_kind = !options.kinds.empty();
-  if (by_kind && options.output.empty()) throw InputError("--kind needs -o: where light of these kinds goes");
-  if (!by_kind && (options.low.empty() || options.high.empty()))
-    throw InputError(options.low.empty() && options.high.empty()
-                         ? "says not how to divide: give --low and --high, or --kind and -o"
-                         : "--low and --high go together, or light would be lost");
-  for (const char* name : {"--low", "--high", "--energy", "--cell", "--limit"})
-    if (by_kind && app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": not with --kind");
-  for (const char* name : {"--output", "--rest"})
-    if (!by_kind && app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": only with --kind");
-}
-
 void run(tools::Tool& tool, const Options& options) {
-  check(tool.app(), options);
-  const bool by_kind = !options.kinds.empty(), keep = tool.common().no_clobber;
   options.cell_edge();
   const std::string path = tools::readable_name(options.input);
   tool.depends_on(options.input);
@@ -284,30 +189,27 @@ void run(tools::Tool& tool, const Options& options) {
   if (!points && !head.starts_with("\x89TPHOT"))
     throw InputError(options.input +
                      ": holds neither photons nor irradiance points; give a .photons or .irradpoints file");
-  Outputs outputs{tools::Output(by_kind ? options.output : options.low, keep), std::nullopt};
-  const std::string& second = by_kind ? options.rest : options.high;
-  if (!second.empty()) outputs.second.emplace(second, keep);
-  if (by_kind) (points ? choose_points : choose_photons)(tool, path, options, outputs);
-  else (points ? split_points : split_photons)(tool, path, options, outputs);
+  Outputs outputs{tools::Output(options.low), tools::Output(options.high)};
+  (points ? split_points : split_photons)(tool, path, options, outputs);
   tool.stats().phase("commit");
-  outputs.first.commit();
-  if (outputs.second) outputs.second->commit();
+  outputs.low.commit();
+  outputs.high.commit();
   tool.stats().end_phase();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("photonmap-split",
-                   "Divide light in two files: a low and a high part by brightness, or by kind of path.", argc, argv);
+  tools::Tool tool("photonmap-split", "Divide light in two files by brightness: a low and a high part.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")
       ->required()
       ->type_name("FILE");
   tool.output_option(options.low, "the low part: light of bright cells up to their limit, and all light of other cells",
-                     "--low");
-  tool.output_option(options.high, "the high part: light of bright cells above their limit", "--high");
+                     "--low")
+      ->required();
+  tool.output_option(options.high, "the high part: light of bright cells above their limit", "--high")->required();
   app.add_option("--energy", options.energy,
                  "a cell keeps at most this multiple of the mean irradiance in the low part")
       ->capture_default_str()
@@ -317,12 +219,6 @@ int main(int argc, char** argv) {
                  "on average)")
       ->capture_default_str()
       ->type_name("METRES");
-  app.add_option("--limit", options.limit, "instead of --energy: a cell keeps at most the flux of N mean records")
-      ->type_name("N");
-  app.add_option("--kind", options.kinds, "divide by kind of light instead: some of direct,caustic,indirect,volume")
-      ->type_name("KINDS");
-  tool.output_option(options.output, "with --kind: light of these kinds; - for standard output");
-  tool.output_option(options.rest, "with --kind: light of all other kinds", "--rest");
   tool.common_options(0);
   return tool.run([&] {
     run(tool, options);

@@ -33,12 +33,11 @@ struct Options {
                      filter = "auto", report, measured;
   std::vector<std::string> recipes;
   double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
-  double tidy_hours = 24;
   Wish wish;
 };
 
 void remove_left_overs(tools::Tool& tool, const Options& options) {
-  const tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
+  const tools::Tidied tidied = tools::tidy(options.tidy_folder);
   std::cout << "removed " << tidied.removed << " unfinished files of " << tidied.bytes << " bytes, kept " << tidied.kept
             << " that may still be written\n";
   tool.stats().count("removed", double(tidied.removed));
@@ -96,15 +95,13 @@ void plan_range(tools::Tool& tool, const Options& options, const std::string& ar
                ": " + reason.because);
 }
 
-void add_wishes(tools::Tool& tool, Options& options) {
+/// Options that choose the methods.
+void add_methods(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   Wish& wish = options.wish;
   const auto choice = [&](const char* name, std::string& value, const char* help,
                           const std::vector<std::string>& values) {
     app.add_option(name, value, help)->capture_default_str()->check(CLI::IsMember(values));
-  };
-  const auto words = [&](const char* name, std::string& value, const char* help) {
-    app.add_option(name, value, help)->type_name("WORDS");
   };
   choice("--quality", options.quality, "draft: more noise, in less than half of the time; final", {"draft", "final"});
   choice("--method", options.method,
@@ -125,6 +122,15 @@ void add_wishes(tools::Tool& tool, Options& options) {
          {"auto", "anew", "light", "records", "time"});
   choice("--split", wish.split, "on: bright points are sampled explicitly; auto: where a pilot finds that it pays",
          {"auto", "on", "off"});
+}
+
+/// Options that replace figures of the preset.
+void add_figures(tools::Tool& tool, Options& options) {
+  CLI::App& app = tool.app();
+  Wish& wish = options.wish;
+  const auto words = [&](const char* name, std::string& value, const char* help) {
+    app.add_option(name, value, help)->type_name("WORDS");
+  };
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
   app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")
       ->capture_default_str();
@@ -185,7 +191,8 @@ int main(int argc, char** argv) {
   app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; not needed for --tidy and --estimate");
   tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")
       ->capture_default_str();
-  add_wishes(tool, options);
+  add_methods(tool, options);
+  add_figures(tool, options);
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;
@@ -204,11 +211,6 @@ int main(int argc, char** argv) {
   add(app.add_option("--tidy", options.tidy_folder,
                      "remove unfinished files of killed runs from this folder and its subfolders instead of planning"))
       ->type_name("FOLDER");
-  add(app.add_option("--tidy-hours", options.tidy_hours,
-                     "age in hours from which on unfinished files of other hosts are removed"))
-      ->type_name("HOURS")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   std::string arguments = std::filesystem::current_path().string();

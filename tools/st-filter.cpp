@@ -61,7 +61,7 @@ class FilterRun {
 
   /// Filters frame `at` of the list with the frames `first` to `last`.
   void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
-    tools::Output output(file, tool_.common().no_clobber);
+    tools::Output output(file);
     loaded_.erase(loaded_.begin(), loaded_.lower_bound(first));
     const std::string& name = names_[at].frame;
     LoadedFrame& middle = load(at, true);
@@ -252,10 +252,6 @@ int main(int argc, char** argv) {
                  "number of the input frame that is filtered; 1: the first; 0: the middle one")
       ->capture_default_str()
       ->check(tools::number_between(0, 1 << 20));
-  app.add_option("--scales", options.filter.scales,
-                 "number of fits: 1: over 5x5 pixels; 2: also over 15x15 pixels; 0: filter in time alone")
-      ->capture_default_str()
-      ->check(tools::number_between(0, kMostScales));
   app.add_option("--channels", options.channels,
                  "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; if not given: all "
                  "channels of the frame")

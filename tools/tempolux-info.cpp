@@ -74,7 +74,6 @@ int answer(tools::Tool& tool, Request& request) {
       throw InputError("--exposure: '" + request.exposure + "' is neither auto nor a number of stops");
     request.picture.exposure_stops = stops;
   }
-  const bool keep = tool.common().no_clobber;
   for (const std::string& file : request.files) tool.depends_on(file);
   if (request.diff) {
     if (request.files.size() != 2) throw InputError("--diff: takes two files");
@@ -91,21 +90,21 @@ int answer(tools::Tool& tool, Request& request) {
     return tools::exit_ok;
   }
   if (!request.sheet.empty()) {
-    tools::Output output(request.sheet, keep);
+    tools::Output output(request.sheet);
     request.picture.progress = [&](double done) { tool.progress(done); };
     tools::write_sheet(request.files, request.picture, output);
     output.commit();
   } else if (!request.png.empty()) {
-    tools::Output output(request.png, keep);
+    tools::Output output(request.png);
     tools::write_picture(only_file(request, "--png"), request.picture, output);
     output.commit();
   } else if (!request.groups.empty()) {
-    tools::Output output(request.groups, keep, tools::Output::Kind::text);
+    tools::Output output(request.groups, tools::Output::Kind::text);
     tools::print_groups(only_file(request, "--groups"), output);
     output.commit();
   } else if (!request.format.empty()) {
     using Kind = tools::Output::Kind;
-    tools::Output output(request.output, keep, request.format == "csv" ? Kind::text : Kind::binary);
+    tools::Output output(request.output, request.format == "csv" ? Kind::text : Kind::binary);
     tools::export_points(only_file(request, "--export"), request.format, output);
     output.commit();
   } else {

@@ -3,7 +3,6 @@
 //
 //     volume-compose room.glb --frame 12 --photons 12.photons --base 12.exr -o 12.smoke.exr
 //     volume-compose room.glb --frame 12 --photons 12.photons --points 12.irradpoints --base 12.exr -o 12.smoke.exr
-//     volume-compose room.glb --frame 12 --photons 12.photons --radiance-only light.vdb
 //     volume-compose room.glb --frames 0-23 --photons p.####.photons --base f.####.exr -o s.####.exr
 //
 // Method: docs/methods/volume_photons.md.
@@ -28,7 +27,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, photons, points, base, output, radiance, direct = "rays", filter = "gaussian";
+  std::string scene, photons, points, base, output, direct = "rays", filter = "gaussian";
   MediaLight::Options light;
   ComposeOptions compose;
   bool half_float = false;
@@ -143,7 +142,7 @@ Vec3 eye_of(const CameraView& view, const PlacedCamera& camera, const SceneFrame
 }
 
 void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StaticTree& standing) {
-  tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
+  tools::Output output(tools::frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   const std::string base_name = tools::frame_name(options.base, number);
@@ -197,32 +196,6 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
   tool.stats().count("rays", double(counts.camera + counts.shadow + counts.bounce));
 }
 
-/// Writes the radiance of the smoke as OpenVDB.
-void write_radiance(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
-  tools::Output output(tools::frame_name(options.radiance, number), tool.common().no_clobber);
-  tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(number);
-  const PlacedCamera camera = frame.camera(input.scene().camera_node(tool.common().camera));
-  const CameraView view(camera, frame.origin, 16, 9);
-  ColourGrid grid{"radiance", {1, 1, 1}, {}, {1, 1, 1}, {Rgb(0.0f)}};
-  if (frame.media) {
-    tool.stats().phase("photons");
-    const Lights lights(frame, input.emission(frame.frame));
-    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame),
-                     channel_sum(lights.total_flux()), options.light);
-    read_photons(tool, tools::frame_name(options.photons, number), frame, options, light);
-    tool.stats().phase("filter", true);
-    light.finish();
-    grid = light.source(frame.origin);
-    tool.stats().count("photons", double(light.sums().front().photons()));
-  }
-  tool.stats().phase("write");
-  const std::vector<unsigned char> file = vdb_file_of(grid);
-  output.write(file.data(), file.size());
-  output.commit();
-  tool.stats().end_phase();
-}
-
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
@@ -234,7 +207,9 @@ void add_options(tools::Tool& tool, Options& options) {
          ".irradpoints file, or a pattern: rays from the eye find light in a peak of the phase function and end at "
          "these points; without points photons give this light, with more noise. Read only if |g| is above about .7")
       ->type_name("FILE");
-  app.add_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")->type_name("FILE");
+  app.add_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")
+      ->type_name("FILE")
+      ->required();
   app.add_option("--direct", options.direct,
                  "direct light: rays: lamps are sampled, with shadows; photons: by density, as all other light")
       ->capture_default_str()
@@ -257,12 +232,7 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(0, 64));
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
-  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr");
-  tool.output_option(
-      options.radiance,
-      "OpenVDB file, or a pattern, instead of a frame: grid `radiance`, the light that smoke scatters towards the "
-      "camera divided by its extinction, W/m^2/sr; light of photons only, so all light with --direct photons",
-      "--radiance-only");
+  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 
 }  // namespace
@@ -275,11 +245,7 @@ int main(int argc, char** argv) {
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    if (options.radiance.empty() && (options.base.empty() || options.output.empty()))
-      throw InputError("name the frame that gets the smoke, --base, and the one to make, -o; or --radiance-only FILE");
-    if (!options.radiance.empty() && !(options.base.empty() && options.output.empty()))
-      throw InputError("--radiance-only: makes no frame; leave out --base and -o");
-    if (frames.size() > 1 && !tools::has_frame_pattern(options.radiance.empty() ? options.output : options.radiance))
+    if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example f.####.exr");
     if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
     options.light.direct = options.direct == "photons";
@@ -292,10 +258,7 @@ int main(int argc, char** argv) {
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
     StaticTree standing;
-    if (!options.radiance.empty())
-      for (const int frame : frames) write_radiance(tool, input, options, frame);
-    else
-      for (const int frame : frames) compose(tool, input, options, frame, standing);
+    for (const int frame : frames) compose(tool, input, options, frame, standing);
     return tools::exit_ok;
   });
 }

@@ -224,22 +224,6 @@ void MediaLight::finish() {
   for (const FluenceSums& sums : sums_) volumes_.emplace_back(sums, options_.filter);
 }
 
-ColourGrid MediaLight::source(Vec3d origin) const {
-  const FluenceSums& sums = sums_.front();
-  ColourGrid grid{"radiance", sums.counts(), Vec3d(sums.box().lower) + origin, {}, {}};
-  for (int a = 0; a < 3; ++a)
-    grid.voxel[a] = double(sums.box().upper[a] - sums.box().lower[a]) / std::max(1, sums.counts()[std::size_t(a)]);
-  for (std::int32_t x = 0; x < grid.counts[0]; ++x)
-    for (std::int32_t y = 0; y < grid.counts[1]; ++y)
-      for (std::int32_t z = 0; z < grid.counts[2]; ++z) {
-        const Vec3d at = Vec3d(sums.box().lower) +
-                         Vec3d{(x + 0.5) * grid.voxel.x, (y + 0.5) * grid.voxel.y, (z + 0.5) * grid.voxel.z};
-        const float extinction = media_.extinction(Vec3(at));
-        grid.values.push_back(extinction > 0 ? scattered(Vec3(at)) * (1 / extinction) : Rgb(0.0f));
-      }
-  return grid;
-}
-
 Rgb MediaLight::scattered(Vec3 point) const {
   Rgb sum{0.0f};
   const std::span<const Medium> media = media_.all();

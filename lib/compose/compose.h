@@ -13,7 +13,6 @@
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
 #include "lib/volume/medium.h"
-#include "lib/volume/vdb_write.h"
 
 namespace tempolux {
 
@@ -38,10 +37,6 @@ class MediaLight {
   /// Source of light scattered towards the eye, per length [W/m^3/sr]: the sum over the media of sigma_s fluence / 4
   /// pi, for the photons' share.
   Rgb scattered(Vec3 point) const;
-  /// scattered() over extinction at the centres of the volume's cells, in world space = scene space + `origin`: the
-  /// source function, which is the radiance [W/m^2/sr] of the smoke if it were opaque; black without extinction. Call
-  /// after finish().
-  ColourGrid source(Vec3d origin) const;
   const PhaseShare& share(float g) const;
   /// True if rays take a share of any medium's light.
   bool has_rays() const;

@@ -70,18 +70,16 @@ double FluxCells::area_of(const Cell& cell) const {
   return cell.hull.area() * edge_ * edge_ * (double(cell.slant) / 65536 / double(cell.count));
 }
 
-void FluxCells::close(const BrightLimit& limit) {
+void FluxCells::close(double limit) {
   struct Figures {
     Key key;
     Cell* cell;
     double area, flux;
   };
   std::vector<Figures> all;
-  std::uint64_t records = 0;
   for (auto& [key, cell] : cells_) {
     const double flux = cell.flux[0].value() + cell.flux[1].value() + cell.flux[2].value();
     if (flux > 0) all.push_back({key, &cell, area_of(cell), flux});
-    records += cell.count;
   }
   std::sort(all.begin(), all.end(), [](const Figures& a, const Figures& b) { return a.key < b.key; });
   area_ = flux_ = 0;
@@ -89,9 +87,8 @@ void FluxCells::close(const BrightLimit& limit) {
 
   bright_ = 0;
   for (const Figures& f : all) {
-    const double kept =
-        limit.records ? *limit.records * flux_ / double(records) : limit.times_mean * mean_irradiance() * f.area;
-    const bool unknown = !limit.records && limit.times_mean > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
+    const double kept = limit * mean_irradiance() * f.area;
+    const bool unknown = limit > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
     // If limit or mean are infinite, inf - inf and 0 * inf give NaN: the cell then keeps all light.
     f.cell->low_share = unknown || !(kept < f.flux) ? 1 : kept / f.flux;
     bright_ += f.cell->low_share < 1;

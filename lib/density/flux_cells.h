@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -21,12 +20,7 @@ struct CellPlace {
   std::uint16_t object = 0;  ///< id.object
 };
 
-/// The limit above which a cell is bright.
-struct BrightLimit {
-  double times_mean = 4;  ///< >= 0: a cell keeps at most this multiple of the mean irradiance
-  /// If given, used instead: a cell keeps at most the flux of this many records of mean flux.
-  std::optional<double> records = {};
-};
+inline constexpr double kBrightLimit = 4;  ///< a cell keeps at most this multiple of the mean irradiance
 
 /// Cells of one edge length. Records belong to one cell if their positions are in the same cube of a grid, they lie on
 /// the same object, and their normals are closest to the same of the six axes. Each cell sums the flux of its records
@@ -40,8 +34,9 @@ class FluxCells {
   /// First pass: adds a record with this flux [W], times its reflectance if known. The flux must be finite; its
   /// magnitude counts.
   void add(const CellPlace& place, const std::array<float, 3>& flux);
-  /// Ends the first pass: computes the share of its light that each cell keeps.
-  void close(const BrightLimit& limit);
+  /// Ends the first pass: computes the share of its light that each cell keeps. A cell keeps at most `limit` >= 0 times
+  /// the mean irradiance.
+  void close(double limit);
 
   /// Second pass: the share in [0, 1] of a record's light that stays in the low part; 1 if its cell got no record.
   double low_share(const CellPlace& place) const;

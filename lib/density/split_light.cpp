@@ -168,12 +168,4 @@ void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high) {
   low.totals.photon_count = low.photons.size();
 }
 
-ChosenPhotons choose_kinds(const PhotonBlock& block, unsigned kinds) {
-  ChosenPhotons parts;
-  parts.chosen.group = parts.rest.group = block.group;
-  for (std::size_t i = 0; i < block.photons.size(); ++i)
-    append((kinds >> unsigned(block.photons[i].kind)) & 1 ? parts.chosen : parts.rest, block, i, block.photons[i]);
-  return parts;
-}
-
 }  // namespace tempolux

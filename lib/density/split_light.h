@@ -55,10 +55,4 @@ std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low,
 /// caller checks this.
 void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high);
 
-/// Photons of the kinds in `kinds` (bit k: PathKind k), and the others.
-struct ChosenPhotons {
-  formats::PhotonBlock chosen, rest;
-};
-ChosenPhotons choose_kinds(const formats::PhotonBlock& block, unsigned kinds);
-
 }  // namespace tempolux

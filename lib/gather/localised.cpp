@@ -88,7 +88,7 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
     // than the mean raised to least_, so an interpolated influence may be above `low` although no record with a
     // raised value is.
     const Rgb light = pair.irradiance;
-    if (light.r > thresholds_.low * (thresholds_.absolute ? 1 : light.g)) above.push_back(pair);
+    if (light.r > thresholds_.low * light.g) above.push_back(pair);
     if (thresholds_.gathered_share(relative(light)) < 1) below.push_back(pair);
   }
   above_.add(above);
@@ -96,7 +96,7 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
 }
 
 float InfluenceField::relative(Rgb pair) const {
-  if (thresholds_.absolute || !(pair.r > 0)) return pair.r;
+  if (!(pair.r > 0)) return pair.r;
   return pair.r / std::max({pair.g, least_, 1e-30f});
 }
 

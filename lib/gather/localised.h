@@ -14,8 +14,7 @@ namespace tempolux {
 /// Thresholds of influence that choose a frame's records. Below `low` light comes from static records changed by
 /// dynamic photons (E_t), above `high` from records gathered for the frame (E_y). In between both are mixed.
 struct InfluenceThresholds {
-  float low = 0.06f, high = 0.15f;  ///< shares of the static irradiance, or W/m^2 if absolute
-  bool absolute = false;
+  float low = 0.06f, high = 0.15f;  ///< shares of the static irradiance
 
   /// Share of E_y: 0 up to low, 1 from high on, t^2 (3 - 2 t) with t = (I - low) / (high - low) in between.
   float gathered_share(float influence) const;

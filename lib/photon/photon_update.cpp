@@ -45,24 +45,11 @@ class Groups {
   bool more_ = false;
 };
 
-struct Traced {
-  std::vector<PhotonBatch> batches;
-  std::vector<PhotonBatch> taken_back;  ///< of the corrective pass
-};
-
 std::vector<PhotonBatch> trace_group(const PhotonTracer& tracer, std::uint32_t group) {
   std::vector<PhotonBatch> batches;
   const auto [first, last] = tracer.batches_of(group);
   for (std::size_t b = first; b < last; ++b) batches.push_back(tracer.trace(b));
   return batches;
-}
-
-bool same(const std::vector<formats::Photon>& stored, const std::vector<PhotonBatch>& traced) {
-  std::size_t at = 0;
-  for (const PhotonBatch& batch : traced)
-    for (const formats::Photon& photon : batch.block.photons)
-      if (at == stored.size() || !(stored[at++] == photon)) return false;
-  return at == stored.size();
 }
 
 }  // namespace
@@ -123,7 +110,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
                                       : previous.is_kept() ? previous.own
                                                            : own_groups(path);
   differing.insert(groups.begin(), groups.end());
-  const bool overlay = update.may_overlay && !update.corrective && differing.size() * 2 <= header.group_count;
+  const bool overlay = update.may_overlay && differing.size() * 2 <= header.group_count;
   if (overlay) {
     header.base_name = upon_overlay ? previous.header.base_name : file_name(path);
     header.base_digest = upon_overlay ? previous.header.base_digest : previous.digest;
@@ -162,30 +149,14 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
   parallel_ordered(
       groups.size(), std::size_t(2 * parallel_thread_count()),
       [&](std::size_t i) -> std::shared_ptr<void> {
-        auto traced = std::make_shared<Traced>();
-        if (update.corrective)
-          traced->taken_back = trace_group(update.corrective(previous.ledger[groups[i]].frame), groups[i]);
-        traced->batches = trace_group(tracer, groups[i]);
-        return traced;
+        return std::make_shared<std::vector<PhotonBatch>>(trace_group(tracer, groups[i]));
       },
       [&](std::size_t i, void* pointer) {
         keep_until(groups[i]);
-        if (update.corrective) {
-          std::vector<formats::Photon> stored;
-          photons_of(groups[i], [&](const formats::PhotonBlock& block) {
-            stored.insert(stored.end(), block.photons.begin(), block.photons.end());
-          });
-          const auto& taken_back = static_cast<const Traced*>(pointer)->taken_back;
-          for (const PhotonBatch& batch : taken_back) count(batch, result);
-          if (!same(stored, taken_back))
-            throw InputError(path + ": negative photons do not take back group " + std::to_string(groups[i]) +
-                             " of frame " + std::to_string(previous.ledger[groups[i]].frame) +
-                             ": it was traced by other options; trace the map anew");
-        }
         formats::GroupFlux entry;
         bool any = false;
         if (previous.is_kept()) previous.photons[groups[i]].clear();
-        for (PhotonBatch& batch : static_cast<Traced*>(pointer)->batches) {
+        for (PhotonBatch& batch : *static_cast<std::vector<PhotonBatch>*>(pointer)) {
           add_to_ledger(batch, header.identity.first_frame, entry);
           count(batch, result);
           if (batch.block.photons.empty()) continue;

@@ -41,16 +41,10 @@ struct MapUpdate {
       previous;  ///< a map kept in memory, which becomes the new map if that is an overlay; otherwise it is released
   std::span<const std::uint32_t> groups;  ///< to be traced again, ascending
   bool may_overlay = false;               ///< true if the new map lies in the same folder
-  /// If given, the photons of the chosen groups are not dropped but cancelled by negative photons, as Dmitriev et al.
-  /// do: traced through the scene of the frame in which they were traced, whose tracer this function returns. This
-  /// costs a second trace and changes nothing, since paths have the same random numbers: cancelled photons must equal
-  /// the stored ones (else InputError). For comparison.
-  std::function<const PhotonTracer&(int frame)> corrective;
 };
 
 /// Writes the map of `header` through `sink`: the chosen groups are traced, all others copied from the earlier map. If
-/// at most half of the groups differ from the base the map is written as an overlay on it, otherwise whole (also with
-/// `corrective`).
+/// at most half of the groups differ from the base the map is written as an overlay on it, otherwise whole.
 PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options,
                                   formats::PhotonHeader header, const MapUpdate& update,
                                   const std::function<void(const void*, std::size_t)>& sink);

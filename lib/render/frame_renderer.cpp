@@ -102,16 +102,14 @@ void join_halves(RenderedFrame& frame) {
 /// Seeds of the two halves of a reference, different from any frame's seed. If one half used a frame's random numbers,
 /// a frame with the same seed and number of samples would look better than it is.
 std::array<std::uint64_t, 2> seeds_of_halves(const FrameOptions& options) {
-  constexpr std::uint64_t one = 0x68616c665f6f6e65ull, two = 0x68616c665f74776full, second = 0x7365636f6e645f32ull;
-  if (options.halves) return {options.seed ^ one, options.seed ^ two};
-  return {options.seed, options.seed ^ second};
+  return {options.seed ^ 0x68616c665f6f6e65ull, options.seed ^ 0x68616c665f74776full};
 }
 
 }  // namespace
 
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
   RenderedFrame frame;
-  const bool halves = options.halves || options.target_error > 0;
+  const bool halves = options.halves;
   if (!halves && options.pixel_error > 0) {
     frame.mean = empty_layers(view, options);
     render_adaptive(scene, view, options, frame);
@@ -122,16 +120,10 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
     const std::array<std::uint64_t, 2> seeds = seeds_of_halves(options);
     frame.half[0] = empty_layers(view, options);
     frame.half[1] = empty_layers(view, options);
-    int count = std::max(1, options.samples / 2);
-    for (;;) {
-      for (int h = 0; h < 2; ++h)
-        render_pass(scene, view, seeds[h], options, count, frame.half[h], frame.rays,
-                    options.progress ? [&, h](double f) { options.progress((f + h) / 2); } : options.progress);
-      join_halves(frame);
-      if (!(options.target_error > 0) || frame.own_rmse <= options.target_error * mean_radiance(frame.mean)) break;
-      count = frame.half[0].samples;
-      if (4 * count > options.max_samples) break;
-    }
+    for (int h = 0; h < 2; ++h)
+      render_pass(scene, view, seeds[h], options, std::max(1, options.samples / 2), frame.half[h], frame.rays,
+                  options.progress ? [&, h](double f) { options.progress((f + h) / 2); } : options.progress);
+    join_halves(frame);
     frame.noise = noise_of_halves(frame.half[0].pixels, frame.half[1].pixels);
   }
   for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;

@@ -19,14 +19,12 @@ struct FrameOptions {
   /// Keep two halves for a reference: independent of each other and of any frame rendered without halves, whatever its
   /// seed.
   bool halves = false;
-  double target_error = 0;    ///< > 0: double the samples until the estimated relative RMSE is below this
-  int max_samples = 1 << 20;  ///< upper limit of samples for target_error
   /// > 0: after `samples` everywhere, take more where pixels are noisy (lib/render/adaptive_frame.h).
   double pixel_error = 0;
   /// > 0: take further samples, distributed as pixel_error asks for, until the noise is below this, in codes
   /// (FrameNoise). Needs pixel_error.
   double seen_error = 0;
-  int adaptive_limit = 1024;
+  int adaptive_limit = 1024;  ///< largest number of samples of a pixel with pixel_error
   /// True if lib/filter will filter the frame: pixel_error then considers only the noise that the filter does not
   /// remove, which is that of the layer specular.
   bool for_filter = false;
@@ -53,7 +51,7 @@ struct LayerImage {
 
 struct RenderedFrame {
   LayerImage mean;     ///< mean over all samples
-  LayerImage half[2];  ///< empty unless halves or target_error
+  LayerImage half[2];  ///< empty unless halves
   RayCounts rays;
   RayCounts noise_rays;          ///< rays of the second rendering of pixels that are rendered twice
   double samples_per_pixel = 0;  ///< mean over pixels

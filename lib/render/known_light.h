@@ -28,7 +28,7 @@ class KnownLight {
   /// The bright points among `points`; places without a record sample them explicitly. Rays from such a place
   /// contribute the remaining light.
   const BrightPoints* bright = nullptr;
-  int bright_samples = 0;  ///< explicit samples at the first such place of a camera path; later places take one each
+  int bright_samples = 4;  ///< explicit samples at the first such place of a camera path; later places take one each
   /// Can a ray meet a light, that is, is there an environment or an emitting surface? If not, and indirect and caustic
   /// light are known at a place, no ray is sent from its Lambert lobe: the ray would find nothing.
   bool lights_are_met = true;

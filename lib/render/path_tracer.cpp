@@ -15,97 +15,21 @@ constexpr std::uint32_t kRouletteFrom = 3;  ///< number of bounces that always s
 /// Below 1, so that paths in a lossless box end, after 500 bounces in the mean.
 constexpr float kLargestSurvival = 0.998f;
 
-/// The lobes of a surface for which light is sampled. Where the path forks, both lobes are followed, so each lobe's pdf
-/// is the Bsdf's pdf times a factor.
-struct SampledLobes {
-  bool diffuse, specular;
-  float times_diffuse = 1, times_specular = 1;
-  float remaining_share = 1;  ///< share of the Lambert lobe's light that is to be added (KnownHere)
-  bool forks = false;
-
-  /// probability: Bsdf::fork_probability, in (0, 1). At glass times_diffuse is the reflection's factor and
-  /// times_specular that of the transmission.
-  void fork(float probability) {
-    forks = true;
-    times_diffuse = 1 / probability;
-    times_specular = 1 / (1 - probability);
-  }
-};
-
-/// Samples light at x and adds it to the layer of the lobe that scatters it, weighted by MIS. [Veach 1997 (9.14)]
-struct LightAdder {
-  const RenderScene& scene;
-  const ShadingPoint& x;
-  SampledLobes lobes;
-  const Rgb& throughput;
-  const EyePath& path;
-  const Inside& inside;
-  const PixelRandom& random;
-  std::uint32_t bounce;
-
-  bool nothing() const { return !(lobes.diffuse && x.bsdf.has_diffuse()) && !specular(); }
-  bool specular() const { return lobes.specular && x.bsdf.has_specular() && !x.bsdf.specular_is_delta(); }
-  /// Rough glass also transmits light from behind. Draws one side for this sample; `share` receives the probability of
-  /// that side. Returns true for the side behind.
-  bool draw_side(float& share) const {
-    const float share_behind = x.bsdf.light_share_behind();
-    share = 1;
-    if (!(share_behind > 0)) [[likely]]
-      return false;
-    const bool behind = random.get1(bounce, Purpose::light_choice) < share_behind;
-    share = behind ? share_behind : 1 - share_behind;
-    return behind;
-  }
-  /// Takes one sample of the lights `from`.
-  void add_one(Lights::From from, Layers& result, std::uint64_t& shadow_rays) const {
-    float share;
-    const bool behind = draw_side(share);
-    LightSample light;
-    if (scene.lights.sample(x.surface.position, behind ? -x.normal : x.normal,
-                            random.get2(bounce, Purpose::light_point), light, from))
-      add(light, behind, share, result, shadow_rays);
-  }
-  /// Takes one sample of a directional light.
-  void add_sun(Layers& result, std::uint64_t& shadow_rays) const {
-    float share;
-    const bool behind = draw_side(share);
-    LightSample light;
-    if (scene.lights.sample_sun(x.surface.position, behind ? -x.normal : x.normal, random.get1(bounce, Purpose::sun),
-                                light))
-      add(light, behind, share, result, shadow_rays);
-  }
-  void add(const LightSample& light, bool behind, float share, Layers& result, std::uint64_t& shadow_rays) const;
-};
-
-void LightAdder::add(const LightSample& light, bool behind, float share, Layers& result,
-                     std::uint64_t& shadow_rays) const {
-  const bool has_diffuse = lobes.diffuse && x.bsdf.has_diffuse(), has_specular = specular();
-  if (behind ? !x.sees_behind(light.wi) : !x.sees(light.wi)) return;
-  const Bsdf::Direction from = x.bsdf.along(x.frame.to_local(light.wi));
-  const Vec3 wi = from.w;
-  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * lobes.remaining_share : Rgb(0.0f);
-  Rgb glossy = has_specular ? x.bsdf.eval_specular(from, x.eye) : Rgb(0.0f);
-  if (!light.delta) {
-    const float pdf = light.pdf_solid_angle * share;
-    if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
-    if (has_specular) glossy *= mis_power(pdf, lobes.times_specular * x.bsdf.pdf_specular(wi, x.eye));
-  }
-  if (is_black(diffuse) && is_black(glossy)) return;
-  ++shadow_rays;
-  const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
-  const float passed = transmittance(scene.tracer, shadow, {random.hashed(), bounce, way_shadow});
-  if (!(passed > 0)) return;
-  Rgb arriving = throughput * light.facing_irradiance * (std::abs(wi.z) / share) * passed;
-  if (inside.any())
-    arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
-  result[path.after(true).layer()] += arriving * diffuse;
-  result[path.after(false).layer()] += arriving * glossy;
-}
-
-/// What a path remembers of its last event D (a Lambert lobe or a collision in a medium): which light was added there
-/// already, and how far its rays have spread since.
-struct SinceDiffuse {
-  bool matte = false;           ///< there was an event D
+/// The state of a path on its way: the ray from the last vertex, and the light that must not be added again. An event D
+/// is a Lambert lobe or a collision in a medium.
+struct PathState {
+  PixelRandom random;           ///< random numbers of the path, by bounce
+  Layers* result;               ///< the part of the sample that receives the light found from here on
+  Ray ray;                      ///< leaves the last vertex
+  Hit hit;                      ///< what `ray` meets
+  RayCone cone;                 ///< width of the path's footprint, for look-ups in textures
+  Rgb throughput{1.0f};         ///< product of the weights of all events
+  EyePath path;                 ///< the events so far: they decide the layer of light that is found
+  Inside inside;                ///< the glass in which `ray` runs
+  LastScatter last;             ///< the last vertex and its pdf, for MIS
+  std::uint32_t bounce = 0;     ///< number of events
+  bool forked = false;          ///< both lobes of a surface have been followed: the path forks once
+  bool matte = false;           ///< there was an event D; the fields below describe what happened since the last one
   bool caustic_known = false;   ///< light that arrives there by events S was added
   bool indirect_known = false;  ///< light that arrives there by events D was added
   bool specular = false;        ///< the path has had events S since
@@ -116,44 +40,32 @@ struct SinceDiffuse {
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
 
-  void advance(float way) { distance += spread * way; }
   /// Widens the spread by a glossy event of this pdf [1/sr]. A Lambert lobe has 1/pi in its middle, and its rays spread
   /// by one metre per metre.
   void widen(float density) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * density))); }
-
   /// True if light that the path meets now was not added yet.
   bool light_counts() const { return !(matte && specular && caustic_known); }
 };
 
-/// The light that was added at x from records, points and photons; the path must not add it again.
-struct KnownHere {
-  bool indirect = false, direct = false, caustic = false;
-  bool bright_sampled = false;  ///< bright points were sampled explicitly
-  float remaining_share =
-      1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the path's previous place
-};
-
-/// The state of a path on its way.
-struct Walk {
-  PixelRandom random;
-  Layers* result;  ///< the part of the sample that receives the light found from here on
-  Ray ray;
-  Hit hit;
-  RayCone cone;
-  Rgb throughput{1.0f};
-  EyePath path;
-  Inside inside;
-  LastScatter last;
-  SinceDiffuse since;
-  std::uint32_t bounce = 0;
-  bool forked = false;
-};
-
-/// A surface that a path has reached.
+/// A surface that a path has reached. Records, points and photons may hold light that arrives there; light that was
+/// added from them must not be added again.
 struct Vertex {
   const ShadingPoint& x;
   const SurfaceMaterial& material;
-  const KnownHere& here;
+  bool indirect_known = false;  ///< light that arrives by events D was added
+  bool direct_known = false;    ///< light that arrives from lights was added: none is sampled for the Lambert lobe
+  bool caustic_known = false;   ///< light that arrives by events S was added
+  bool bright_sampled = false;  ///< bright points were sampled explicitly
+  float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
+  bool forks = false;         ///< both lobes are followed
+  float times_diffuse = 1, times_specular = 1;  ///< probability of a lobe over the Bsdf's, if the path forks
+
+  /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
+  void fork(float diffuse_probability) {
+    forks = true;
+    times_diffuse = 1 / diffuse_probability;
+    times_specular = 1 / (1 - diffuse_probability);
+  }
 };
 
 class EyeTracer {
@@ -161,24 +73,37 @@ class EyeTracer {
   EyeTracer(const RenderScene& scene, const KnownLight* known, const PathEffort& effort, RayCounts& counts,
             PathParts& parts)
       : scene_(scene), known_(known), effort_(effort), counts_(counts), parts_(parts) {}
-  void follow(Walk walk) const;
+  void follow(PathState state) const;
 
  private:
   enum class Passed { through, scattered, ended };
-  Passed pass_media(const Media& media, Walk& walk) const;
-  bool scatter_in_medium(const MediumPoint& point, Walk& walk) const;
-  bool scatter(const Vertex& at, float u_lobe, float times, Walk& walk) const;
-  bool survives(Walk& walk, float most) const;
-  void go_on(const Ray& ray, Walk& walk) const;
-  void add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const;
-  void arrive(const SurfacePoint& point, Walk& walk) const;
-  KnownHere add_known_light(const ShadingPoint& x, Vec3 smooth, const Walk& walk) const;
-  bool leave(const Vertex& at, const SampledLobes& lobes, Walk& walk) const;
-  bool step(Walk& walk) const;
-  void go_onward(const Vertex& at, float u_lobe, float times, const Walk& walk) const;
-  void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
+  Passed pass_media(const Media& media, PathState& state) const;
+  bool scatter_in_medium(const MediumPoint& point, PathState& state) const;
+  bool scatter(const Vertex& at, float u_lobe, float times, PathState& state) const;
+  bool survives(PathState& state, float most) const;
+  /// Begins the part of a path that follows an event D.
+  static void begin_matte(bool caustic_known, bool indirect_known, bool bright_sampled, PathState& state) {
+    state.matte = true, state.specular = false;
+    state.caustic_known = caustic_known, state.indirect_known = indirect_known, state.bright_sampled = bright_sampled;
+    state.distance = 0, state.spread = 1;
+  }
+  void go_on(const Ray& ray, PathState& state) const;
+  bool samples_diffuse(const Vertex& at) const { return !at.direct_known && at.x.bsdf.has_diffuse(); }
+  bool samples_specular(const Vertex& at, const PathState& state) const {
+    return !(state.matte && state.caustic_known) && at.x.bsdf.has_specular() && !at.x.bsdf.specular_is_delta();
+  }
+  Lights::From sampled_lights() const { return scene_.suns_apart ? Lights::From::not_suns : Lights::From::all; }
+  void sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
+                    Layers& result) const;
+  void add_light(const Vertex& at, const PathState& state) const;
+  void arrive(const SurfacePoint& point, PathState& state) const;
+  void add_known_light(Vertex& at, Vec3 smooth, const PathState& state) const;
+  bool leave(const Vertex& at, PathState& state) const;
+  bool step(PathState& state) const;
+  void go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const;
+  void count(std::uint64_t rays, std::uint64_t& as, const PathState& state) const {
     as += rays;
-    if (walk.result == &parts_.onward)
+    if (state.result == &parts_.onward)
       // Nearest hit, surface and material cost twice as much as a shadow ray.
       counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;
   }
@@ -191,253 +116,288 @@ class EyeTracer {
 };
 
 /// Russian roulette; `most`: the largest survival probability.
-bool EyeTracer::survives(Walk& walk, float most) const {
-  if (walk.bounce + 1 < kRouletteFrom) return true;
-  return tempolux::survives(walk.throughput, most, walk.random.get1(walk.bounce, Purpose::roulette));
+bool EyeTracer::survives(PathState& state, float most) const {
+  if (state.bounce + 1 < kRouletteFrom) return true;
+  return tempolux::survives(state.throughput, most, state.random.get1(state.bounce, Purpose::roulette));
 }
 
-void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
-  walk.ray = ray;
-  count(1, counts_.bounce, walk);
-  walk.hit = {};
-  scene_.tracer.intersect(walk.ray, walk.hit);
-  ++walk.bounce;
+void EyeTracer::go_on(const Ray& ray, PathState& state) const {
+  state.ray = ray;
+  count(1, counts_.bounce, state);
+  state.hit = {};
+  scene_.tracer.intersect(state.ray, state.hit);
+  ++state.bounce;
 }
 
 /// Draws the next ray: an event D or S by u_lobe. times: the lobe's probability over the Bsdf's. Returns false if the
 /// path ends.
-bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, Walk& walk) const {
-  const auto& [x, material, here] = at;
-  const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
-  if (is_black(next.weight) || (here.direct && next.diffuse)) return false;
+bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& state) const {
+  const ShadingPoint& x = at.x;
+  const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, state.random.get2(state.bounce, Purpose::scatter));
+  if (is_black(next.weight) || (at.direct_known && next.diffuse)) return false;
   const Vec3 wi = x.frame.to_world(next.wi);
   if (next.transmitted ? !x.sees_behind(wi) : !x.sees(wi)) return false;
-  walk.throughput *= next.weight * (1 / times);
-  walk.path.scatter(next.diffuse);
+  state.throughput *= next.weight * (1 / times);
+  state.path.scatter(next.diffuse);
   if (next.diffuse) {
-    walk.throughput *= here.remaining_share;
-    walk.since = {true, here.caustic, here.indirect, false, here.bright_sampled, 0, 1};
+    state.throughput *= at.remaining_share;
+    begin_matte(at.caustic_known, at.indirect_known, at.bright_sampled, state);
   } else {
-    walk.since.specular = true;
-    walk.since.widen(x.bsdf.gloss_density(next.wi, x.eye));
+    state.specular = true;
+    state.widen(x.bsdf.gloss_density(next.wi, x.eye));
   }
-  const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
-  if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
-  if (!survives(walk, kLargestSurvival)) return false;
+  const bool front = dot(x.surface.normal_geometric, state.ray.direction) < 0;
+  if (!next.diffuse && is_solid_glass(at.material)) state.inside.scatter(x.surface.material, front, next.transmitted);
+  if (!survives(state, kLargestSurvival)) return false;
 
-  LastScatter& last = walk.last;
+  LastScatter& last = state.last;
   last.weighed = !next.delta;
-  if (next.diffuse) walk.cone = {};
+  if (next.diffuse) state.cone = {};
   last.position = x.surface.position;
   last.normal = next.transmitted ? -x.normal : x.normal;
   last.light_share = next.transmitted ? x.bsdf.light_share_behind() : 1 - x.bsdf.light_share_behind();
-  last.from = scene_.suns_apart ? Lights::From::not_suns : Lights::From::all;
+  last.from = sampled_lights();
   last.pdf_solid_angle =
       times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye) : x.bsdf.pdf_specular(next.wi, x.eye));
-  go_on(spawn_ray(x.surface, wi), walk);
+  go_on(spawn_ray(x.surface, wi), state);
   return true;
 }
 
 /// Scatters in a medium: samples a light, applies Russian roulette and draws a new ray. Returns false if the path ends.
-bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
-  walk.path.scatter_in_medium();
-  walk.since = {true, false, false, false, false, 0, 1};
-  walk.cone = {};
-  walk.throughput *= point.albedo;
-  if (is_black(walk.throughput)) return false;
-  const WayBits bits{walk.random.hashed(), walk.bounce, way_shadow_of_medium};
+bool EyeTracer::scatter_in_medium(const MediumPoint& point, PathState& state) const {
+  state.path.scatter_in_medium();
+  begin_matte(false, false, false, state);
+  state.cone = {};
+  state.throughput *= point.albedo;
+  if (is_black(state.throughput)) return false;
+  const WayBits bits{state.random.hashed(), state.bounce, way_shadow_of_medium};
   std::uint64_t shadow_rays = 0;
-  (*walk.result)[walk.path.layer()] +=
-      walk.throughput * scattered_lamp_light(scene_.tracer, scene_.lights, point,
-                                             walk.random.get2(walk.bounce, Purpose::light_point), true, bits,
-                                             shadow_rays);
-  count(shadow_rays, counts_.shadow, walk);
-  if (!survives(walk, kLargestSurvivalInMedia)) return false;
-  const Vec3 travel = sample_hg(point.g, point.travel, walk.random.get2(walk.bounce, Purpose::phase));
-  walk.last = {true, point.position, {}, pdf_hg(point.g, point.travel, travel), 1};
-  go_on({point.position, travel, 0, INFINITY}, walk);
+  (*state.result)[state.path.layer()] +=
+      state.throughput * scattered_lamp_light(scene_.tracer, scene_.lights, point,
+                                              state.random.get2(state.bounce, Purpose::light_point), true, bits,
+                                              shadow_rays);
+  count(shadow_rays, counts_.shadow, state);
+  if (!survives(state, kLargestSurvivalInMedia)) return false;
+  const Vec3 travel = sample_hg(point.g, point.travel, state.random.get2(state.bounce, Purpose::phase));
+  state.last = {true, point.position, {}, pdf_hg(point.g, point.travel, travel), 1};
+  go_on({point.position, travel, 0, INFINITY}, state);
   return true;
 }
 
-/// Passes the media between the last vertex and walk.hit.
-EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
-  const float way = walk.hit.surface == kNone ? INFINITY : walk.hit.t;
-  if (known_ && walk.bounce == 0) {
-    const auto passed = float(std::exp(-media.optical_depth(walk.ray.origin, walk.ray.direction, way)));
-    walk.throughput *= passed;
+/// Passes the media between the last vertex and state.hit.
+EyeTracer::Passed EyeTracer::pass_media(const Media& media, PathState& state) const {
+  const float way = state.hit.surface == kNone ? INFINITY : state.hit.t;
+  if (known_ && state.bounce == 0) {
+    const auto passed = float(std::exp(-media.optical_depth(state.ray.origin, state.ray.direction, way)));
+    state.throughput *= passed;
     parts_.own.coverage = 1 - passed;
     return Passed::through;
   }
   MediumPoint collision;
-  if (!collides(media, walk.ray, way, walk.random.hashed(), walk.bounce, collision)) return Passed::through;
-  if (walk.bounce == 0) parts_.own.coverage = 1;
-  if (walk.since.indirect_known) return Passed::ended;
-  if (walk.inside.any())
-    walk.throughput *=
-        walk.inside.transmittance_over(scene_.frame().materials, length(collision.position - walk.ray.origin));
-  return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
+  if (!collides(media, state.ray, way, state.random.hashed(), state.bounce, collision)) return Passed::through;
+  if (state.bounce == 0) parts_.own.coverage = 1;
+  if (state.indirect_known) return Passed::ended;
+  if (state.inside.any())
+    state.throughput *=
+        state.inside.transmittance_over(scene_.frame().materials, length(collision.position - state.ray.origin));
+  return scatter_in_medium(collision, state) ? Passed::scattered : Passed::ended;
+}
+
+/// Takes one sample of the lights or of the sun and adds it to the layer of the lobe that scatters it, weighted by MIS.
+/// [Veach 1997 (9.14)]
+void EyeTracer::sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
+                             Layers& result) const {
+  const ShadingPoint& x = at.x;
+  const bool has_diffuse = samples_diffuse(at), has_specular = samples_specular(at, state);
+  // Rough glass also transmits light from behind. One side is drawn for this sample.
+  const float share_behind = x.bsdf.light_share_behind();
+  bool behind = false;
+  float share = 1;
+  if (share_behind > 0) [[unlikely]] {
+    behind = random.get1(state.bounce, Purpose::light_choice) < share_behind;
+    share = behind ? share_behind : 1 - share_behind;
+  }
+  LightSample light;
+  const Vec3 normal = behind ? -x.normal : x.normal;
+  const bool found =
+      of_sun ? scene_.lights.sample_sun(x.surface.position, normal, random.get1(state.bounce, Purpose::sun), light)
+             : scene_.lights.sample(x.surface.position, normal, random.get2(state.bounce, Purpose::light_point), light,
+                                    sampled_lights());
+  if (!found || (behind ? !x.sees_behind(light.wi) : !x.sees(light.wi))) return;
+  const Bsdf::Direction from = x.bsdf.along(x.frame.to_local(light.wi));
+  const Vec3 wi = from.w;
+  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * at.remaining_share : Rgb(0.0f);
+  Rgb glossy = has_specular ? x.bsdf.eval_specular(from, x.eye) : Rgb(0.0f);
+  if (!light.delta) {
+    const float pdf = light.pdf_solid_angle * share;
+    if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
+    if (has_specular) glossy *= mis_power(pdf, at.times_specular * x.bsdf.pdf_specular(wi, x.eye));
+  }
+  if (is_black(diffuse) && is_black(glossy)) return;
+  count(1, counts_.shadow, state);
+  const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
+  const float passed = transmittance(scene_.tracer, shadow, {random.hashed(), state.bounce, way_shadow});
+  if (!(passed > 0)) return;
+  Rgb arriving = state.throughput * light.facing_irradiance * (std::abs(wi.z) / share) * passed;
+  if (state.inside.any())
+    arriving *= state.inside.transmittance_over(scene_.frame().materials, length(light.position - x.surface.position));
+  result[state.path.after(true).layer()] += arriving * diffuse;
+  result[state.path.after(false).layer()] += arriving * glossy;
 }
 
 /// Samples light at a surface. At the first matte surface effort_.lit samples are added to the part `lit`. Samples of
 /// the sun hardly differ from each other, so one per camera ray is enough; it belongs to the path's own part.
-void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const {
-  const auto adder = [&](const PixelRandom& random) {
-    return LightAdder{scene_, x, lobes, walk.throughput, walk.path, walk.inside, random, walk.bounce};
-  };
-  if (adder(walk.random).nothing()) return;
-  std::uint64_t rays = 0;
-  if (scene_.suns_apart) adder(walk.random).add_sun(*walk.result, rays);
-  const Lights::From from = scene_.suns_apart ? Lights::From::not_suns : Lights::From::all;
-  if (!first_matte) adder(walk.random).add_one(from, *walk.result, rays);
+void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
+  if (!samples_diffuse(at) && !samples_specular(at, state)) return;
+  if (scene_.suns_apart) sample_light(at, state, state.random, true, *state.result);
+  const bool first_matte = state.path.sharp() && at.x.bsdf.has_diffuse();
+  if (!first_matte) sample_light(at, state, state.random, false, *state.result);
   else
-    for (std::uint32_t i = 0; i < effort_.lit; ++i) {
-      const PixelRandom random = walk.random.of_sample(effort_.lit_first + i);
-      adder(random).add_one(from, parts_.lit, rays);
-    }
-  count(rays, counts_.shadow, walk);
+    for (std::uint32_t i = 0; i < effort_.lit; ++i)
+      sample_light(at, state, state.random.of_sample(effort_.lit_first + i), false, parts_.lit);
 }
 
 /// Follows effort_.onward rays from the Lambert lobe of the first matte surface: the part `onward`.
-void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const Walk& walk) const {
-  if (at.here.indirect && at.here.caustic && !known_->lights_are_met) return;
+void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const {
+  if (at.indirect_known && at.caustic_known && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
-    Walk next = walk;
-    next.random = walk.random.of_sample(effort_.onward_first + i);
+    PathState next = state;
+    next.random = state.random.of_sample(effort_.onward_first + i);
     next.result = &parts_.onward;
     if (scatter(at, u_lobe, times, next)) follow(next);
   }
 }
 
 /// Arrival at a surface: applies the absorption of glass on the way and adds the surface's emission.
-void EyeTracer::arrive(const SurfacePoint& point, Walk& walk) const {
+void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
   const SceneFrame& frame = scene_.frame();
-  const Vec3 wo = -walk.ray.direction;
+  const Vec3 wo = -state.ray.direction;
   const bool front = dot(point.normal_geometric, wo) > 0;
-  if (walk.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
-    walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, walk.hit.t);
-  walk.cone.advance(walk.hit.t);
-  walk.since.advance(walk.hit.t);
-  if (walk.since.light_counts())
-    (*walk.result)[walk.path.layer()] +=
-        walk.throughput * weighed_emission(scene_.lights, point, wo, walk.last, walk.cone.width);
+  if (state.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
+    state.throughput *= state.inside.transmittance_to(frame.materials, point.material, front, state.hit.t);
+  state.cone.advance(state.hit.t);
+  state.distance += state.spread * state.hit.t;
+  if (state.light_counts())
+    (*state.result)[state.path.layer()] +=
+        state.throughput * weighed_emission(scene_.lights, point, wo, state.last, state.cone.width);
 }
 
-/// Follows the rays that leave a surface: one, or one for each lobe where the path forks. Returns false if `walk` ends.
-bool EyeTracer::leave(const Vertex& at, const SampledLobes& lobes, Walk& walk) const {
+/// Follows the rays that leave a surface: one, or one for each lobe where the path forks. Returns false if `state`
+/// ends.
+bool EyeTracer::leave(const Vertex& at, PathState& state) const {
   const ShadingPoint& x = at.x;
-  const bool first_matte = walk.path.sharp() && x.bsdf.has_diffuse();
-  float u_lobe = walk.random.get1(walk.bounce, Purpose::lobe), times = 1;
-  if (lobes.forks) {
-    const float diffuse = 1 / lobes.times_diffuse;
-    walk.forked = true;
-    Walk branch = walk;
-    if (scatter(at, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular, branch))
+  const bool first_matte = state.path.sharp() && x.bsdf.has_diffuse();
+  float u_lobe = state.random.get1(state.bounce, Purpose::lobe), times = 1;
+  if (at.forks) {
+    const float diffuse = 1 / at.times_diffuse;
+    state.forked = true;
+    PathState branch = state;
+    if (scatter(at, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), at.times_specular, branch))
       follow(branch);
     u_lobe *= diffuse;
-    times = lobes.times_diffuse;
+    times = at.times_diffuse;
   }
   if (first_matte && x.bsdf.draws_diffuse(x.eye, u_lobe)) {
-    go_onward(at, u_lobe, times, walk);
+    go_onward(at, u_lobe, times, state);
     return false;
   }
-  return scatter(at, u_lobe, times, walk);
+  return scatter(at, u_lobe, times, state);
 }
 
 /// Adds the light that records, points and photons hold for x. smooth: the shading normal without a normal map.
-KnownHere EyeTracer::add_known_light(const ShadingPoint& x, Vec3 smooth, const Walk& walk) const {
+void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state) const {
   const KnownLight& known = *known_;
-  const SinceDiffuse& since = walk.since;
-  const EyePath& path = walk.path;
-  Layers& result = *walk.result;
-  const float u = walk.random.get1(walk.bounce, Purpose::gather);
-  KnownHere here;
-  if (since.bright_sampled && !since.specular)
-    here.remaining_share = known.remaining_share(x.surface, x.normal_geometric, since.distance, u);
+  const ShadingPoint& x = at.x;
+  const EyePath& path = state.path;
+  Layers& result = *state.result;
+  const float u = state.random.get1(state.bounce, Purpose::gather);
+  if (state.bright_sampled && !state.specular)
+    at.remaining_share = known.remaining_share(x.surface, x.normal_geometric, state.distance, u);
   // The Lambert lobe's total for uniform light is rho (1 - A_S(wo)), see bsdf.h.
-  const Rgb reflected = walk.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.remaining_share);
+  const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
   // The layer indirect, or the layer of the surface that the path has seen before.
   const Layer layer = path.after(true).after(true).layer();
   // With bright points, a point's irradiance represents only the remaining light. A glossy ray has not sampled bright
   // points, so the path continues.
-  if (since.matte || (since.spread > 0 && !known.bright)) {
+  if (state.matte || (state.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::PointLight> stored =
-            known.point_light(x.surface, x.normal_geometric, since.distance, u)) {
+            known.point_light(x.surface, x.normal_geometric, state.distance, u)) {
       ++counts_.points_read;
       result[layer] += reflected * stored->irradiance;
-      return {true, stored->has_direct, true, false, here.remaining_share};
+      at.indirect_known = at.caustic_known = true;
+      at.direct_known = stored->has_direct;
+      return;
     }
   }
   const auto sample_bright = [&](int samples) {
     if (!known.bright) return;
     GatherCounts rays;
-    const PathRandom random(walk.random.hashed().bits(walk.bounce, Purpose::gather), walk.bounce);
+    const PathRandom random(state.random.hashed().bits(state.bounce, Purpose::gather), state.bounce);
     const Bsdf* const coat = x.bsdf.has_specular() ? &x.bsdf : nullptr;
     result[layer] +=
         reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
     counts_.shadow += rays.shadow_rays;
-    here.bright_sampled = true;
+    at.bright_sampled = true;
   };
   if (known.has_caustic()) {
-    here.caustic = true;
+    at.caustic_known = true;
     result[path.after(true).after(false).layer()] +=
         reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
   }
-  if (since.matte) {
+  if (state.matte) {
     sample_bright(1);
-    return here;
+    return;
   }
   Rgb noise(0.0f);
   if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, &noise)) {
     ++counts_.lookups;
-    here.indirect = true;
+    at.indirect_known = true;
     result[layer] += reflected * *indirect;
     if (layer == Layer::indirect) parts_.known_noise += reflected * noise;
   } else {
     ++counts_.gathered;
     sample_bright(known.bright_samples);
   }
-  return here;
 }
 
 /// Moves the path from one vertex to the next. Returns false if the path ends.
-bool EyeTracer::step(Walk& walk) const {
+bool EyeTracer::step(PathState& state) const {
   const SceneFrame& frame = scene_.frame();
   if (const Media* const media = frame.media.get()) [[unlikely]] {
-    const Passed media_event = pass_media(*media, walk);
+    const Passed media_event = pass_media(*media, state);
     if (media_event != Passed::through) return media_event == Passed::scattered;
   }
-  Layers& result = *walk.result;
-  if (walk.hit.surface == kNone) {
-    if (scene_.lights.has_environment() && walk.since.light_counts())
-      result[walk.path.layer()] += walk.throughput * weighed_environment(scene_.lights, walk.ray.direction, walk.last);
+  Layers& result = *state.result;
+  if (state.hit.surface == kNone) {
+    if (scene_.lights.has_environment() && state.light_counts())
+      result[state.path.layer()] +=
+          state.throughput * weighed_environment(scene_.lights, state.ray.direction, state.last);
     return false;
   }
   parts_.own.coverage = 1;
-  SurfacePoint point = scene_.tracer.surface_point(walk.hit);
-  arrive(point, walk);
+  SurfacePoint point = scene_.tracer.surface_point(state.hit);
+  arrive(point, state);
   // True if only light by events S may still be added.
-  const bool only_specular = walk.since.indirect_known;
-  if (only_specular && walk.since.caustic_known) return false;
+  const bool only_specular = state.indirect_known;
+  if (only_specular && state.caustic_known) return false;
 
   const Vec3 smooth = point.normal;
-  const SurfaceMaterial material(frame, point, walk.cone.width);
+  const SurfaceMaterial material(frame, point, state.cone.width);
   if (material.values().unlit) [[unlikely]] {
-    if (walk.path.sharp()) result[walk.path.layer()] += walk.throughput * material.values().base_color;
+    if (state.path.sharp()) result[state.path.layer()] += state.throughput * material.values().base_color;
     return false;
   }
-  const ShadingPoint x(point, -walk.ray.direction, material);
-  KnownHere here{only_specular, only_specular, only_specular};
-  if (known_ && !only_specular && x.bsdf.has_diffuse()) here = add_known_light(x, smooth, walk);
-  SampledLobes lobes{!here.direct, !(walk.since.matte && walk.since.caustic_known)};
-  lobes.remaining_share = here.remaining_share;
-  if (known_ && known_->forks() && !walk.forked && walk.path.sharp() && x.bsdf.forks())
-    lobes.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
-  add_light(x, lobes, walk.path.sharp() && x.bsdf.has_diffuse(), walk);
-  return !(here.direct && !x.bsdf.has_specular()) && leave({x, material, here}, lobes, walk);
+  const ShadingPoint x(point, -state.ray.direction, material);
+  Vertex at{x, material, only_specular, only_specular, only_specular};
+  if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
+  if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
+    at.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+  add_light(at, state);
+  return !(at.direct_known && !x.bsdf.has_specular()) && leave(at, state);
 }
 
-void EyeTracer::follow(Walk walk) const {
-  while (step(walk)) {}
+void EyeTracer::follow(PathState state) const {
+  while (step(state)) {}
 }
 
 }  // namespace
@@ -447,7 +407,7 @@ PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const 
   PathParts parts;
   ++counts.camera;
   EyeTracer(scene, known, effort, counts, parts)
-      .follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, {}, {}, {}});
+      .follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, {}, {}});
   return parts;
 }
 

@@ -113,7 +113,7 @@ double power_law_residuals(const std::vector<CurvePoint>& points, const Line& li
 
 }  // namespace
 
-std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs, TimeKind kind) {
+std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs) {
   using Key = std::tuple<std::optional<double>, std::map<std::string, std::string>>;
   std::vector<Curve> curves;
   std::vector<std::map<Key, Setting>> settings;
@@ -130,7 +130,7 @@ std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs, TimeKind kind
     if (!run.x) parameters["label"] = run.label;
     Setting& setting = settings[c][{run.x, parameters}];
     setting.x = run.x;
-    setting.times.push_back(kind == TimeKind::cpu ? run.cpu_s() : run.wall_s());
+    setting.times.push_back(run.cpu_s());
     setting.squares.push_back(run.error->mse);
     setting.standard_errors.push_back(run.error->mse_standard_error);
   }

@@ -10,8 +10,6 @@
 
 namespace tempolux {
 
-enum class TimeKind { cpu, wall };
-
 /// One setting of a chain: the median time and the mean square error of its repetitions (seeds).
 struct CurvePoint {
   std::optional<double> x;
@@ -29,7 +27,7 @@ struct Curve {
 };
 
 /// Curves in order of first appearance. Times and errors that are not positive are left out and counted.
-std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs, TimeKind kind);
+std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs);
 
 /// Slope and floor of a curve.
 struct CurveFit {

@@ -40,7 +40,7 @@ struct Range {
 
 }  // namespace
 
-std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat format) {
+std::string plot_script(const SceneReport& report, PlotFormat format) {
   std::string data, plots;
   Range time, error;
   const auto add_plot = [&](const std::string& plot) { plots += (plots.empty() ? "plot " : ", \\\n  ") + plot; };
@@ -63,25 +63,23 @@ std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat for
                number_text(curve.points.back().time_s, "%.9g") + "] sqrt(" + number_text(fit.noise, "%.9g") + "/x + " +
                number_text(fit.floor_squared, "%.9g") + ") with lines dt 3 lc " + style + " notitle");
   }
-  if (kind == TimeKind::cpu)
-    for (std::size_t i = 0; i < report.points.size(); ++i) {
-      const GivenPoint& point = report.points[i];
-      const std::string block = "$given" + std::to_string(i);
-      data +=
-          block + " << END\n" + number_text(point.cpu_s, "%.9g") + " " + number_text(point.rmse, "%.9g") + "\nEND\n";
-      time.include(point.cpu_s);
-      error.include(point.rmse);
-      add_plot(block + " with points ps 1.2 lw 1.5 pt " + std::to_string(1 + i % 3) + " lc " +
-               std::to_string(++colour) + " title " + quoted(point.label));
-    }
+  for (std::size_t i = 0; i < report.points.size(); ++i) {
+    const GivenPoint& point = report.points[i];
+    const std::string block = "$given" + std::to_string(i);
+    data += block + " << END\n" + number_text(point.cpu_s, "%.9g") + " " + number_text(point.rmse, "%.9g") + "\nEND\n";
+    time.include(point.cpu_s);
+    error.include(point.rmse);
+    add_plot(block + " with points ps 1.2 lw 1.5 pt " + std::to_string(1 + i % 3) + " lc " + std::to_string(++colour) +
+             " title " + quoted(point.label));
+  }
   if (plots.empty()) return "";
   return std::string("set terminal ") +
          (format == PlotFormat::svg ? "svg size 800,560 noenhanced background rgb 'white'\n"
                                     : "pngcairo size 1200,840 noenhanced fontscale 1.2\n") +
          "set logscale xy\nset grid\nset key top right opaque box lc rgb '#cccccc'\nset samples 400\n" +
-         "set format '%g'\n" + "set title " + quoted(report.scene) + "\nset xlabel " +
-         (kind == TimeKind::cpu ? "'CPU s'" : "'wall s'") + "\nset ylabel 'RMSE'\nset xrange " + time.text() +
-         "\nset yrange " + error.text() + "\n" + data + plots + "\n";
+         "set format '%g'\n" + "set title " + quoted(report.scene) +
+         "\nset xlabel 'CPU s'\nset ylabel 'RMSE'\nset xrange " + time.text() + "\nset yrange " + error.text() + "\n" +
+         data + plots + "\n";
 }
 
 }  // namespace tempolux

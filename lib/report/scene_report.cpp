@@ -10,8 +10,6 @@
 namespace tempolux {
 namespace {
 
-const char* time_name(TimeKind kind) { return kind == TimeKind::cpu ? "CPU s" : "wall s"; }
-
 std::optional<double> percent(std::optional<double> value) {
   return value ? std::optional(100 * *value) : std::nullopt;
 }
@@ -49,8 +47,8 @@ Table runs_table(const ReportInput& input, const std::string& scene) {
   return table;
 }
 
-Table fits_table(const SceneReport& report, TimeKind kind) {
-  Table table{std::string("Error against ") + time_name(kind),
+Table fits_table(const SceneReport& report) {
+  Table table{"Error against CPU s",
               {"curve", "points", "runs left out", "slope", "+-", "from points", "bias floor"},
               {},
               "Slope of log RMSE over log time, over the points before the floor; floor of the fit RMSE^2 = "
@@ -66,9 +64,9 @@ Table fits_table(const SceneReport& report, TimeKind kind) {
   return table;
 }
 
-Table speed_up_table(const SceneReport& report, const std::string& baseline, TimeKind kind) {
+Table speed_up_table(const SceneReport& report, const std::string& baseline) {
   Table table{"Equal-error speed-up",
-              {"curve", "over", "RMSE", time_name(kind), std::string("baseline ") + time_name(kind), "ratio"},
+              {"curve", "over", "RMSE", "CPU s", "baseline CPU s", "ratio"},
               {},
               "Inside both curves only, between neighbouring points; nothing is extrapolated."};
   const auto base = std::ranges::find(report.curves, baseline, &Curve::name);
@@ -107,7 +105,7 @@ std::string stem_of(const std::string& scene, std::set<std::string>& taken) {
 
 }  // namespace
 
-std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind) {
+std::vector<SceneReport> scene_reports(const ReportInput& input) {
   std::vector<SceneReport> reports;
   std::set<std::string> taken;
   const auto report_of = [&](const std::string& scene) -> SceneReport& {
@@ -118,7 +116,7 @@ std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind) 
     report.file_stem = stem_of(scene, taken);
     return report;
   };
-  for (Curve& curve : curves_of(input.runs, kind)) {
+  for (Curve& curve : curves_of(input.runs)) {
     SceneReport& report = report_of(curve.scene);
     report.fits.push_back(fit_curve(curve.points));
     report.curves.push_back(std::move(curve));
@@ -127,10 +125,9 @@ std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind) 
 
   for (SceneReport& report : reports) {
     const std::string first = report.curves.empty() ? "" : report.curves.front().name;
-    const TimeKind cpu = TimeKind::cpu;
-    for (Table& table : std::vector{runs_table(input, report.scene), fits_table(report, kind),
-                                    speed_up_table(report, input.baseline.empty() ? first : input.baseline, kind),
-                                    kind == cpu ? points_table(report) : Table{}})
+    for (Table& table :
+         std::vector{runs_table(input, report.scene), fits_table(report),
+                     speed_up_table(report, input.baseline.empty() ? first : input.baseline), points_table(report)})
       if (!table.rows.empty()) report.tables.push_back(std::move(table));
   }
   return reports;

@@ -26,7 +26,7 @@ struct SceneReport {
 };
 
 /// One report per scene, in order of first appearance.
-std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind);
+std::vector<SceneReport> scene_reports(const ReportInput& input);
 
 /// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages, seconds
 /// by phase, counts (rays, bytes ...), peak memory, errors. Phases and counts of all runs are columns "TOOL.PHASE
@@ -37,6 +37,6 @@ enum class PlotFormat { svg, png };
 
 /// gnuplot script that draws error against time, log-log, to its standard output: points, the fitted curve sqrt(a/t +
 /// b), slope and floor in the key, given points. Empty without any point.
-std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat format);
+std::string plot_script(const SceneReport& report, PlotFormat format);
 
 }  // namespace tempolux

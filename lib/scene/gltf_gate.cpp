@@ -222,22 +222,19 @@ bool has_scheme(const std::string& uri) {
 
 /// The file that a relative URI names. Symbolic links and `..` are resolved before the check that the file is inside
 /// the folder.
-std::string resolved(const std::string& uri, const std::string& path, const std::string& place,
-                     const GltfOptions& options) {
+std::string resolved(const std::string& uri, const std::string& path, const std::string& place) {
   const std::string shown = "\"" + uri.substr(0, 80) + "\"";
   if (uri.empty()) fail(path, place, "is empty");
   if (has_scheme(uri))
     fail(path, place, shown + " is not a relative path; fetch the file and name it by a relative path");
   const fs::path relative = percent_decoded(uri, path, place);
-  if (relative.is_absolute() && !options.allow_outside)
-    fail(path, place, shown + " is an absolute path; put the file into the scene's folder");
+  if (relative.is_absolute()) fail(path, place, shown + " is an absolute path; put the file into the scene's folder");
   const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
   std::error_code error;
   const fs::path base = fs::weakly_canonical(folder, error), target = fs::weakly_canonical(folder / relative, error);
   if (error) fail(path, place, shown + ": " + error.message());
   const auto [base_end, target_at] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
-  if (base_end != base.end() && !options.allow_outside)
-    fail(path, place, shown + " leads out of the scene's folder; put the file there, or allow it with --allow-outside");
+  if (base_end != base.end()) fail(path, place, shown + " leads out of the scene's folder; put the file there");
   return (folder / relative).string();
 }
 
@@ -283,7 +280,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
     gated.buffers.push_back(range);
     return;
   } else {
-    range.path = resolved(uri, path, place + ".uri", options);
+    range.path = resolved(uri, path, place + ".uri");
     require_file(range.path, path, place + ".uri");
     const File file(range.path);
     if (file.size() > options.max_file_bytes)
@@ -302,7 +299,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   gated.buffers.push_back(range);
 }
 
-GatedImage approve_image(const Json& image, std::size_t index, const std::string& path, const GltfOptions& options) {
+GatedImage approve_image(const Json& image, std::size_t index, const std::string& path) {
   GatedImage approved;
   approved.name = image.value("name", "");
   const std::string place = "images[" + std::to_string(index) + "].uri";
@@ -320,7 +317,7 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
     approved.refused =
         "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
   } else {
-    approved.path = resolved(uri, path, place, options);
+    approved.path = resolved(uri, path, place);
   }
   return approved;
 }
@@ -358,7 +355,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   check_total(path, options, gated);
   unpack_packed(document, path, options, gated);
   for (std::size_t i = 0; i < array_of(document, "images").size(); ++i)
-    gated.images.push_back(approve_image(document["images"][i], i, path, options));
+    gated.images.push_back(approve_image(document["images"][i], i, path));
   document.erase("images");
   gated.json = document.dump();
   return gated;

@@ -10,7 +10,6 @@
 namespace tempolux {
 
 struct GltfOptions {
-  bool allow_outside = false;                 ///< URIs may leave the scene's folder
   std::string animation{};                    ///< plays only the animation of this name; empty: all together
   std::uint64_t max_file_bytes = 4ull << 30;  ///< of the scene file, of each buffer and of each image
   TextureLimits textures{};

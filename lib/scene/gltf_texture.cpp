@@ -56,8 +56,8 @@ std::uint32_t image_of(Import& import, std::size_t source) {
     throw InputError(image.place + ": " + size + ", over the limit of " + std::to_string(limits.max_pixels) +
                      "; make it smaller");
   if (const int side = std::max(image.width, image.height); side > limits.max_side)
-    throw InputError(image.place + ": " + size + ", over --max-texture " + std::to_string(limits.max_side) +
-                     " on a side; make it smaller, or allow that much");
+    throw InputError(image.place + ": " + size + ", over " + std::to_string(limits.max_side) +
+                     " on a side; make it smaller");
   Hasher hasher;
   hasher.add_bytes(image.bytes.data(), image.bytes.size());
   image.digest = hasher.hex();

@@ -77,7 +77,7 @@ bool leaves_folder(const std::filesystem::path& name) {
 
 }  // namespace
 
-std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside) {
+std::vector<VolumeSource> volumes_of(const Scene& scene) {
   std::vector<VolumeSource> sources;
   for (const Node& node : scene.nodes) {
     if (node.extras.empty() || node.extras.find("vdb_pattern") == std::string::npos) continue;
@@ -88,8 +88,9 @@ std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside) {
     const Extras extras(object, place);
     const std::string pattern = extras.text("vdb_pattern");
     if (pattern.empty()) extras.fail("vdb_pattern", "a file name");
-    if (!allow_outside && leaves_folder(pattern))
-      throw InputError(place + ": extras.vdb_pattern: leaves the scene's folder; pass --allow-outside to follow it");
+    if (leaves_folder(pattern))
+      throw InputError(place +
+                       ": extras.vdb_pattern: leaves the scene's folder; put the file there, or name it with --volume");
     VolumeSource source;
     source.place = place;
     source.pattern = (std::filesystem::path(scene.path).parent_path() / pattern).string();

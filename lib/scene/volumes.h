@@ -32,8 +32,8 @@ struct VolumeSource {
 ///     anisotropy            mean cosine g (default 0)
 /// The transform in the .vdb file places the medium, in metres of world space; the node's transform has no effect.
 /// Throws InputError naming node and key for a wrong type or a value out of range, and for a file name that leaves the
-/// scene's folder unless `allow_outside`.
-std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside);
+/// scene's folder.
+std::vector<VolumeSource> volumes_of(const Scene& scene);
 
 /// Reads `files[i]` for sources[i] and places the media in scene space (world - origin). `max_memory`: bytes that the
 /// reading process may use; 0: by the file's size. `series` prefetches the next files. Throws InputError as read_vdb

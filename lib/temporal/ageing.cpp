@@ -25,7 +25,7 @@ std::uint32_t AgeDraw::take(Class& from, std::uint64_t member) {
   return members_[from.first + from.size];
 }
 
-void AgeDraw::draw(std::span<const std::uint16_t> ages, std::size_t count, AgeWeight weight, std::uint64_t key,
+void AgeDraw::draw(std::span<const std::uint16_t> ages, std::size_t count, std::uint64_t key,
                    std::vector<std::uint32_t>& drawn) {
   drawn.clear();
   classes_.clear();
@@ -41,7 +41,7 @@ void AgeDraw::draw(std::span<const std::uint16_t> ages, std::size_t count, AgeWe
     Class& c = classes_[age];
     c.first = first;
     first += c.size;
-    c.weight = weight == AgeWeight::linear ? age : age * age;
+    c.weight = age * age;
     total += c.weight * std::exchange(c.size, 0u);
   }
   members_.resize(ages.size());
@@ -54,7 +54,7 @@ void AgeDraw::draw(std::span<const std::uint16_t> ages, std::size_t count, AgeWe
     while (classes_.back().size == 0) classes_.pop_back();
     Class* from = &classes_.back();
     std::uint64_t member = 0;
-    if (weight == AgeWeight::oldest || classes_.size() > formats::kMaxAge) {
+    if (classes_.size() > formats::kMaxAge) {
       member = number_below(bits, from->size);
     } else {
       std::uint64_t x = number_below(bits, total);

@@ -7,11 +7,8 @@
 
 namespace tempolux {
 
-/// Weight of a cell in the draw: its age, or its age squared. `oldest`: the oldest cells come first, in random order
-/// among equal ages.
-enum class AgeWeight { linear, square, oldest };
-
-/// Draws cells without replacement: each time a cell is drawn with probability weight / sum of the remaining weights
+/// Draws cells without replacement: each time a cell is drawn with probability weight / sum of the remaining weights,
+/// where the weight of a cell is its age squared
 /// [Tawara et al. 2004, a random integer mapped through the cumulated weights]. Cells of one age form one class, so a
 /// draw takes one step per class.
 class AgeDraw {
@@ -19,7 +16,7 @@ class AgeDraw {
   /// Ages are 1 to formats::kMaxAge; cells of the maximum age are always drawn. `drawn` receives `count` cells, fewer
   /// if there are fewer, more if more have the maximum age. `key` seeds the random numbers and must differ between
   /// draws.
-  void draw(std::span<const std::uint16_t> ages, std::size_t count, AgeWeight weight, std::uint64_t key,
+  void draw(std::span<const std::uint16_t> ages, std::size_t count, std::uint64_t key,
             std::vector<std::uint32_t>& drawn);
 
  private:

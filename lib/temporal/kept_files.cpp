@@ -20,12 +20,12 @@ bool same_segment(const formats::RadsamplesHeader& header, const SceneFrame& fra
 }
 
 /// Hash of a record's cells, samples and anchors.
-std::string hash_of(const formats::RadsamplesRecord& record, const SeenSamples& of) {
+std::string hash_of(const KeptHemisphere& of) {
   Hasher hasher;
-  hasher.add(record.rings);
-  hasher.add(record.sectors);
-  hasher.add_array(of.samples);
-  hasher.add_array(of.anchors);
+  hasher.add(of.record.rings);
+  hasher.add(of.record.sectors);
+  hasher.add_array(std::span(of.samples));
+  hasher.add_array(std::span(of.anchors));
   return hasher.hex();
 }
 
@@ -113,27 +113,23 @@ void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, cons
   file.header.anchors = true;
   file.header.points_hash = points.places_hash;
   std::vector<std::string> hashes;
-  KeptHemisphere room;
-  for (const KeptHemisphere& k : kept.records) hashes.push_back(hash_of(k.record, see(kept, k, room)));
+  for (const KeptHemisphere& k : kept.records) hashes.push_back(hash_of(k));
   const bool whole = path.empty() || !lay_over_base(path, hashes, file);
   formats::RadsamplesWriter writer(sink, file);
   formats::RadsamplesDigest digest;
   for (const KeptHemisphere& k : kept.records) {
-    const SeenSamples of = see(kept, k, room);
-    writer.write(of.samples, of.anchors);
-    if (whole) digest.add(of.samples, of.anchors);
+    writer.write(k.samples, k.anchors);
+    if (whole) digest.add(k.samples, k.anchors);
   }
   writer.finish();
   if (whole && !path.empty()) make_base(path, file.header, digest.of(file), hashes);
 }
 
-formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept,
-                                  const formats::TakeSamples& also) {
+formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept) {
   formats::RadsamplesFile in = formats::read_radsamples(
       file, [&](const formats::RadsamplesFile& head, std::size_t record,
                 std::span<const formats::RadianceSample> samples, std::span<const std::uint32_t> anchors) {
         take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - now.origin, kept);
-        if (also) also(head, record, samples, anchors);
       });
   take_head(in, kept);
   return in;
@@ -162,36 +158,6 @@ void check_kept(const std::string& file, const formats::RadsamplesHeader& header
                     : ": its samples hold all of the light, not the low part alone; leave out --high or --previous"));
   if (const std::string fault = fault_of(kept, now, points); !fault.empty())
     throw InputError(file + ": " + fault + "; leave out --previous");
-}
-
-std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const SceneFrame& frame,
-                                               const FramePoints& points, const std::string& history,
-                                               KeptHemispheres kept) {
-  if (!std::filesystem::is_regular_file(file)) return std::nullopt;
-  try {
-    std::vector<std::string> hashes;
-    formats::RadsamplesDigest digest;
-    const formats::RadsamplesFile in = read_kept(
-        file, frame, kept, [&](const formats::RadsamplesFile& head, std::size_t record, auto samples, auto anchors) {
-          hashes.push_back(hash_of(head.records[record], {samples, anchors}));
-          digest.add(samples, anchors);
-        });
-    if (!same_segment(in.header, frame) || in.header.history != history ||
-        !(in.header.identity == identity_of(frame)) || in.header.points_hash != points.places_hash ||
-        in.header.high_hash != points.high_hash)
-      return std::nullopt;
-    const bool whole = in.header.base_name.empty();
-    if (!whole && (!same_folder(file, path_) || in.header.base_name != std::filesystem::path(path_).filename() ||
-                   in.header.base_digest != digest_))
-      return std::nullopt;
-    if (!fault_of(kept, frame, points).empty()) return std::nullopt;
-    for (std::size_t i = 0; i < kept.point_light.size(); ++i)
-      if (!(kept.point_light[i] == points.read.points[i].total())) return std::nullopt;
-    if (whole) make_base(file, in.header, digest.of(in), hashes);
-    return kept;
-  } catch (const InputError&) {
-    return std::nullopt;  // truncated or damaged: the caller makes it again
-  }
 }
 
 }  // namespace tempolux

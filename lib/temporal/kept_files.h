@@ -4,7 +4,6 @@
 
 #include <array>
 #include <functional>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -29,9 +28,8 @@ struct FramePoints {
 /// Unit of stored distances in a segment, m: the diagonal of the scene over the segment.
 float sample_unit(const SceneFrame& frame);
 
-/// Reads a file into `kept`, which must be empty, in the space of the frame `now`. `also` receives the samples, too.
-formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept,
-                                  const formats::TakeSamples& also = {});
+/// Reads a file into `kept`, which must be empty, in the space of the frame `now`.
+formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept);
 /// Throws InputError unless the frame `now` can follow from a file: its segment, the static points and the part of the
 /// light must be the same.
 void check_kept(const std::string& file, const formats::RadsamplesHeader& header, const SceneFrame& now,
@@ -47,10 +45,6 @@ class KeptFiles {
   /// A file in another folder than the last whole file is whole, too.
   void write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points,
              const std::string& history, const std::string& path, const WriteBytes& sink);
-  /// Reads the file that an earlier run of the same command wrote for this frame. Nothing if the file is missing,
-  /// truncated, or made differently: from other points or on another base. `kept` must be empty.
-  std::optional<KeptHemispheres> find(const std::string& file, const SceneFrame& frame, const FramePoints& points,
-                                      const std::string& history, KeptHemispheres kept);
 
  private:
   void make_base(const std::string& path, const formats::RadsamplesHeader& header, const std::string& digest,

@@ -110,25 +110,6 @@ IrradianceRecord result_of(const formats::RadsamplesRecord& record) {
   return made;
 }
 
-void fetch(const KeptHemispheres& all, KeptHemisphere& kept) {
-  if (all.shelf) all.shelf->fetch(kept.record.samples(), kept.place, kept.samples, kept.anchors);
-}
-void put_back(const KeptHemispheres& all, KeptHemisphere& kept) {
-  if (all.shelf) all.shelf->put(kept.place, kept.samples, kept.anchors);
-}
-void let_go(const KeptHemispheres& all, KeptHemisphere& kept) {
-  if (all.shelf) all.shelf->let_go(kept.place, kept.samples, kept.anchors);
-}
-void give_up(const KeptHemispheres& all, KeptHemisphere& kept) {
-  if (all.shelf) all.shelf->give_up(kept.record.samples(), kept.place);
-}
-
-SeenSamples see(const KeptHemispheres& all, const KeptHemisphere& kept, KeptHemisphere& room) {
-  if (!all.shelf || !kept.place.on_disk()) return {kept.samples, kept.anchors};
-  all.shelf->fetch(kept.record.samples(), kept.place, room.samples, room.anchors);
-  return {room.samples, room.anchors};
-}
-
 formats::RadsamplesFile head_of(const KeptHemispheres& kept) {
   formats::RadsamplesFile file;
   file.records.reserve(kept.records.size());
@@ -148,7 +129,6 @@ void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenS
   k.samples.assign(samples.samples.begin(), samples.samples.end());
   if (samples.anchors.empty()) k.anchors.assign(k.samples.size(), kNone);
   else k.anchors.assign(samples.anchors.begin(), samples.anchors.end());
-  put_back(kept, k);
 }
 
 void take_head(const formats::RadsamplesFile& head, KeptHemispheres& kept) {

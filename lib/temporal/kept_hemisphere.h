@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "formats/radsamples/radsamples.h"
 #include "lib/gather/final_gather.h"
 #include "lib/irradcache/records.h"
-#include "lib/temporal/sample_shelf.h"
 
 namespace tempolux {
 
@@ -19,7 +17,6 @@ struct KeptHemisphere {
   formats::RadsamplesRecord record;
   std::vector<formats::RadianceSample> samples;
   std::vector<std::uint32_t> anchors;  ///< kNone: none
-  SampleShelf::Place place;            ///< of the samples, if they are not in memory
 
   Vec3 position() const { return {record.position[0], record.position[1], record.position[2]}; }
   Vec3 normal() const { return {record.normal[0], record.normal[1], record.normal[2]}; }
@@ -34,21 +31,13 @@ struct KeptHemispheres {
   /// Hash of the explicit shares of bright points, whose light the samples leave out; "": samples hold all light
   std::string high_hash;
   bool changed = false;  ///< true if anything changed in the last frame that records follow; not stored in files
-  std::shared_ptr<SampleShelf> shelf;  ///< stores samples for which there is no memory; nullptr: all stay in memory
 };
 
-/// fetch loads a record's samples; put_away stores changed ones; let_go drops unchanged ones; give_up frees their
-/// place. Without a shelf all samples stay in memory.
-void fetch(const KeptHemispheres& all, KeptHemisphere& kept);
-void put_back(const KeptHemispheres& all, KeptHemisphere& kept);
-void let_go(const KeptHemispheres& all, KeptHemisphere& kept);
-void give_up(const KeptHemispheres& all, KeptHemisphere& kept);
-/// Read access to a record's samples and anchors, wherever they are; `room` holds them if they are not in memory.
+/// Samples and anchors of one record, by cell; anchors may be empty.
 struct SeenSamples {
   std::span<const formats::RadianceSample> samples;
   std::span<const std::uint32_t> anchors;
 };
-SeenSamples see(const KeptHemispheres& all, const KeptHemisphere& kept, KeptHemisphere& room);
 
 /// The unit of stored distances: 1/1024 of this, m.
 struct SampleUnits {

@@ -226,7 +226,6 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   std::vector<std::uint8_t>& marks = marked.marks;
   const SurfacePoint place = place_of(kept);
   const GatherDirections directions(place, kept.normal(), r.rings, r.sectors, r.key);
-  if (marks.empty()) mark_cells(kept, changes, directions, units_, marks);
   ++r.updates;
   ages.resize(marks.size());
   for (std::size_t c = 0; c < marks.size(); ++c) {
@@ -235,8 +234,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   }
   // Draws by age from all cells, including marked ones. If marked cells were left out, a cell that is marked in every
   // frame would keep its direction for good, and more and more cells would end in such directions.
-  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), options_.age_weight,
-           mix64(r.key + r.updates), drawn);
+  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), mix64(r.key + r.updates),
+           drawn);
   for (const std::uint32_t c : drawn) {
     marks[c] = aged;
     kept.samples[c].flags = std::uint16_t((kept.samples[c].flags & ~formats::kMaxAge) | 1);
@@ -267,15 +266,13 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
       if (gone[i]) continue;
       KeptHemisphere& k = kept.records[i];
       cells += k.record.samples();
-      fetch(kept, k);
       if (look(k, changes, marked[i])) {
         here += marked[i].count;
         all += k.record.samples();
       } else {
         ++unmoved;
       }
-      let_go(kept, k);
-      if (k.place.on_disk() || !marked[i].changed) std::vector<std::uint8_t>().swap(marked[i].marks);
+      if (!marked[i].changed) std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
     counts.cells += cells, (changes.divided ? counts.explicit_only : counts.kept) += unmoved, traced += here,
@@ -283,21 +280,14 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
   });
   const double refresh = double(options_.refresh), cells = double(traced + others);
   const double left = others > 0 ? (refresh * cells - double(traced)) / double(others) : 0;
-  const double aged_share =
-      options_.rule == RefreshRule::fixed ? refresh : std::max(left, refresh * double(kLeastAged));
+  const double aged_share = std::max(left, refresh * double(kLeastAged));
   parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
     TemporalCounts local;
     for (std::size_t i = first; i < last; ++i) {
       if (gone[i] || !(marked[i].changed || changes.divided)) continue;
       KeptHemisphere& k = kept.records[i];
-      fetch(kept, k);
-      if (marked[i].changed) {
-        update(k, changes, aged_share, marked[i], local);
-        put_back(kept, k);
-      } else {
-        sample_explicit(k, changes, local.update);
-        let_go(kept, k);
-      }
+      if (marked[i].changed) update(k, changes, aged_share, marked[i], local);
+      else sample_explicit(k, changes, local.update);
       std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
@@ -334,8 +324,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   std::vector<std::uint32_t> moved_to(before + 1, 0);
   for (std::size_t i = 0; i < before; ++i) moved_to[i + 1] = moved_to[i] + !gone[i];
   for (std::size_t i = 0; i < before; ++i)
-    if (gone[i]) give_up(kept, kept.records[i]);
-    else if (moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
+    if (!gone[i] && moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
   kept.records.resize(moved_to[before]);
   kept.changed = changes.anything;
   kept.point_light.clear();
@@ -368,9 +357,7 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
-    give_up(kept, batch[slot]);  // of a record that was not added
     batch[slot] = birth(seen, store.expected_further_share(seen.surface.position, seen.normal), gathered);
-    put_back(kept, batch[slot]);
     return result_of(batch[slot].record);
   };
   source.added = [&](std::size_t slot) {
@@ -379,13 +366,11 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
     batch[slot] = {};
   };
   counts.born += place_records(gather_, view, width, height, placement_, store, counts.birth, progress, &source);
-  for (KeptHemisphere& k : batch) give_up(kept, k);
   counts.records = kept.records.size();
   for (std::size_t i = 0; i < scene_.anchored_points; ++i) kept.point_light.push_back(scene_.points[i].total());
   kept.high_hash = scene_.high_hash;
-  KeptHemisphere room;
   for (const KeptHemisphere& k : kept.records)
-    for (const formats::RadianceSample& sample : see(kept, k, room).samples) {
+    for (const formats::RadianceSample& sample : k.samples) {
       const std::size_t age = formats::age_of(sample);
       if (age >= counts.ages.size()) counts.ages.resize(age + 1);
       ++counts.ages[age];

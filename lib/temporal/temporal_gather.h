@@ -15,15 +15,10 @@
 
 namespace tempolux {
 
-/// How many cells are drawn by age. adaptive: as many as are missing for the cells traced for any reason to be the
-/// share `refresh`, but at least a quarter of that share. fixed: the share `refresh` of the cells without another
-/// reason.
-enum class RefreshRule { adaptive, fixed };
-
 struct TemporalOptions {
-  float refresh = 0.05f;  ///< share of cells to renew, among the records whose light changed in a frame
-  RefreshRule rule = RefreshRule::adaptive;
-  AgeWeight age_weight = AgeWeight::square;  ///< weight by which cells are drawn
+  /// Share of the cells to trace again, for any reason, among the records whose light changed in a frame. As many cells
+  /// are drawn by age as other reasons leave, but at least a quarter of this share.
+  float refresh = 0.05f;
 };
 
 /// Counts of one frame. `rays` are the gather rays of new records and all their continuations. Cells traced again, by

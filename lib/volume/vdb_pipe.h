@@ -18,17 +18,6 @@ struct VdbPipeHead {
   std::uint64_t block_count = 0;
   std::uint64_t name_size = 0;
 };
-/// With the argument `write` the program writes a file to standard output instead. Its input is this head, the grid's
-/// name, and counts[0] x counts[1] x counts[2] colours of three float32, z fastest.
-struct VdbWriteHead {
-  std::array<char, 8> magic{'T', 'P', 'X', 'V', 'D', 'B', 'W', '\n'};
-  std::array<double, 3> voxel{}, first_centre{};  ///< m: size of a voxel, and centre of the first one
-  std::array<std::int32_t, 3> counts{};
-  std::uint32_t reserved = 0;
-  std::uint64_t name_size = 0;
-};
-
-static_assert(sizeof(VdbWriteHead) == 80);
 static_assert(sizeof(VoxelBlock) == 12 + 2048 && sizeof(VdbPipeHead) == 120);
 
 }  // namespace tempolux

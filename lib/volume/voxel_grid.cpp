@@ -46,12 +46,28 @@ std::string content_hash(const BlocksByPlace& blocks) {
   return hasher.hex();
 }
 
+/// Adds the voxels of a block to the largest value and to the support, the box outside which the density is 0.
+void measure(const GridIndex& origin, const VoxelBlock& block, float& largest, Box3d& support) {
+  constexpr int kBlock = VoxelGrid::kBlock;
+  for (int x = 0; x < kBlock; ++x)
+    for (int y = 0; y < kBlock; ++y)
+      for (int z = 0; z < kBlock; ++z) {
+        const float v = block.values[leaf_offset(x, y, z)];
+        if (!(v > 0)) continue;
+        largest = std::max(largest, v);
+        const Vec3d at{double(origin[0] + x), double(origin[1] + y), double(origin[2] + z)};
+        support.add(at - Vec3d{1, 1, 1});
+        support.add(at + Vec3d{1, 1, 1});
+      }
+}
+
 }  // namespace
 
 VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
   const BlocksByPlace sorted = by_place(blocks);
   hash_ = content_hash(sorted);
   if (sorted.empty()) return;
+  for (const auto& [origin, block] : sorted) measure(origin, *block, largest_, support_);
   GridIndex first = sorted.begin()->first, last = first;
   for (const auto& [origin, block] : sorted)
     for (std::size_t a = 0; a < 3; ++a) {
@@ -100,22 +116,11 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
           to[((x - origin[0]) * kBrick + (y - origin[1])) * kBrick + (z - origin[2])] =
               block.values[leaf_offset(x - from[0], y - from[1], z - from[2])];
   };
-  for (const auto& [origin, block] : sorted) {
+  for (const auto& [origin, block] : sorted)
     for (int dx = 0; dx < 2; ++dx)
       for (int dy = 0; dy < 2; ++dy)
         for (int dz = 0; dz < 2; ++dz)
           fill({origin[0] - kBlock * dx, origin[1] - kBlock * dy, origin[2] - kBlock * dz}, origin, *block);
-    for (int x = 0; x < kBlock; ++x)
-      for (int y = 0; y < kBlock; ++y)
-        for (int z = 0; z < kBlock; ++z) {
-          const float v = block->values[leaf_offset(x, y, z)];
-          if (!(v > 0)) continue;
-          largest_ = std::max(largest_, v);
-          const Vec3d at{double(origin[0] + x), double(origin[1] + y), double(origin[2] + z)};
-          support_.add(at - Vec3d{1, 1, 1});
-          support_.add(at + Vec3d{1, 1, 1});
-        }
-  }
 }
 
 std::uint32_t VoxelGrid::brick(std::int32_t x, std::int32_t y, std::int32_t z) const {

@@ -28,7 +28,8 @@ Compositor::Compositor(const WarpTarget& target, std::span<const WarpKey> keys, 
   for (std::size_t k = 0; k < keys.size(); ++k) {
     // The weight by distance in time is linear between two keys: the weight of a key is the other key's distance
     // divided by the sum of both distances.
-    const double other = keys.size() < 2 ? 1 : keys[1 - k].frames_away, sum = keys.size() < 2 ? 1 : both_away();
+    const double other = keys.size() < 2 ? 1 : keys[1 - k].frames_away;
+    const double sum = keys.size() < 2 ? 1 : keys[0].frames_away + keys[1].frames_away;
     nearness_[k] = float(sum > 0 ? other / sum : 0.5);
     stays_[k] = !keys[k].cut_off && keys[k].view->same_camera();
   }

@@ -38,7 +38,6 @@ class Compositor {
   void mean(std::size_t p, const LookedUp& points, ComposedPixel& pixel) const;
 
  private:
-  double both_away() const { return keys_[0].frames_away + keys_[1].frames_away; }
   void start(ComposedPixel& pixel) const;
   bool shows_the_same(std::size_t p, const KeyView& view) const;
   bool copy_unmoved(std::size_t p, ComposedPixel& pixel) const;

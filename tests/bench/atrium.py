@@ -17,7 +17,7 @@ from shipped import preset
 
 LAYERS = (None, "emission", "direct", "specular", "caustic", "indirect")
 FAST = Settings(300000, ("--point-count", "4k", "--light-samples", 2), ("--rays", 50, "--error-bound", 0.6),
-                ("--spp", 4, "--pixel-error", 0.0115, "--caustic-radius", 0.15), steps=True, caustics=True)
+                ("--spp", 4, "--pixel-error", 0.0115), steps=True, caustics=True)
 
 
 def mean(values):

@@ -119,7 +119,7 @@ def updated_frame(bench, name, seed, settings, low):
             run(tools[1], "points", *common, "--update", kept["s.irradpoints"], "--photons", kept["s.photons"], "--dynamic", kept["d.photons"], *count,
                 "-o", kept["u.irradpoints"], stats=f"{files}-points.json")
             run(tools[1], "records", *common, "--update", kept["s.irradcache"], "--points", kept["u.irradpoints"], "--dynamic", kept["d.photons"],
-                *influence, *gather, "-o", kept["u.irradcache"], stats=f"{files}-cache.json")
+                *gather, "-o", kept["u.irradcache"], stats=f"{files}-cache.json")
             run(tools[2], *common, "--irradcache", kept["u.irradcache"], "--points", kept["u.irradpoints"], *influence, "--size", bench.size,
                 *settings.pixels, "--channels", "RGBA,layers,id", "-o", f"{files}.exr", stats=f"{files}.json")
         finally:

@@ -47,7 +47,7 @@ def commands(scene, folder):
             ("photon-trace, 20k paths", ["photon-trace", *common, "--photons", "20k", "--kinds", "caustic,indirect",
                                          "-o", photons]),
             ("irradcache-build points, 2k", ["irradcache-build", "points", *common, "--photons", photons, "--point-count", "2k",
-                                             "--neighbours", 50, "--light-samples", 2, "-o", points]),
+                                             "--light-samples", 2, "-o", points]),
             ("irradcache-build records, 64x36", ["irradcache-build", "records", *common, "--points", points, "--size", "64x36",
                                                  "--rays", 50, "--error-bound", 0.5, "-o", cache]),
             ("frame-render, path, 4 samples", [*render, "--integrator", "path", "--spp", 4, "-o", path]),

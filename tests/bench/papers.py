@@ -5,7 +5,7 @@
 
 OUT/index.md and one SVG each: the draw of cells in three frames, ages of samples and on the hemisphere of one record, that record over time, error by frame,
 records by frame with and without removal, rays by reason; tables of times and of disk; and the curve "temporal gathering", error and flicker against time for
---refresh .02 to 1, adaptive and fixed, beside frames anew of 125 to 2000 rays. All frames are of one segment. Reference: records of `--rays` from the same points.
+--refresh .02 to 1, beside frames anew of 125 to 2000 rays. All frames are of one segment. Reference: records of `--rays` from the same points.
 Without removal: records there would be if none of those that were taken out had gone; births are as with removal, which may be too many.
 """
 import argparse
@@ -126,11 +126,10 @@ def slope(points):
 def curve():
     """Temporal gathering against frame by frame: phase `records`, CPU s a frame, the first of the segment with it; error and flicker."""
     rows = []
-    for rule in ("adaptive", "fixed"):
-        for refresh in (0.02, 0.05, 0.1, 0.25, 0.5, 1):
-            spent = run("gather-temporal", "final", scene, "--frames", f"0-{frames[-1]}", "--points", "p.####.irradpoints", *size, "--refresh", refresh,
-                        "--refresh-rule", rule, "-o", "c.####.radsamples", "--cache", "curve.####.irradcache")
-            rows.append((f"over time, {rule}", f"--refresh {refresh}", cpu(spent, "records") / len(frames), compared("curve")["total"]))
+    for refresh in (0.02, 0.05, 0.1, 0.25, 0.5, 1):
+        spent = run("gather-temporal", "final", scene, "--frames", f"0-{frames[-1]}", "--points", "p.####.irradpoints", *size, "--refresh", refresh,
+                    "-o", "c.####.radsamples", "--cache", "curve.####.irradcache")
+        rows.append(("over time", f"--refresh {refresh}", cpu(spent, "records") / len(frames), compared("curve")["total"]))
     for side, seed in (("anew, one seed", lambda f: 0), ("anew, a seed a frame", lambda f: f + 1)):
         for rays in (125, 250, 500, 1000, 2000):
             spent = [run("irradcache-build", "records", scene, "--frame", f, "--points", f"p.{f:04}.irradpoints", *size, "--rays", rays, "--seed", seed(f), "-o",

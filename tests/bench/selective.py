@@ -7,7 +7,7 @@ updates: S6 (../shared/scenes) and the chimney of chimney.py, 24 frames of one s
 map before are traced again; pilots, 3 % of each group's paths, count as traced. The reference of a frame is a fresh map of the same
 seed, as in the paper's figures 5 and 6: what is measured is what groups err that were not traced again. Prints for each strategy the mean
 RMSE from the sixth frame on, the share of these frames in which it is below oldest and random, the groups of a frame and CPU seconds.
-"plain" is without the factor age, "corrective" with negative photons. FOLDER/NAME-SHARE.svg draws the errors by frame.
+"plain" is without the factor age. FOLDER/NAME-SHARE.svg draws the errors by frame.
 
 cost: S6, an update of 10 % against a fresh map, CPU seconds of frames 5 to 11 as one process for each and as one for all, in turns; and what that saves
 of a whole frame, points, records and 320x180 pixels with smoke included.
@@ -39,7 +39,6 @@ PATHS = 299880
 STRATEGIES = {
     "oldest": ["oldest"], "random": ["random"], "census": ["census"], "fde": ["fde"], "dip": ["dip"], "hybrid": ["hybrid"], "path": ["path"],
     "fde plain": ["fde", "--age-power", "0"], "dip plain": ["dip", "--age-power", "0"], "census plain": ["census", "--age-power", "0"],
-    "fde corrective": ["fde", "--corrective"],
 }
 
 

@@ -59,7 +59,7 @@ aqm step.exr plane.exr --flow still.exr
 aqm step.exr plane.exr --flow unknown.exr
 aqm step.exr plane.exr --flow fast.exr
 aqm step.exr plane.exr --flow fast.exr --eye fixed --fps 48
-aqm step.exr plane.exr --metric aqm --display hdr --peak 400 --ppd 20
+aqm step.exr plane.exr --metric aqm --display hdr --ppd 20
 try step.exr plane.exr --quiet --flow still.exr --fail-above 5% --exposure 0
 try step.exr plane.exr --quiet --flow fast.exr --fail-above 5% --eye fixed --exposure 0
 try step.exr plane.exr --quiet --metric aqm --fail-by aqm --fail-above 0.9 --exposure 0

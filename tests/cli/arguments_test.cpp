@@ -164,14 +164,6 @@ TEST(Sizes, AreWidthTimesHeight) {
   EXPECT_EQ(height, 65536) << "an error leaves the values alone";
 }
 
-TEST(Lists, AreSubsetsInTheOrderOfWhatIsAllowed) {
-  const std::vector<std::string> kinds{"direct", "caustic", "indirect"};
-  EXPECT_EQ(parse_list("indirect,direct", kinds), (std::vector<std::string>{"direct", "indirect"}));
-  EXPECT_EQ(parse_list("caustic", kinds), (std::vector<std::string>{"caustic"}));
-  for (const char* text : {"", ",", "direct,", "direct,direct", "Direct", "direct caustic", "volume"})
-    EXPECT_THROW(parse_list(text, kinds), InputError) << "'" << text << "'";
-}
-
 // Whatever bytes come, a parser answers with a value or an InputError.
 TEST(AllParsers, TakeAnyBytes) {
   const std::string letters = "0123456789-,xykMGTiB.%#d \xff\n";

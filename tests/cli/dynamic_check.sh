@@ -121,7 +121,6 @@ frame-render "$scene" -q --frame 4 --size 64x36 --spp 1 --irradcache updated.1.i
 tempolux-info influence.exr | grep -qE 'channel blend .* min 0 +max 1 ' || bad "blend: $(tempolux-info influence.exr | grep blend)"
 refuses 'only a cache of localised gathering' frame-render "$scene" --frame 4 --size 64x36 --spp 1 --irradcache fresh.irradcache --points fresh.irradpoints --channels RGBA,influence -o refused
 refuses 'what movers change is nothing alone' frame-render "$scene" --frame 4 --dynamic box.d.photons -o refused
-refuses 'records that stand beside' irradcache-build records "$scene" --frame 4 --points fresh.irradpoints --records updated.1.irradcache -o refused
 refuses 'must be below' frame-render "$scene" --irradcache fresh.irradcache --influence-low 1 -o refused
 
 refuses 'what moves differ at frame 4' trace other.glb --frame 4 --map dynamic --static lamp.paths -o refused

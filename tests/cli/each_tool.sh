@@ -31,7 +31,6 @@ each_tool() {
   "$1" photon-trace-dynamic photon-trace "$scene" --frame 10 --map dynamic --static "$in/s.paths" -o a.photons
   "$1" photonmap-split photonmap-split "$in/p.irradpoints" --low a.irradpoints --high b.irradpoints
   "$1" photonmap-split-photons photonmap-split "$in/p.photons" --energy 2 --low a.photons --high b.photons
-  "$1" photonmap-split-kinds photonmap-split "$in/p.photons" --kind caustic -o a.photons --rest b.photons
   "$1" irradcache-build-update irradcache-build points "$scene" --frame 10 --point-count 1k --photons "$in/s.photons" \
     --update "$in/s.irradpoints" --dynamic "$in/d.photons" -o a.irradpoints
   "$1" irradcache-build-localised irradcache-build records "$scene" --frame 10 --update "$in/s.irradcache" --points "$in/u.irradpoints" \
@@ -40,7 +39,7 @@ each_tool() {
     --size 32x18 -o a.irradcache
   "$1" irradcache-build irradcache-build "$mirror" --photons "$in/p.photons" --point-count 1k --rays 50 --size 64x36 \
     --keep-points a.irradpoints -o a.irradcache
-  "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" --records "$in/c.irradcache" \
+  "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" \
     --frame 2 --rays 50 --size 64x36 -o a.irradcache
   "$1" gather-temporal gather-temporal final "$scene" --points "$in/t.####.irradpoints" --rays 50 --size 64x36 --frames 0-1 \
     -o "a.####.radsamples" --cache "a.####.irradcache"

@@ -39,7 +39,6 @@ keeps f.exr tempolux-info --png f.exr f.exr
 [ -e q.photons ] && bad 'an output beside the refused one was made'
 
 # Read whole before anything is written, these two may give their place to what is made from them.
-irradcache-build records S.glb --points p.irradpoints $tiny --records c.irradcache -o c.irradcache -q || bad '--records c -o c'
 frame-render S.glb --size 8x6 --spp 1 --mask f.exr --base g.exr -o g.exr -q || bad '--base b -o b'
 # A copy is another file, a device is none.
 cp S.glb copy.glb && photon-trace S.glb --photons 1k -o copy.glb -q || bad 'a copy'

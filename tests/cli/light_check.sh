@@ -42,7 +42,7 @@ frame-render "$matte" --size 64x36 --spp 4 --channels RGBA --audit 1 --stats aud
 for name in noise.codes noise.direct.codes audit.indirect audit.indirect_error audit.direct; do
   grep -q "\"$name\"" audit.json || bad "stats without $name"
 done
-expect 0 '--seen-error 0.01: .* codes are left' frame-render "$matte" --size 16x9 --spp 2 --seen-error .01 --pixel-limit 4 -o made.exr
+expect 0 '--seen-error 0.01: .* codes are left' frame-render "$matte" --size 16x9 --spp 2 --seen-error .01 -o made.exr
 tiny="--size 16x9 --rays 8" point="--point-count 200" frame="--size 16x9 --spp 2 --pixel-error 0"
 for kinds in direct indirect caustic caustic,indirect; do
   photon-trace mirror.gltf --photons 5k --kinds $kinds -o "mirror.$kinds" -q || bad "photons: $kinds"

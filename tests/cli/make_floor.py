@@ -1,5 +1,5 @@
 """Scenes of a white square under a lamp, seen from above, in scene/: plain; with one or two animations of the lamp; with a texture
-of a white and a black texel that lies outside their folder."""
+of a white and a black texel, inside their folder and outside."""
 import base64
 import json
 import os
@@ -17,7 +17,8 @@ def png(width, height, rows):
 
 os.makedirs("scene", exist_ok=True)
 os.makedirs("images", exist_ok=True)
-open("images/two.png", "wb").write(png(2, 1, [[255, 0]]))
+for folder in ("scene", "images"):
+    open(f"{folder}/two.png", "wb").write(png(2, 1, [[255, 0]]))
 views, accessors, data = [], [], bytearray()
 
 
@@ -63,5 +64,6 @@ json.dump({**scene, "animations": []}, open("scene/plain.gltf", "w"))
 json.dump({**scene, "animations": [scene["animations"][0]]}, open("scene/sink.gltf", "w"))
 json.dump(scene, open("scene/two.gltf", "w"))
 scene["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
-scene["images"], scene["textures"] = [{"uri": "../images/two.png"}], [{"source": 0}]
-json.dump({**scene, "animations": []}, open("scene/outside.gltf", "w"))
+for name, uri in ("inside", "two.png"), ("outside", "../images/two.png"):
+    scene["images"], scene["textures"] = [{"uri": uri}], [{"source": 0}]
+    json.dump({**scene, "animations": []}, open(f"scene/{name}.gltf", "w"))

@@ -18,7 +18,6 @@ try scene.glb -o no/such/folder/b.out
 try scene.glb -o /dev/full
 try scene.glb -o .
 try scene.glb -o ''
-try scene.glb -o a.out --no-clobber
 try scene.glb -o b.out --second ./b.out
 try scene.glb -o - --stats - | tail -1
 try scene.glb -o - --depfile d.mk --bytes 0 | tail -1

@@ -70,39 +70,19 @@ cat p.photons >named & $split named --low nl.photons --high nh.photons; wait
 tempolux-info --diff l.photons nl.photons >/dev/null || bad 'a named pipe changes the parts'
 find . -name '.*' -type f | grep . && bad 'temporaries are left'
 
-# Limits: nothing below 0, everything below infinity, by energy and by records.
-for limit in '--energy 0' '--limit 0'; do
-  photonmap-split -q $limit p.photons --low none.photons --high all.photons || bad "$limit"
-  tempolux-info --diff all.photons p.photons >/dev/null || bad "$limit: the high part is not all"
+# Limits: nothing below 0, everything below infinity.
+photonmap-split -q --energy 0 p.photons --low none.photons --high all.photons || bad 'limit 0'
+tempolux-info --diff all.photons p.photons >/dev/null || bad 'limit 0: the high part is not all'
+for type in photons irradpoints; do
+  photonmap-split -q --energy 1e300 p.$type --low all.$type --high none.$type || bad 'no limit'
+  tempolux-info --diff all.$type p.$type >/dev/null || bad 'no limit: the low part is not all'
 done
-for limit in '--energy 1e300' '--limit 1G'; do
-  for type in photons irradpoints; do
-    photonmap-split -q $limit p.$type --low all.$type --high none.$type || bad "$limit"
-    tempolux-info --diff all.$type p.$type >/dev/null || bad "$limit: the low part is not all"
-  done
-done
-
-# Kinds.
-photonmap-split -q p.photons --kind indirect -o i.photons --rest r.photons || bad kinds
-photonmap-split -q p.irradpoints --kind direct,caustic -o d.irradpoints --rest i.irradpoints || bad 'kinds of points'
-tempolux-info --json i.photons r.photons p.photons d.irradpoints i.irradpoints p.irradpoints >kinds.json
-"${PYTHON:-python3}" - <<'EOF' || bad 'kinds are lost'
-import json
-chosen, rest, all_, d, i, p = json.load(open("kinds.json"))
-assert chosen["kinds"] == "indirect" and rest["kinds"] == "direct,caustic", (chosen["kinds"], rest["kinds"])
-assert chosen["photons"] + rest["photons"] == all_["photons"] and chosen["photons"] == all_["by_kind"]["indirect"]["photons"]
-assert d["kinds"] == "direct,caustic" and i["kinds"] == "indirect" and d["points"] == i["points"] == p["points"]
-EOF
-photon-trace "$room" --frame 1 --photons 8k -o - -q | photonmap-split - -q --kind indirect -o pi.photons && tempolux-info --diff pi.photons i.photons >/dev/null || bad 'kinds through a pipe'
 
 # A part is not taken for the whole; what cannot be divided is refused.
 refuses 'low part of the light alone' irradcache-build points "$room" --frame 1 --photons l.photons -o refused
 refuses 'high part of the light alone' irradcache-build records "$room" --frame 1 --points h.irradpoints -o refused
 refuses 'low part of the light alone' photonmap-split l.photons --low refused --high other
-refuses 'go together' photonmap-split p.photons --low refused
-refuses 'says not how' photonmap-split p.photons
-refuses 'needs -o' photonmap-split p.photons --kind direct
-refuses 'not with --kind' photonmap-split p.photons --kind direct -o refused --energy 3
+refuses 'high is required' photonmap-split p.photons --low refused
 photon-trace "$room" --frame 1 --photons 4k -o p2.photons -q && $split p2.photons --low bl2.photons --high bh2.photons || bad 'another map'
 # Pixels without a cache sample the high part themselves: the same light but for noise (36864 samples that scatter by some twice their
 # mean: 1 %); of an infinite limit nothing is high, and the frame is that of the whole.
@@ -137,9 +117,6 @@ refuses 'not those of' $build --photons l.photons --high bh2.photons -o refused
 refuses 'leave out --update' irradcache-build points "$room" --frame 1 --map static --photons l.photons --high h.photons -o refused
 refuses 'not a part of light' $frame --points p.irradpoints --high h.irradpoints -o refused
 
-refuses 'only with --kind' photonmap-split p.photons --low refused --high other --rest third
-refuses 'no volume light' photonmap-split p.photons --kind volume -o refused
-refuses 'no kind is left' photonmap-split i.photons --kind indirect -o refused --rest other
 refuses 'neither auto nor a length' photonmap-split p.photons --low refused --high other --cell -1
 refuses 'neither photons nor irradiance points' photonmap-split "$room" --low refused --high other
 refuses 'two outputs' photonmap-split p.photons --low refused --high refused

@@ -58,9 +58,9 @@ int main(int argc, char** argv) {
     tool.depends_on(scene, tools::InputRole::of_scene);
     tool.depends_on("cache.points");
     for (const int frame : tool.common().frames) {
-      tools::Output file(range ? tools::frame_name(output, frame) : output, tool.common().no_clobber);
+      tools::Output file(range ? tools::frame_name(output, frame) : output);
       std::optional<tools::Output> other;
-      if (!second.empty()) other.emplace(second, tool.common().no_clobber);
+      if (!second.empty()) other.emplace(second);
       fail_as(work);
       tool.stats().phase("write", true);
       file.stream() << tool.history_line(frame);

@@ -83,13 +83,6 @@ frame-render "$furnace" $medium --size 32x32 --photons p.photons --spp 8 --chann
 volume-compose "$furnace" $medium --photons p.photons --base base.exr -q -o composed.exr || bad compose
 check composed.exr .02 2 5 1.25
 
-# The light in the smoke alone: in the furnace radiance 2, 5, 1.25 all around, scattered without loss. Read back as a density its red is 2.
-photon-trace "$furnace" $medium --photons 300k --kinds direct,indirect,volume -q -o all.photons
-volume-compose "$furnace" $medium --photons all.photons --direct photons --radiance-only light.vdb -q || bad 'radiance alone'
-expect 2 "grid .radiance. is not a density but Tree_vec3s" frame-render "$furnace" --volume light.vdb $tiny
-expect 2 'leave out --base and -o' volume-compose "$furnace" $medium --photons p.photons --radiance-only x.vdb --base base.exr -o made.exr
-expect 2 'or --radiance-only' volume-compose "$furnace" $medium --photons p.photons -o made.exr
-
 # Without the medium the file is as if there were no such option, and no medium is known.
 frame-render "$furnace" --volume none --size 8x8 --spp 1 --integrator path -q -o none.exr && frame-render "$furnace" --size 8x8 --spp 1 --integrator path -q -o plain.exr
 [ "$(tempolux-info --digest none.exr | cut -c 1-32)" = "$(tempolux-info --digest plain.exr | cut -c 1-32)" ] || bad '--volume none is not nothing'
@@ -123,9 +116,6 @@ done
 [ "$(tempolux-info --groups - dip.photons | grep -c ,1,)" -gt 0 ] || bad 'no group says that it was traced at frame 1'
 photon-trace $sun --frame 1 --update pilots.photons --strategy all -q -o updated.photons
 tempolux-info --diff fresh.photons updated.photons > /dev/null || bad 'with pilots an update of all groups is no fresh map'
-photon-trace $sun --frame 1 --update pilots.photons --max-groups 5 --corrective -q -o corrective.photons &&
-  photon-trace $sun --frame 1 --update pilots.photons --max-groups 5 -q -o deleted.photons || bad 'corrective photons'
-tempolux-info --diff corrective.photons deleted.photons > /dev/null || bad 'corrective photons do not leave what leaving out leaves'
 photon-trace $sun --frame 1 --update fresh.photons --refine 5k -q -o refined.photons || bad refine
 "$python" - <<'END' || bad 'refined'
 import json, subprocess

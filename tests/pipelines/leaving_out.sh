@@ -30,29 +30,9 @@ tool photon-trace "$work/walk.glb" --frame 2 --photons 20k --kinds indirect -o "
 "$bin/tempolux-info" --diff "$work/0.photons" "$work/2.photons" > /dev/null || bad 'only the camera moves: other photons'
 tool irradcache-build points "$work/walk.glb" --photons "$work/0.photons" --point-count 2k -o "$work/0.irradpoints"
 
-# Records of the other place of the camera: those of the first stay, a few are added where something new is seen. The camera
-# moves by 1 cm in 5.5 m, a pixel of 160 at most: below 5 %.
 tool irradcache-build records "$work/walk.glb" --points "$work/0.irradpoints" --rays 50 --size 160x90 -o "$work/0.irradcache" \
   --stats "$work/0.json" --depfile "$work/0.d"
 grep -q '\.photons' "$work/0.d" && bad 'records from points: photons were read'
-tool irradcache-build records "$work/walk.glb" --frame 2 --points "$work/0.irradpoints" --records "$work/0.irradcache" --rays 50 \
-  --size 160x90 -o "$work/2.irradcache" --stats "$work/2.json"
-python3 -B - "$work" <<'END' || bad 'only the camera moves: records were gathered again'
-import json, sys
-sys.path.insert(0, "tests/formats")
-from read_irradcache import read_irradcache
-work = sys.argv[1]
-first, second = (read_irradcache(f"{work}/{f}.irradcache").records for f in (0, 2))
-assert second[:len(first)] == first, "old records changed"
-added = len(second) - len(first)
-assert added == json.load(open(f"{work}/2.json"))["results"]["records_added.2"]
-assert added < 0.05 * len(first), f"{added} new records beside {len(first)}"
-rays = [json.load(open(f"{work}/{f}.json"))["counts"]["gather_rays"] for f in (0, 2)]
-assert rays[1] < 0.1 * rays[0], f"{rays[1]} gather rays for frame 2, {rays[0]} for frame 0"
-END
-tool irradcache-build records "$work/walk.glb" --points "$work/0.irradpoints" --records "$work/0.irradcache" --rays 50 --size 160x90 \
-  -o "$work/again.irradcache" --stats "$work/again.json"
-[ "$(count gather_rays "$work/again.json")" = 0 ] || bad 'the same camera again: rays were gathered'
 
 # Pixels: records were placed for pixel centres, and a record is valid only within its radius. In corners and at edges a
 # sample away from the centre may find no valid record. It then follows a path, which may end at a point. Here seven of
@@ -106,7 +86,7 @@ tool scene-plan "$work/mirror.glb" --frames 0 --indirect paths -o "$work/paths"
 top=$(pwd)
 (cd "$work" && python3 -B "$top/tests/cli/make_floor.py") || bad 'make_floor.py'
 for camera in Aside Above; do
-  LD_DEBUG=files LD_DEBUG_OUTPUT="$work/textures-$camera" "$bin/frame-render" "$work/scene/outside.gltf" --allow-outside --camera $camera \
+  LD_DEBUG=files LD_DEBUG_OUTPUT="$work/textures-$camera" "$bin/frame-render" "$work/scene/inside.gltf" --camera $camera \
     --integrator path --size 16x9 --spp 1 -o "$work/$camera.exr" --stats "$work/$camera.json" -q || bad "textures: exit $?"
 done
 [ "$(count textures "$work/Aside.json") $(count textures "$work/Above.json")" = '0 1' ] || bad 'a texture that no ray touches was decoded'

@@ -233,26 +233,4 @@ std::array<float, 3> parse_color(const std::string& text) {
   return color;
 }
 
-std::vector<std::string> parse_list(const std::string& text, const std::vector<std::string>& allowed) {
-  std::string known;
-  for (const std::string& word : allowed) known += (known.empty() ? "" : ", ") + word;
-  std::vector<bool> wanted(allowed.size(), false);
-  std::string_view rest = text;
-  while (true) {
-    const std::size_t comma = rest.find(',');
-    const std::string_view word = rest.substr(0, comma);
-    const auto found = std::ranges::find(allowed, word);
-    if (found == allowed.end()) bad(text, "'" + std::string(word) + "' is none of " + known);
-    const std::size_t index = std::size_t(found - allowed.begin());
-    if (wanted[index]) bad(text, "'" + std::string(word) + "' is given twice");
-    wanted[index] = true;
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
-  }
-  std::vector<std::string> list;
-  for (std::size_t i = 0; i < allowed.size(); ++i)
-    if (wanted[i]) list.push_back(allowed[i]);
-  return list;
-}
-
 }  // namespace tempolux::tools

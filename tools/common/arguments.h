@@ -33,8 +33,4 @@ void parse_size(const std::string& text, int& width, int& height);
 /// "0.2,0.3,0.5" or "1" for all three: finite, from 0 to 1e30. Throws InputError.
 std::array<float, 3> parse_color(const std::string& text);
 
-/// A list such as "direct,caustic": words of `allowed`, at least one, none twice. Returned in the order of `allowed`,
-/// so that equal sets are equal lists. Throws InputError naming the unknown word and the allowed words.
-std::vector<std::string> parse_list(const std::string& text, const std::vector<std::string>& allowed);
-
 }  // namespace tempolux::tools

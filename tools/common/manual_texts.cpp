@@ -45,17 +45,15 @@ constexpr ManualText kTexts[] = {
      "p.0012.photons --refine 30k -o more.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
-     "Divides the light of photons or irradiance points into two files whose sum is the whole to the last bit. By "
-     "brightness: cells of a grid keep light up to a limit (--energy or --limit), and the same share of every record "
-     "in a cell goes to the high part, which can then be sampled explicitly, like lights. Or by kind of light path: "
-     "--kind. Cells are summed without rounding, so the order of records, blocks and threads do not matter. Photons "
+     "Divides the light of photons or irradiance points into two files whose sum is the whole to the last bit. "
+     "Cells of a grid keep light up to a limit (--energy), and the same share of every record in a cell goes to the "
+     "high part, which can then be sampled explicitly, like lights. Cells are summed without rounding, so the order of "
+     "records, blocks and threads do not matter. Photons "
      "from a pipe are read twice, so they are stored in a temporary file next to the low part.",
      ".photons: read and written (formats/photons/photons.md)\n"
      ".irradpoints: read and written (formats/irradpoints/irradpoints.md)",
      "photonmap-split 12.irradpoints --low low.irradpoints --high high.irradpoints\n"
-     "photon-trace room.glb --photons 200k -o - | photonmap-split - --low low.photons --high high.photons --energy 8\n"
-     "# One kind of light, for a stage that needs no other.\n"
-     "photonmap-split 12.photons --kind caustic -o caustic.photons --rest others.photons",
+     "photon-trace room.glb --photons 200k -o - | photonmap-split - --low low.photons --high high.photons --energy 8",
      "photon-trace irradcache-build tempolux-info"},
     {"irradcache-build",
      "Spreads irradiance points over all surfaces and estimates from photons how much light arrives at each (points); "
@@ -77,8 +75,8 @@ constexpr ManualText kTexts[] = {
      "by age, get a new direction; all others follow the irradiance points of the frame. New records are placed where "
      "the kept ones do not reach.\n"
      "\n"
-     "A range of frames keeps the samples in memory and writes those of each frame; --resume continues after the last "
-     "frame whose files are complete. Single frames with --previous give the same files. Points of all frames must be "
+     "A range of frames keeps the samples in memory and writes those of each frame. Single frames with --previous give "
+     "the same files. Points of all frames must be "
      "made with the same options: points on static surfaces then have the same places.\n"
      "\n"
      "gather-temporal density SCENE --photons FILE -o FILE makes light textures from the photons of many frames "

@@ -37,6 +37,43 @@ std::string format_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + suffixes[power];
 }
 
+void seed_options(CLI::App& app, Common& common) {
+  app.add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check([](const std::string& text) -> std::string {
+        std::uint64_t seed = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+        const bool whole = error == std::errc{} && end == text.data() + text.size();
+        return whole ? "" : "'" + text + "' is not a whole number from 0 to 2^64-1";
+      });
+  app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
+      ->type_name("MODE")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"fixed", "frame"}));
+}
+
+/// Options of the scene's time and lights.
+void scene_options(CLI::App& app, Common& common) {
+  app.add_option("--fps", common.fps, "frames per second: frame f is at f / fps seconds")
+      ->type_name("RATE")
+      ->capture_default_str()
+      ->check(number_between(1e-3, 1e6));
+  app.add_option("--segment", common.segment_length,
+                 "frames in a segment; an object is static if it does not change within a segment")
+      ->type_name("FRAMES")
+      ->capture_default_str()
+      ->check(number_between(1, 1e6));
+  app.add_option("--animation", common.animation,
+                 "play only this animation of the scene; all play together if not given")
+      ->type_name("NAME");
+  app.add_option("--light-units", common.light_units,
+                 "raw: lights unchanged; spec: point, spot and sun lights divided by 683 lm/W")
+      ->type_name("UNITS")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"raw", "spec"}));
+}
+
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_usage(const CLI::App* app, std::string name) const override {
@@ -182,56 +219,20 @@ void Tool::common_options(unsigned flags) {
                    "name of the camera; auto: the scene's first camera, or a new one that shows the whole content")
         ->type_name("NAME")
         ->capture_default_str();
-  if (flags & uses_seed) {
-    app.add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
-        ->type_name("N")
-        ->capture_default_str()
-        ->check([](const std::string& text) -> std::string {
-          std::uint64_t seed = 0;
-          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-          const bool whole = error == std::errc{} && end == text.data() + text.size();
-          return whole ? "" : "'" + text + "' is not a whole number from 0 to 2^64-1";
-        });
-    app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
-        ->type_name("MODE")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"fixed", "frame"}));
-  }
+  if (flags & uses_seed) seed_options(app, common);
   if (flags & uses_scene) {
-    app.add_option("--fps", common.fps, "frames per second: frame f is at f / fps seconds")
-        ->type_name("RATE")
-        ->capture_default_str()
-        ->check(number_between(1e-3, 1e6));
-    app.add_option("--segment", common.segment_length,
-                   "frames in a segment; an object is static if it does not change within a segment")
-        ->type_name("FRAMES")
-        ->capture_default_str()
-        ->check(number_between(1, 1e6));
-    app.add_option("--animation", common.animation,
-                   "play only this animation of the scene; all play together if not given")
-        ->type_name("NAME");
-    app.add_option("--light-units", common.light_units,
-                   "raw: lights unchanged; spec: point, spot and sun lights divided by 683 lm/W")
-        ->type_name("UNITS")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"raw", "spec"}));
+    scene_options(app, common);
     environment_options();
     volume_options();
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
     left_out(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
-    left_out(app.add_option("--max-texture", common.max_texture,
-                            "refuse texture images with more pixels than this on a side"))
-        ->type_name("N")
-        ->check(number_between(1, 65536))
-        ->capture_default_str();
     app.add_option("--reduce-textures", common.reduce_textures,
                    "reduce larger texture images to this many pixels on a side; 0: none")
         ->type_name("N")
         ->check(number_between(0, 65536))
         ->capture_default_str();
-    left_out(app.add_flag("--allow-outside", common.allow_outside, "follow file names that leave the scene's folder"));
   }
   left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")
@@ -246,7 +247,6 @@ void Tool::common_options(unsigned flags) {
   left_out(app.add_option("--said", common.said_file,
                           "file with warnings that earlier tools have given, one per line; they are not repeated"))
       ->type_name("FILE");
-  left_out(app.add_flag("--no-clobber", common.no_clobber, "refuse to replace an output that exists"));
   left_out(app.add_flag("-q,--quiet", common.quiet, "print errors only"));
   left_out(app.add_flag("-v,--verbose", common.verbose, "report each phase and its time"));
 }

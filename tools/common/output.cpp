@@ -96,21 +96,6 @@ std::string reason_and_remedy(int error) {
   throw ResourceError(name + ": " + what + ": " + reason_and_remedy(error));
 }
 
-bool same_bytes(const std::string& a, const std::string& b) {
-  std::error_code error;
-  const auto size_a = std::filesystem::file_size(a, error), size_b = std::filesystem::file_size(b, error);
-  if (error || size_a != size_b) return false;
-  std::ifstream file_a(a, std::ios::binary), file_b(b, std::ios::binary);
-  std::vector<char> part_a(kBufferBytes), part_b(kBufferBytes);
-  while (file_a && file_b) {
-    file_a.read(part_a.data(), std::streamsize(kBufferBytes));
-    file_b.read(part_b.data(), std::streamsize(kBufferBytes));
-    if (file_a.gcount() != file_b.gcount()) return false;
-    if (std::memcmp(part_a.data(), part_b.data(), std::size_t(file_a.gcount())) != 0) return false;
-  }
-  return file_a.eof() && file_b.eof();
-}
-
 /// Identifies a file independent of its name.
 using FileId = std::pair<dev_t, ino_t>;
 
@@ -153,7 +138,6 @@ Ledger& ledger() {
 
 struct Output::State : std::streambuf {
   std::string path, target, temporary_path;
-  bool no_clobber = false;
   int file = -1;
   std::optional<Temporary> temporary;  ///< empty: the output is written in place
   std::vector<char> buffer;
@@ -161,9 +145,7 @@ struct Output::State : std::streambuf {
   std::uint64_t bytes_written = 0;
   std::ostream stream{this};
 
-  State(std::string name, bool keep_old) : path(std::move(name)), no_clobber(keep_old) {
-    stream.exceptions(std::ios::badbit);
-  }
+  explicit State(std::string name) : path(std::move(name)) { stream.exceptions(std::ios::badbit); }
   ~State() override {
     if (file > STDERR_FILENO) close(file);
     note(Ledger::Line::Stage::dropped);
@@ -203,7 +185,6 @@ struct Output::State : std::streambuf {
     const bool of_the_system =
         (path.starts_with("/dev/") && !path.starts_with("/dev/shm/")) || path.starts_with("/proc/");
     if (!S_ISREG(status.st_mode) || of_the_system) return open_in_place();
-    if (no_clobber) throw InputError(path + ": exists; leave out --no-clobber to replace it");
     if (access(path.c_str(), W_OK) != 0) fail(path, "cannot write", errno);
     if (std::filesystem::is_symlink(path)) target = std::filesystem::canonical(path).string();
     open_temporary(status.st_mode & 0777);
@@ -287,12 +268,7 @@ struct Output::State : std::streambuf {
     if (closed != 0) fail(path, "write failed", errno);
   }
   void rename_into_place(bool sync) {
-    const unsigned flags = no_clobber ? RENAME_NOREPLACE : 0;
-    int result = renameat2(AT_FDCWD, temporary->path(), AT_FDCWD, target.c_str(), flags);
-    if (result != 0 && flags == 0 && (errno == EINVAL || errno == ENOSYS))
-      result = rename(temporary->path(), target.c_str());
-    if (result != 0 && errno == EEXIST) throw InputError(path + ": exists; leave out --no-clobber to replace it");
-    if (result != 0) fail(path, "cannot rename the finished file", errno);
+    if (rename(temporary->path(), target.c_str()) != 0) fail(path, "cannot rename the finished file", errno);
     temporary->release();
     if (!sync) return;
     const std::string folder = std::filesystem::path(target).parent_path().string();
@@ -320,8 +296,7 @@ std::string temporary_host() {
   return host;
 }
 
-Output::Output(const std::string& path, bool no_clobber, Kind kind)
-    : state_(std::make_unique<State>(path, no_clobber)) {
+Output::Output(const std::string& path, Kind kind) : state_(std::make_unique<State>(path)) {
   state_->open_output(kind);
 }
 
@@ -343,19 +318,6 @@ std::uint64_t Output::written() const { return state_->bytes_written; }
 
 void Output::commit() { state_->commit(true); }
 void Output::commit_unsynced() { state_->commit(false); }
-
-bool Output::commit_if_changed() {
-  state_->flush_buffer();
-  if (!state_->temporary || !same_bytes(state_->temporary_path, state_->target)) {
-    commit();
-    return true;
-  }
-  close(state_->file);
-  state_->file = -1;
-  state_->temporary->remove();
-  state_->note(Ledger::Line::Stage::committed);
-  return false;
-}
 
 std::vector<std::string> committed_outputs() {
   const std::lock_guard lock(ledger().mutex);

@@ -21,8 +21,8 @@ class Output {
   enum class Kind { binary, text };  ///< text may go to a terminal
 
   /// Throws InputError (exit 2) if `path` is empty, a folder, a terminal, already an output of this run, or an input
-  /// (protect_input), or if it exists under no_clobber; ResourceError (exit 3) if the file cannot be created.
-  explicit Output(const std::string& path, bool no_clobber = false, Kind kind = Kind::binary);
+  /// (protect_input); ResourceError (exit 3) if the file cannot be created.
+  explicit Output(const std::string& path, Kind kind = Kind::binary);
   ~Output();
   Output(Output&&) noexcept;
   Output& operator=(Output&&) noexcept;
@@ -39,15 +39,12 @@ class Output {
   /// Makes all bytes so far readable at temporary_path(). Throws as write().
   void flush();
 
-  /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError; InputError under no_clobber if the
-  /// name has been taken meanwhile. Nothing may be written afterwards.
+  /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError. Nothing may be written
+  /// afterwards.
   void commit();
   /// commit() without the two fsyncs, which wait for the disk: for many small files that are checked later and made
   /// again if a power cut destroyed them.
   void commit_unsynced();
-  /// commit(), unless a file with the same bytes exists: that file and its time stamp stay, so that make has nothing to
-  /// do. Returns true if the file was replaced.
-  bool commit_if_changed();
 
  private:
   struct State;

@@ -13,9 +13,7 @@ namespace tempolux::tools {
 SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : tool_(tool) {
   const Common& common = tool.common();
   GltfOptions options;
-  options.allow_outside = common.allow_outside;
   options.animation = common.animation;
-  options.textures.max_side = common.max_texture;
   if (common.reduce_textures > 0) options.textures.reduce_to = common.reduce_textures;
   scene_ = load_gltf(path, options);
   add_environment();

@@ -19,15 +19,12 @@ struct Temporary::Entry {
 namespace {
 
 std::atomic<Temporary::Entry*> first_entry{nullptr};
-std::atomic<pid_t> running_child{0};
 bool pipe_may_end = false;
-static_assert(std::atomic<Temporary::Entry*>::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
+static_assert(std::atomic<Temporary::Entry*>::is_always_lock_free);
 
 // Calls async-signal-safe functions only.
 extern "C" void remove_temporaries_and_end(int signal) {
   const int saved = errno;
-  if (const pid_t child = running_child.load(); child > 0 && kill(child, SIGTERM) == 0)
-    while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {}
   for (Temporary::Entry* entry = first_entry.load(); entry; entry = entry->next)
     if (entry->live.load() && unlink(entry->path.c_str()) != 0 && errno == EISDIR) rmdir(entry->path.c_str());
   struct sigaction standard = {};
@@ -55,8 +52,6 @@ void Temporary::remove() {
   if (entry_->live.load()) unlink(entry_->path.c_str());
   entry_->live = false;
 }
-
-void end_together_with(pid_t child) { running_child = child; }
 
 void install_signal_handlers() {
   struct sigaction action = {}, before = {};

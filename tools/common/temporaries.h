@@ -29,10 +29,6 @@ class Temporary {
   Entry* entry_;
 };
 
-/// Registers a child process that this process waits for: the signal handler sends it TERM and waits until it has
-/// removed its own files. 0: none. Only one at a time.
-void end_together_with(pid_t child);
-
 /// From now on INT, TERM, HUP and XCPU remove all temporary files and end the process with that signal (the shell sees
 /// 128 + n). A signal that was ignored at the start (nohup) stays ignored. PIPE and XFSZ are ignored, so that a write
 /// fails with a reason instead.

@@ -198,8 +198,8 @@ int Tool::State::run(const std::function<int()>& body, const Tool& tool) {
   for (const std::string& file : common.state_files) protect_input(file);
   // Created before the work like all outputs, so that an unwritable place is reported first.
   std::optional<Output> stats_output, dep_output;
-  if (!common.stats_file.empty()) stats_output.emplace(common.stats_file, common.no_clobber, Output::Kind::text);
-  if (!common.dep_file.empty()) dep_output.emplace(common.dep_file, common.no_clobber, Output::Kind::text);
+  if (!common.stats_file.empty()) stats_output.emplace(common.stats_file, Output::Kind::text);
+  if (!common.dep_file.empty()) dep_output.emplace(common.dep_file, Output::Kind::text);
 
   const int code = body();
   stats.end_phase();

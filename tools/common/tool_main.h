@@ -47,7 +47,6 @@ enum class InputRole {
 
 enum CommonOptions : unsigned {
   uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --volume... --state --allow-stale
-                    ///< --allow-outside
   uses_seed = 2,    ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
@@ -83,9 +82,8 @@ struct Common {
   std::string said_file;                 ///< file with warnings that an earlier stage has given, one per line; "": none
   std::vector<std::string> state_files;  ///< listed in the depfile in place of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
-  int max_texture = 16384;               ///< pixels on a side: larger images are refused
   int reduce_textures = 0;               ///< pixels on a side: larger images are reduced; 0: none
-  bool allow_stale = false, allow_outside = false, quiet = false, no_clobber = false;
+  bool allow_stale = false, quiet = false;
   int verbose = 0;
 
   /// The seed for a frame under --seed-mode.
@@ -100,7 +98,7 @@ class Tool {
   ~Tool();
 
   CLI::App& app();
-  /// Adds --threads --stats --depfile --max-memory --quiet --verbose --no-clobber, and the options selected by `flags`.
+  /// Adds --threads --stats --depfile --max-memory --quiet --verbose, and the options selected by `flags`.
   void common_options(unsigned flags);
   const Common& common() const;
 

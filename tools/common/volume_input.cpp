@@ -59,7 +59,7 @@ std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
 VolumeInput::VolumeInput(Tool& tool, const Scene& scene) : tool_(tool) {
   const VolumeOptions& options = tool.common().volume;
   const bool none = options.files.size() == 1 && options.files.front() == "none";
-  if (options.files.empty()) sources_ = volumes_of(scene, tool.common().allow_outside);
+  if (options.files.empty()) sources_ = volumes_of(scene);
   else if (!none) sources_ = sources_of(options);
   if ((options.files.empty() || none) && (!options.grids.empty() || !options.sigma_t.empty() ||
                                           !options.albedo.empty() || !options.phase_g.empty() || options.frames))
@@ -121,8 +121,8 @@ std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
   for (const VolumeSource& source : sources_) {
     files.push_back(file_of(source, frame));
     if (!source.frames && has_frame_pattern(source.pattern) && !std::filesystem::exists(files.back()))
-      throw InputError(files.back() + ": cannot be opened: there is no such file; frame " +
-                       std::to_string(frame) + " is read, as its segment or a filter's window holds it; name the "
+      throw InputError(files.back() + ": cannot be opened: there is no such file; frame " + std::to_string(frame) +
+                       " is read, as its segment or a filter's window holds it; name the "
                        "frames that have files, such as --volume-frames 0-47 (make: in VOLUME_OPTIONS)");
     tool_.depends_on(files.back(), InputRole::of_scene);
   }

@@ -36,7 +36,7 @@ DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, con
 }
 
 void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number) {
-  Output output(frame_name(options.output, number), tool.common().no_clobber);
+  Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = static_scene_of(input.at(number));
   tool.stats().phase("build");
@@ -52,7 +52,7 @@ void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& opti
 }
 
 void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree) {
-  Output output(frame_name(options.output, number), tool.common().no_clobber);
+  Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number), standing = static_scene_of(frame);
   const EmissionTable& emission = input.emission(frame.frame);
@@ -83,7 +83,7 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
 }
 
 void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& standing) {
-  Output output(frame_name(options.output, number), tool.common().no_clobber);
+  Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   tool.stats().phase("build");

@@ -115,7 +115,7 @@ std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options,
 }  // namespace
 
 void build_records(Tool& tool, SceneInput& input, CacheOptions options, const std::vector<int>& frames) {
-  Output output(options.output, tool.common().no_clobber);
+  Output output(options.output);
   tool.stats().phase("evaluate");
   const bool standing = options.map == "static";
   const auto state = [&](int number) { return standing ? static_scene_of(input.at(number)) : input.at(number); };
@@ -128,7 +128,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   const GatherPoints points = gather_points(tool, options, tracer, lights, high_shares);
   tool.stats().phase("prepare records");
   if (!options.keep_points.empty()) {
-    Output keep(options.keep_points, tool.common().no_clobber);
+    Output keep(options.keep_points);
     write_points(tool, points, first, keep);
   }
   PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
@@ -143,8 +143,6 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   }
   const FinalGather gather(tracer, lights, lookup, options.gather);
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
-  std::string history = points.history;
-  if (!options.records.empty()) history = read_records(tool, options.records, InputRole::replaceable, first, store);
 
   tool.stats().phase("records", true);
   const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state),
@@ -152,7 +150,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   tool.stats().phase("write");
   formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
   if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
-  header.history = history + tool.history_line();
+  header.history = points.history + tool.history_line();
   write_records(header, to_file(store.records(), first), output);
   tool.stats().end_phase();
   count(tool, store.records().size(), counts);
@@ -161,7 +159,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
 void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                            StaticTree& tree) {
   const int number = frames.front();
-  Output output(frame_name(options.output, number), tool.common().no_clobber);
+  Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number), standing = static_scene_of(frame);
   tool.stats().phase("build");
@@ -192,8 +190,8 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
 
   tool.stats().phase("records", true);
   const RecordCameras cameras = cameras_of(tool, input, options, frames, frame, [&](int f) { return input.at(f); });
-  const GatherCounts counts = update_for_cameras({gather, tracer, lookup, maps, options.influence, options.gather.seed},
-                                                 cameras, options.placement, cache);
+  const GatherCounts counts =
+      update_for_cameras({gather, tracer, lookup, maps, {}, options.gather.seed}, cameras, options.placement, cache);
 
   tool.stats().phase("write");
   std::vector<IrradianceRecord> all = cache.standing;

@@ -28,7 +28,7 @@ std::vector<Rgbd> flux_of(const formats::MeshirradFile& file) {
 }
 
 void make_texture(Tool& tool, SceneInput& input, const Options& options, int number, StaticTree& standing) {
-  Output output(frame_name(options.output, number), tool.common().no_clobber, Output::Kind::binary);
+  Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   auto [file, mesh] = count_photons(tool, input, options.count, frame, standing);

@@ -116,8 +116,8 @@ void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector
   tool.say(noise_line(rendered));
   if (asked.seen_error > 0 && rendered.noise.image.codes > asked.seen_error)
     tool.warn("--seen-error " + number(asked.seen_error) + ": " + number(rendered.noise.image.codes) +
-              " codes are left, and " + number(100 * rendered.at_limit) + " % of the pixels are at --pixel-limit " +
-              std::to_string(asked.adaptive_limit) + "; raise it, or give files of light (--points, --irradcache)");
+              " codes are left, and " + number(100 * rendered.at_limit) + " % of the pixels are at the limit of " +
+              std::to_string(asked.adaptive_limit) + " samples; give files of light (--points, --irradcache)");
 }
 
 }  // namespace tempolux::tools

@@ -34,10 +34,10 @@ void describe(const FrameDescription& description, int samples, Image& image) {
 
 }  // namespace
 
-FrameOutputs::FrameOutputs(const std::string& path, bool halves, bool no_clobber) {
-  outputs_.emplace_back(path, no_clobber);
+FrameOutputs::FrameOutputs(const std::string& path, bool halves) {
+  outputs_.emplace_back(path);
   if (!halves) return;
-  for (char letter : {'a', 'b'}) outputs_.emplace_back(half_name(path, letter), no_clobber);
+  for (char letter : {'a', 'b'}) outputs_.emplace_back(half_name(path, letter));
 }
 
 void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,

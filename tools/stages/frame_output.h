@@ -27,7 +27,7 @@ struct FrameDescription {
 class FrameOutputs {
  public:
   /// Creates the files at once, so that an unwritable place is reported before the work.
-  FrameOutputs(const std::string& path, bool halves, bool no_clobber);
+  FrameOutputs(const std::string& path, bool halves);
   /// Writes and commits all files. `data` holds the data channels already; with a mask, pixels outside the mask are
   /// copied from `base`.
   void write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,

@@ -203,10 +203,4 @@ std::string add_records(Tool& tool, const std::string& name, const formats::Irra
   return file.header.history;
 }
 
-std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
-                         RecordStore& store) {
-  tool.depends_on(file, role);
-  return add_records(tool, file, formats::load_irradcache(file), frame, store);
-}
-
 }  // namespace tempolux::tools

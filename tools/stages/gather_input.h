@@ -58,8 +58,5 @@ void write_records(const formats::IrradcacheHeader& header, const std::vector<fo
 /// InputError for a localised cache, whose records are of several kinds.
 std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file,
                         const SceneFrame& frame, RecordStore& store);
-/// Adds the records of a .irradcache file to a store; returns the file's history.
-std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
-                         RecordStore& store);
 
 }  // namespace tempolux::tools

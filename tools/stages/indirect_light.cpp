@@ -48,7 +48,6 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
   bright_ =
       std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed});
   known_.bright = bright_.get();
-  known_.bright_samples = options.high_samples;
   tool.stats().count("bright_points", double(bright_->spot_count()));
 }
 

@@ -18,7 +18,6 @@ struct IndirectLightOptions {
   /// Files or patterns, "": none; with these `points` (or, without points, `photons`) is the low part of photonmap-
   /// split.
   std::string high;
-  int high_samples = 4;        ///< samples of bright points per camera path
   bool photons_alone = false;  ///< true: photons must give indirect light
   PhotonLightOptions photon_light;
   InfluenceThresholds influence;  ///< for a localised cache

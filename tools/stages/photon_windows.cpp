@@ -112,7 +112,7 @@ void check_alike(const Counted& here, const Counted& other) {
 }
 
 void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts& counts, int number) {
-  Output output(frame_name(options.output, number), tool.common().no_clobber, Output::Kind::binary);
+  Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   std::size_t at = 0;

@@ -34,7 +34,7 @@ std::string content_of(const std::string& path) {
 }
 
 void write_whole(const std::string& path, const std::string& content) {
-  Output output(path, false, Output::Kind::text);
+  Output output(path, Output::Kind::text);
   output.write(content.data(), content.size());
   output.commit_unsynced();
 }

@@ -46,14 +46,15 @@ bool is_unlocked(const std::string& path) {
   return free;
 }
 
-bool is_left_over(const std::string& path, const Writer& writer, const struct stat& status, double other_hosts_s) {
+bool is_left_over(const std::string& path, const Writer& writer, const struct stat& status) {
+  constexpr double kDay = 86400;  // s
   if (writer.host == temporary_host()) return ::kill(writer.process, 0) != 0 && errno == ESRCH && is_unlocked(path);
-  return std::difftime(std::time(nullptr), status.st_mtime) > other_hosts_s && is_unlocked(path);
+  return std::difftime(std::time(nullptr), status.st_mtime) > kDay && is_unlocked(path);
 }
 
 }  // namespace
 
-Tidied tidy(const std::string& folder, double other_hosts_s) {
+Tidied tidy(const std::string& folder) {
   std::error_code error;
   fs::recursive_directory_iterator entries(folder, fs::directory_options::skip_permission_denied, error), end;
   if (error) throw InputError(folder + ": cannot be listed: " + error.message() + "; name a folder of outputs");
@@ -64,7 +65,7 @@ Tidied tidy(const std::string& folder, double other_hosts_s) {
     const std::optional<Writer> writer = writer_of(entries->path().filename().string());
     struct stat status {};
     if (!writer || ::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
-    if (!is_left_over(path, *writer, status, other_hosts_s)) {
+    if (!is_left_over(path, *writer, status)) {
       ++tidied.kept;
     } else if (::unlink(path.c_str()) == 0) {
       ++tidied.removed;

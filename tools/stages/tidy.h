@@ -13,8 +13,8 @@ struct Tidied {
 };
 
 /// Removes temporary files of Output (`.NAME.tmp.HOST.PROCESS`) from a folder and its subfolders: files of this host
-/// whose process has ended and whose lock is free, and files of other hosts that were not written for `other_hosts_s`
-/// seconds. Other files stay; symbolic links are not followed. Throws InputError if the path is not a folder.
-Tidied tidy(const std::string& folder, double other_hosts_s);
+/// whose process has ended and whose lock is free, and files of other hosts that were not written for a day. Other
+/// files stay; symbolic links are not followed. Throws InputError if the path is not a folder.
+Tidied tidy(const std::string& folder);
 
 }  // namespace tempolux::tools

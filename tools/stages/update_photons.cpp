@@ -45,13 +45,12 @@ std::string previous_name(const UpdateArguments& arguments, int frame) {
   return frame_name(arguments.update, parse_count(arguments.refine) > 0 ? frame : frame - 1);
 }
 
-/// Number of groups that fit into the share besides `spent` paths of pilots. With corrective photons a group costs
-/// two traces.
+/// Number of groups that fit into the share besides `spent` paths of pilots.
 std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& photons, std::uint64_t spent) {
-  if (arguments.share.empty()) return arguments.max_groups;
+  if (arguments.share.empty()) return 0;
   const double paths = share_of(arguments.share, "--share") * double(photons.photon_count()) - double(spent);
-  const double groups = paths / double(photons.members()) / (arguments.corrective ? 2 : 1);
-  return std::uint64_t(std::max(0.0, spent > 0 || arguments.corrective ? std::floor(groups) : std::ceil(groups)));
+  const double groups = paths / double(photons.members());
+  return std::uint64_t(std::max(0.0, spent > 0 ? std::floor(groups) : std::ceil(groups)));
 }
 
 /// True if the map takes at most a quarter of the memory.
@@ -97,9 +96,6 @@ void add_update_options(CLI::App& app, UpdateArguments& arguments) {
   app.add_option("--share", arguments.share,
                  "with --update: share of the paths that are traced again, such as 10%, including pilots")
       ->type_name("PERCENT");
-  app.add_option("--max-groups", arguments.max_groups,
-                 "with --update: the number of groups that are traced again, instead of --share; pilots do not count")
-      ->type_name("N");
   std::vector<std::string> names;
   for (const auto& [name, strategy] : kStrategies) names.push_back(name);
   app.add_option("--strategy", arguments.strategy,
@@ -123,11 +119,6 @@ void add_update_options(CLI::App& app, UpdateArguments& arguments) {
                  "of --update: priorities are times age to this power; 0: as in the papers")
       ->group("")
       ->check(number_between(0, 16));
-  app.add_flag("--corrective", arguments.corrective,
-               "of --update: take groups back by negative photons through the smoke of their frame, instead of leaving "
-               "them out: "
-               "the same map for twice the paths")
-      ->group("");
   app.add_option("--refine", arguments.refine,
                  "add this many paths (10k, 1M) to the groups in which they reduce the noise of light in smoke most, "
                  "instead of tracing groups again; --update is then the map of the frame itself")
@@ -141,15 +132,13 @@ void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArgu
   if (static_or_dynamic && arguments.updates()) throw InputError("--update: only with --map global");
   if (!arguments.updates() && refines)
     throw InputError("--refine: name the map that gets further paths, --update FILE");
-  if (!arguments.updates() && arguments.corrective) throw InputError("--corrective: only with --update");
-  if (refines && (arguments.corrective || !arguments.share.empty() || arguments.max_groups > 0))
-    throw InputError(
-        "--refine: adds paths; --share, --max-groups and --corrective trace some again: use one or the other");
+  if (refines && !arguments.share.empty())
+    throw InputError("--refine: adds paths; --share traces some again: use one or the other");
   if (arguments.updates() && share_of(arguments.pilots, "--pilots") > 0)
     throw InputError("--pilots: of an update the map before has them");
   if (!arguments.updates()) return;
-  if (!refines && arguments.share.empty() && arguments.max_groups == 0 && arguments.strategy != "all")
-    throw InputError("--update: say how many groups to trace again, --share 10% or --max-groups N");
+  if (!refines && arguments.share.empty() && arguments.strategy != "all")
+    throw InputError("--update: say how many groups to trace again, --share 10%");
   if (tool.common().volume.majorants.empty())
     throw InputError(
         "--update: needs the --majorants of the segment (scene-plan writes state/FRAME-KEY.majorants): without them "
@@ -187,8 +176,8 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   PreviousMap& previous = kept.map;
   if (!is_here) {
     tool.stats().phase("read map");
-    const bool keep = kept.wanted && !arguments.corrective &&
-                      may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
+    const bool keep =
+        kept.wanted && may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
     previous = read_previous(name, map.photons, strategy, map.frame.origin, keep);
   }
   if (previous.is_kept()) {
@@ -207,13 +196,7 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   formats::PhotonHeader header = map.header;
   header.history = before.history + map.header.history;
   const auto folder = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
-  MapUpdate update{name, previous, groups, map.output != "-" && folder(map.output) == folder(name), {}};
-  std::map<int, std::shared_ptr<const PhotonTracer>> tracers;
-  if (arguments.corrective) {
-    for (const std::uint32_t g : groups)
-      if (auto& tracer = tracers[previous.ledger[g].frame]; !tracer) tracer = map.tracer_at(previous.ledger[g].frame);
-    update.corrective = [&](int at) -> const PhotonTracer& { return *tracers.at(at); };
-  }
+  MapUpdate update{name, previous, groups, map.output != "-" && folder(map.output) == folder(name)};
   const PhotonMapResult result = write_updated_map(map.photons, map.options, header, update, sink);
   if (previous.is_kept()) kept.name = map.output;
   return result;

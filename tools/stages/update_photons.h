@@ -14,9 +14,7 @@ namespace tempolux::tools {
 struct UpdateArguments {
   std::string update;  ///< file or pattern; "": no earlier map
   std::string share, pilots = "0%", strategy = "oldest";
-  std::uint64_t max_groups = 0;
   std::string refine = "0";
-  bool corrective = false;
   UpdateOptions how;
   bool updates() const { return !update.empty(); }
 };
@@ -36,8 +34,6 @@ struct MapToUpdate {
   const PhotonOptions& options;
   const formats::PhotonHeader& header;  ///< of the map, if it were traced whole
   std::string output;                   ///< name of the new file
-  /// the tracer for the smoke of another frame
-  std::function<std::shared_ptr<const PhotonTracer>(int frame)> tracer_at;
 };
 /// The previous map, kept in memory for the next frame of a range if it takes at most a quarter of the memory
 /// (--max-memory, or the machine's).
@@ -47,7 +43,7 @@ struct KeptMap {
   PreviousMap map;
 };
 
-/// Writes the map of the frame through `sink`, according to --update, --refine and --corrective. Adds the numbers of
+/// Writes the map of the frame through `sink`, according to --update and --refine. Adds the numbers of
 /// groups and pilots to stats. `kept`: the previous map, if it is in memory; becomes the new map, if that can be kept.
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
                            const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept);

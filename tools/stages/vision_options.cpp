@@ -32,10 +32,6 @@ void declare_vision(Tool& tool, VisionWords& w) {
       ->type_name("NAME")
       ->capture_default_str()
       ->check(CLI::IsMember({"office", "hdr", "dark"}));
-  app.add_option("--peak", w.peak,
-                 "largest luminance of the display and luminance of white, cd/m2; default: --display's")
-      ->type_name("VALUE")
-      ->check(number_between(1, 1e5));
   app.add_option("--ppd", w.pixels_per_degree, "pixels per degree of the eye; else --display's")
       ->type_name("VALUE")
       ->check(number_between(1, 1000));
@@ -65,11 +61,6 @@ void check_vision(const VisionWords& w, bool several_frames) {
 VisionOptions vision_options(const VisionWords& w, const LoadedFrame& first) {
   VisionOptions options;
   options.display = vision::display_named(w.display);
-  if (w.peak > 0) {
-    const double scale = w.peak / options.display.peak;  // a brighter display with the same contrast
-    options.display.peak = options.display.white = w.peak;
-    options.display.black *= scale;
-  }
   if (w.pixels_per_degree > 0) options.display.pixels_per_degree = w.pixels_per_degree;
   options.gaze = w.eye == "track" ? vision::Gaze::track : vision::Gaze::fixed;
   const double said = number_attribute(first.inputs().test.image, "framesPerSecond", 24);

@@ -46,7 +46,7 @@ PhotonBlock floor_with_spot(int count, int spot, std::uint64_t seed) {
   return block;
 }
 
-FluxCells cells_of(const PhotonBlock& block, double edge, const BrightLimit& limit) {
+FluxCells cells_of(const PhotonBlock& block, double edge, double limit) {
   FluxCells cells(edge, 0);
   add_flux(block, cells);
   cells.close(limit);
@@ -162,9 +162,9 @@ TEST(FluxCells, ASpotKeepsItsMultipleOfTheMean) {
 
 TEST(FluxCells, OrderAndBlocksDoNotMatter) {
   PhotonBlock block = floor_with_spot(5000, 5000, 2);
-  const FluxCells forwards = cells_of(block, 0.5, {});
+  const FluxCells forwards = cells_of(block, 0.5, kBrightLimit);
   std::shuffle(block.photons.begin(), block.photons.end(), std::minstd_rand(1));
-  const FluxCells shuffled = cells_of(block, 0.5, {});
+  const FluxCells shuffled = cells_of(block, 0.5, kBrightLimit);
   for (const Photon& p : block.photons) ASSERT_EQ(forwards.low_share(place_of(p)), shuffled.low_share(place_of(p)));
   EXPECT_EQ(forwards.area(), shuffled.area());
 }
@@ -172,16 +172,12 @@ TEST(FluxCells, OrderAndBlocksDoNotMatter) {
 TEST(FluxCells, LimitsZeroAndInfinityAreAllAndNothing) {
   const PhotonBlock block = floor_with_spot(2000, 2000, 3);
   constexpr double inf = std::numeric_limits<double>::infinity();
-  for (const BrightLimit limit : {BrightLimit{0}, BrightLimit{4, 0}}) {
-    const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
-    EXPECT_EQ(parts.high.photons, block.photons);
-    EXPECT_TRUE(parts.low.photons.empty());
-  }
-  for (const BrightLimit limit : {BrightLimit{inf}, BrightLimit{4, 1e12}}) {
-    const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
-    EXPECT_EQ(parts.low.photons, block.photons);
-    EXPECT_TRUE(parts.high.photons.empty());
-  }
+  const DividedPhotons all = divide(block, cells_of(block, 0.5, 0));
+  EXPECT_EQ(all.high.photons, block.photons);
+  EXPECT_TRUE(all.low.photons.empty());
+  const DividedPhotons nothing = divide(block, cells_of(block, 0.5, inf));
+  EXPECT_EQ(nothing.low.photons, block.photons);
+  EXPECT_TRUE(nothing.high.photons.empty());
 }
 
 TEST(FluxCells, SidesAndObjectsAreCellsOfTheirOwn) {
@@ -211,13 +207,16 @@ TEST(FluxCells, ASurfaceAtZeroIsNotDealtOutToTwoCells) {
 
 TEST(FluxCells, AllInOnePointAndNothingAreNoError) {
   PhotonBlock block;
-  FluxCells none = cells_of(block, 1, {});
+  FluxCells none = cells_of(block, 1, kBrightLimit);
   EXPECT_EQ(none.mean_irradiance(), 0);
   for (int i = 0; i < 1000; ++i) block.photons.push_back(photon(1, 2, 3, 1));
-  const FluxCells cells = cells_of(block, 1, {});  // no area, no mean: nothing is above it
+  const FluxCells cells = cells_of(block, 1, kBrightLimit);  // no area, no mean: nothing is above it
   EXPECT_EQ(divide(block, cells).low.photons.size() + divide(block, cells).high.photons.size(), 1000u);
   for (Photon& p : block.photons) p.flux = {-1, 0, -2};  // a dynamic map: negative only
-  const DividedPhotons parts = divide(block, cells_of(block, 1, {4, 10}));
+  FluxCells hundredth(1, 0.01);  // with a known area the only cell has the mean irradiance
+  add_flux(block, hundredth);
+  hundredth.close(0.01);
+  const DividedPhotons parts = divide(block, hundredth);
   EXPECT_EQ(parts.high.photons.size(), 1000u);
   EXPECT_NEAR(parts.low.photons[0].flux[0], -0.01f, 0x1p-24f);  // the larger part's rounding
 }
@@ -229,7 +228,7 @@ TEST(FluxCells, ReflectedShareMakesDarkSurfacesLessBright) {
     const std::uint8_t albedo = spot ? 2 : 255;
     block.albedos.push_back({albedo, albedo, albedo, 0});
   }
-  EXPECT_EQ(cells_of(block, 0.5, {}).bright_count(), 0u);
+  EXPECT_EQ(cells_of(block, 0.5, kBrightLimit).bright_count(), 0u);
 }
 
 TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
@@ -254,7 +253,7 @@ TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   block.photons[5].flux = {0, 0, 0};
   block.photons[7] = block.photons[6];  // two photons that differ in nothing
   block.directions[7] = block.directions[6];
-  for (const BrightLimit& limit : {BrightLimit{2}, BrightLimit{0}, BrightLimit{1e9}}) {
+  for (const double limit : {2.0, 0.0, 1e9}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     formats::PhotonMap low, high;
     low.photons = parts.low.photons, low.directions = parts.low.directions;
@@ -331,15 +330,6 @@ TEST(CellEdge, SixteenMeanDistancesOnASurface) {
   zeros.add({0, 0, 0});
   zeros.add({-0.0f, 0, 0});
   EXPECT_EQ(zeros.edge(), 1);
-}
-
-TEST(SplitLight, KindsGoTheirWays) {
-  PhotonBlock block = floor_with_spot(90, 0, 9);
-  for (std::size_t i = 0; i < 90; ++i) block.photons[i].kind = formats::PathKind(i % 3);
-  const ChosenPhotons parts = choose_kinds(block, 1u << 1);
-  EXPECT_EQ(parts.chosen.photons.size(), 30u);
-  EXPECT_EQ(parts.rest.photons.size(), 60u);
-  for (const Photon& p : parts.chosen.photons) EXPECT_EQ(p.kind, formats::PathKind::caustic);
 }
 
 }  // namespace

@@ -112,12 +112,11 @@ IrradianceRecord record(Vec3 position, float irradiance) {
   return r;
 }
 
-TEST(Influence, FieldIsRelativeUnlessAskedOtherwise) {
+TEST(Influence, FieldIsRelativeToTheStaticIrradiance) {
   const std::vector<IrradianceRecord> records{record(kMiddle, 5), record({0.2f, 0, 0.2f}, 5)};
   const std::vector<float> influences{0.5f, 0};
-  const InfluenceField relative(records, influences, {}), absolute(records, influences, {.absolute = true});
+  const InfluenceField relative(records, influences, {});
   EXPECT_NEAR(relative.at(kMiddle, kUp), 0.1f, 1e-6f);
-  EXPECT_NEAR(absolute.at(kMiddle, kUp), 0.5f, 1e-6f);
   EXPECT_EQ(relative.at({0.2f, 0, 0.2f}, kUp), 0);
   EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));  // no record is valid there
   EXPECT_EQ(relative.gathered_share({0.2f, 0, 0.2f}, kUp), 0);
@@ -154,19 +153,17 @@ TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
     influences.push_back(v.y < 0.7f ? 0.05f * v.y : 0.9f * (v.y - 0.7f));
     if (i % 4 == 0) influences.back() *= 0.01f;  // as large as the influence at the least irradiance
   }
-  for (const bool absolute : {false, true}) {
-    const InfluenceField field(records, influences, {.absolute = absolute});
-    int none = 0, all = 0, some = 0;
-    for (std::uint32_t i = 0; i < 4000; ++i) {
-      const Vec2 u = random.get2(i, Purpose::scatter), v = random.get2(i, Purpose::lobe);
-      const Vec3 at{20 * u.x, 0, 20 * u.y}, normal = normalize(Vec3{v.x - 0.5f, 1, v.y - 0.5f});
-      const float share = field.gathered_share(at, normal);
-      // A mean of ratios at the threshold may round to above it, by 1e-7: t^2 = 1e-11.
-      ASSERT_NEAR(share, field.thresholds().gathered_share(field.at(at, normal)), 1e-9f);
-      ++(share == 0 ? none : share == 1 ? all : some);
-    }
-    EXPECT_GT(std::min({none, all, some}), 50);
+  const InfluenceField field(records, influences, {});
+  int none = 0, all = 0, some = 0;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const Vec2 u = random.get2(i, Purpose::scatter), v = random.get2(i, Purpose::lobe);
+    const Vec3 at{20 * u.x, 0, 20 * u.y}, normal = normalize(Vec3{v.x - 0.5f, 1, v.y - 0.5f});
+    const float share = field.gathered_share(at, normal);
+    // A mean of ratios at the threshold may round to above it, by 1e-7: t^2 = 1e-11.
+    ASSERT_NEAR(share, field.thresholds().gathered_share(field.at(at, normal)), 1e-9f);
+    ++(share == 0 ? none : share == 1 ? all : some);
   }
+  EXPECT_GT(std::min({none, all, some}), 50);
 }
 
 TEST(Influence, BesideADarkRecordTheMeanDecides) {

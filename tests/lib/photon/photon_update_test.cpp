@@ -68,7 +68,7 @@ class PhotonUpdate : public testing::Test {
     PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
     groups_ = choose_groups(previous, frame, same, how);
     return written(name, [&](const auto& sink) {
-      write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true, {}}, sink);
+      write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true}, sink);
     });
   }
   bool is_overlay(const std::string& name) const {
@@ -128,7 +128,7 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   // The same map, written as a whole file.
   PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::string whole = written("whole.photons", [&](const auto& sink) {
-    write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false, {}}, sink);
+    write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false}, sink);
   });
   EXPECT_EQ(whole, two);
 }
@@ -158,7 +158,7 @@ TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
     EXPECT_EQ(
         written("kept/" + name,
                 [&](const auto& sink) {
-                  write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true, {}}, sink);
+                  write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true}, sink);
                 }),
         wanted)
         << frame;
@@ -250,25 +250,6 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
   }
   // 63 x 100 pilots of some ten places each: the mean of their squares is known to 3 %.
   EXPECT_NEAR(difference / wanted, 1, 0.1);
-}
-
-/// Photons of flux -1 through the old smoke cancel exactly the stored ones; through other smoke they would not.
-TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
-  const Room thin(0.5f, options_), thick(2, options_);
-  fresh("0.photons", thin, 0);
-  PreviousMap previous = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::oldest, {});
-  const std::vector<std::uint32_t> some{3, 17, 40};
-  const auto with = [&](const std::string& name, const std::function<const PhotonTracer&(int)>& corrective) {
-    return written(name, [&](const auto& sink) {
-      write_updated_map(*thick.photons, options_, header(1), {path("0.photons"), previous, some, true, corrective},
-                        sink);
-    });
-  };
-  EXPECT_EQ(with("a.photons", {}), with("b.photons", [&](int frame) -> const PhotonTracer& {
-              EXPECT_EQ(frame, 0);
-              return *thin.photons;
-            }));
-  EXPECT_THROW(with("c.photons", [&](int) -> const PhotonTracer& { return *thick.photons; }), InputError);
 }
 
 TEST(SpreadPaths, AddsUpAndGoesWhereVarianceFallsMost) {

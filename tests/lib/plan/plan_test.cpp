@@ -327,6 +327,28 @@ TEST(Graph, ARawPictureThatTwoCommandsReadIsRemovedByNeither) {
   EXPECT_EQ(text.substr(list, text.find('\n', list) - list).find("raw/0004"), std::string::npos);
 }
 
+/// The words of a filtered frame's raw picture are frame-render's own: the frame, its light, the preset's samples and
+/// error, and the channels from which st-filter makes those of the wish.
+TEST(Graph, ARawPictureHasTheWordsOfItsPresetAndItsFilter) {
+  Wish wish;
+  wish.filter = 1;
+  wish.channels = "RGBA,P";
+  Decisions decisions = records();
+  decisions.pixel_error = 0.016;
+  const Graph graph = graph_of(plan_of(still_room(), {0}), decisions, wish);
+  const std::string words = " " + file_of(graph, "raw/").words + " ";
+  for (const char* expected : {" --frame 0 ", " --irradcache cache/", " --points points/", " --size 640x360 ",
+                               " --spp 4 ", " --pixel-error 0.016 ", " --compression none ",
+                               " --channels RGBA,layers,Z,N,id,albedo,coverage,halves,seen,P ", " --audit 0.02 "})
+    EXPECT_NE(words.find(expected), std::string::npos) << expected << "is missing in" << words;
+  EXPECT_EQ(words.find(" --seed-mode "), std::string::npos) << "a frame that is filtered alone";
+  wish.pixels = "--spp 9";  // the user's words replace the preset's
+  const Graph own = graph_of(plan_of(still_room(), {0}), decisions, wish);
+  const std::string replaced = " " + file_of(own, "raw/").words + " ";
+  EXPECT_NE(replaced.find(" --spp 9 "), std::string::npos) << replaced;
+  EXPECT_EQ(replaced.find(" --pixel-error "), std::string::npos) << replaced;
+}
+
 TEST(PlanFiles, NoWordOfTheSceneReachesMake) {
   Scene scene = still_room();
   scene.path = "$(shell touch X).glb";

@@ -89,7 +89,7 @@ TEST(FrameNoise, IsThatBetweenSeeds) {
 }
 
 /// If 2 codes or half of that are requested, the difference of two seeds' frames of paths is at most 15 % larger and at
-/// least half as large. A goal that --pixel-limit prevents is not reached, and the frame reports this.
+/// least half as large. A goal that adaptive_limit prevents is not reached, and the frame reports this.
 TEST(FrameNoise, SeenErrorIsReachedOrNot) {
   const Cornell c;
   FrameOptions options;

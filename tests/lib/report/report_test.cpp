@@ -59,7 +59,7 @@ TEST(ReportTest, CsvHasALinePerRunWithSecondsByPhaseAndCounts) {
 // Curve "map's" falls as 1e-3/t + 1e-5: floor sqrt(1e-5), ten times that at t = 10: points 1 and 4 carry the
 // slope. Equal error: both reach .00833 (path's end is .00625; the map starts at .0318 and ends at .00373).
 TEST(ReportTest, TablesCarrySlopeFloorSpeedUpAndGivenPoints) {
-  const SceneReport report = scene_reports(example(), TimeKind::cpu).at(0);
+  const SceneReport report = scene_reports(example()).at(0);
   EXPECT_EQ(report.file_stem, "error-S__2_");
   const Table& fits = table_of(report, "Error against CPU s");
   EXPECT_EQ(fits.rows[0][3], "-0.500");
@@ -77,7 +77,7 @@ TEST(ReportTest, TablesCarrySlopeFloorSpeedUpAndGivenPoints) {
 
 TEST(ReportTest, PagesEscapeNamesAndEmbedPlots) {
   const ReportInput input = example();
-  const auto scenes = scene_reports(input, TimeKind::cpu);
+  const auto scenes = scene_reports(input);
   const Plots plots{{"error-S__2_.svg", "<svg/>"}};
   const std::string html = report_html(input, scenes, plots);
   EXPECT_NE(html.find("<h2>S &lt;2&gt;</h2>"), std::string::npos);
@@ -89,15 +89,15 @@ TEST(ReportTest, PagesEscapeNamesAndEmbedPlots) {
 }
 
 TEST(ReportTest, PlotShowsSlopeAndFloorAndQuotesNames) {
-  const std::string script = plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::svg);
+  const std::string script = plot_script(scene_reports(example()).at(0), PlotFormat::svg);
   EXPECT_NE(script.find("title 'path, slope -0.50'"), std::string::npos);
   EXPECT_NE(script.find("title 'map''s, slope "), std::string::npos);
   EXPECT_NE(script.find(", bias floor 0.0032'"), std::string::npos);
-  EXPECT_EQ(plot_script(SceneReport{}, TimeKind::cpu, PlotFormat::svg), "");
+  EXPECT_EQ(plot_script(SceneReport{}, PlotFormat::svg), "");
 }
 
 TEST(GnuplotTest, DrawsTheSamePlotTwiceAndTellsOnWhatItFails) {
-  const std::string script = plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::svg);
+  const std::string script = plot_script(scene_reports(example()).at(0), PlotFormat::svg);
   std::string drawn;
   try {
     drawn = run_gnuplot(script, 60);
@@ -107,9 +107,7 @@ TEST(GnuplotTest, DrawsTheSamePlotTwiceAndTellsOnWhatItFails) {
   }
   EXPECT_NE(drawn.find("<svg"), std::string::npos);
   EXPECT_EQ(drawn, run_gnuplot(script, 60));
-  EXPECT_TRUE(
-      run_gnuplot(plot_script(scene_reports(example(), TimeKind::cpu).at(0), TimeKind::cpu, PlotFormat::png), 60)
-          .starts_with("\x89PNG"));
+  EXPECT_TRUE(run_gnuplot(plot_script(scene_reports(example()).at(0), PlotFormat::png), 60).starts_with("\x89PNG"));
   try {
     run_gnuplot("plot nonsense(x)\n", 60);
     ADD_FAILURE() << "accepted";

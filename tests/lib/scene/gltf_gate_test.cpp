@@ -102,15 +102,6 @@ TEST(GltfGate, SymbolicLinksMustStayInTheScenesFolder) {
   EXPECT_CONTAINS(load_error(path), "leads out of the scene's folder");
 }
 
-TEST(GltfGate, AllowOutsideReadsThem) {
-  write_file("outside.bin", one_triangle().bytes);
-  const std::string path =
-      write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", "../outside.bin"}}).text());
-  const Scene scene = load_gltf(path, {.allow_outside = true});
-  EXPECT_EQ(scene.meshes.size(), 1u);
-  EXPECT_EQ(scene.files.size(), 2u);
-}
-
 TEST(GltfGate, FilesBesideTheSceneAreReadAndListed) {
   write_file("data of it.bin", one_triangle().bytes + "more than byteLength");
   const std::string path =

@@ -25,41 +25,25 @@ double probability(const std::array<double, 5>& weights, std::size_t a, std::siz
 /// thousand runs.
 TEST(AgeDraw, FollowsTheLawOfSequentialDraws) {
   const std::array<std::uint16_t, 5> ages{1, 2, 2, 5, 9};
-  for (const AgeWeight weight : {AgeWeight::linear, AgeWeight::square}) {
-    std::array<double, 5> weights{};
-    for (std::size_t c = 0; c < 5; ++c)
-      weights[c] = weight == AgeWeight::linear ? double(ages[c]) : double(ages[c]) * double(ages[c]);
-    constexpr int kDraws = 200000;
-    std::map<std::pair<std::size_t, std::size_t>, int> counts;
-    AgeDraw lot;
-    std::vector<std::uint32_t> drawn;
-    for (int i = 0; i < kDraws; ++i) {
-      lot.draw(ages, 2, weight, mix64(std::uint64_t(i)), drawn);
-      ASSERT_EQ(drawn.size(), 2u);
-      ++counts[{drawn[0], drawn[1]}];
-    }
-    double chi2 = 0;
-    for (std::size_t a = 0; a < 5; ++a)
-      for (std::size_t b = 0; b < 5; ++b) {
-        if (a == b) continue;
-        const double expected = kDraws * probability(weights, a, b);
-        chi2 += std::pow(counts[{a, b}] - expected, 2) / expected;
-      }
-    EXPECT_LT(chi2, 43.8);
-  }
-}
-
-TEST(AgeDraw, OldestComeFirstAndEqualAgesByLot) {
-  const std::array<std::uint16_t, 6> ages{3, 7, 3, 7, 7, 1};
+  std::array<double, 5> weights{};
+  for (std::size_t c = 0; c < 5; ++c) weights[c] = double(ages[c]) * double(ages[c]);
+  constexpr int kDraws = 200000;
+  std::map<std::pair<std::size_t, std::size_t>, int> counts;
   AgeDraw lot;
   std::vector<std::uint32_t> drawn;
-  std::set<std::uint32_t> fourth;
-  for (std::uint64_t key = 0; key < 64; ++key) {
-    lot.draw(ages, 4, AgeWeight::oldest, mix64(key), drawn);
-    EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.begin() + 3), (std::set<std::uint32_t>{1, 3, 4}));
-    fourth.insert(drawn[3]);
+  for (int i = 0; i < kDraws; ++i) {
+    lot.draw(ages, 2, mix64(std::uint64_t(i)), drawn);
+    ASSERT_EQ(drawn.size(), 2u);
+    ++counts[{drawn[0], drawn[1]}];
   }
-  EXPECT_EQ(fourth, (std::set<std::uint32_t>{0, 2}));
+  double chi2 = 0;
+  for (std::size_t a = 0; a < 5; ++a)
+    for (std::size_t b = 0; b < 5; ++b) {
+      if (a == b) continue;
+      const double expected = kDraws * probability(weights, a, b);
+      chi2 += std::pow(counts[{a, b}] - expected, 2) / expected;
+    }
+  EXPECT_LT(chi2, 43.8);
 }
 
 TEST(AgeDraw, DrawsEachOnceAndNeverMoreThanThereAre) {
@@ -67,13 +51,11 @@ TEST(AgeDraw, DrawsEachOnceAndNeverMoreThanThereAre) {
   for (int c = 0; c < 300; ++c) ages.push_back(std::uint16_t(1 + c % 17));
   AgeDraw lot;
   std::vector<std::uint32_t> drawn;
-  for (const AgeWeight weight : {AgeWeight::linear, AgeWeight::square, AgeWeight::oldest}) {
-    lot.draw(ages, 1000, weight, 5, drawn);
-    EXPECT_EQ(drawn.size(), 300u);
-    EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.end()).size(), 300u);
-    lot.draw(ages, 0, weight, 5, drawn);
-    EXPECT_TRUE(drawn.empty());
-  }
+  lot.draw(ages, 1000, 5, drawn);
+  EXPECT_EQ(drawn.size(), 300u);
+  EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.end()).size(), 300u);
+  lot.draw(ages, 0, 5, drawn);
+  EXPECT_TRUE(drawn.empty());
 }
 
 // Cells whose age would no longer fit into the field are always drawn, and the others with the same probabilities.
@@ -81,9 +63,9 @@ TEST(AgeDraw, SaturatedAgesAreAlwaysDrawn) {
   const std::vector<std::uint16_t> ages{1, formats::kMaxAge, 4, formats::kMaxAge};
   AgeDraw lot;
   std::vector<std::uint32_t> drawn;
-  lot.draw(ages, 0, AgeWeight::square, 1, drawn);
+  lot.draw(ages, 0, 1, drawn);
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.end()), (std::set<std::uint32_t>{1, 3}));
-  lot.draw(ages, 3, AgeWeight::square, 1, drawn);
+  lot.draw(ages, 3, 1, drawn);
   EXPECT_EQ(drawn.size(), 3u);
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.begin() + 2), (std::set<std::uint32_t>{1, 3}));
 }
@@ -95,7 +77,7 @@ struct Steady {
   std::array<double, 4> stale{};  ///< after 5, 10, 15, 20 frames
 };
 
-Steady steady(AgeWeight weight) {
+Steady steady() {
   constexpr int kCells = 500, kFrames = 4000, kWarm = 400;
   std::vector<std::uint16_t> ages;
   for (int c = 0; c < kCells; ++c) ages.push_back(std::uint16_t(1 + mix64(std::uint64_t(c)) % 10));
@@ -107,7 +89,7 @@ Steady steady(AgeWeight weight) {
   std::vector<int> last(kCells, -1);  // frame of the last draw
   int begin = kWarm;
   for (int f = 0; f < kFrames; ++f) {
-    lot.draw(ages, kCells / 10, weight, mix64(std::uint64_t(f) + 77), drawn);
+    lot.draw(ages, kCells / 10, mix64(std::uint64_t(f) + 77), drawn);
     for (std::uint16_t& age : ages) ++age;
     for (const std::uint32_t c : drawn) ages[c] = 1, last[c] = f;
     if (f < kWarm) continue;
@@ -132,23 +114,12 @@ void expect_near(double found, double expected, const char* what) {
 }
 
 TEST(AgeDraw, AgesInTheLongRunAreThoseOfTheTable) {
-  const Steady linear = steady(AgeWeight::linear), square = steady(AgeWeight::square),
-               oldest = steady(AgeWeight::oldest);
-  expect_near(linear.mean, 6.86, "mean age, linear");
-  expect_near(linear.above_10, 0.209, "above 10, linear");
-  expect_near(linear.above_20, 0.012, "above 20, linear");
+  const Steady square = steady();
   expect_near(square.mean, 6.16, "mean age, square");
   expect_near(square.above_10, 0.146, "above 10, square");
   expect_near(square.above_20, 0.0004, "above 20, square");
-  expect_near(oldest.mean, 5.5, "mean age, oldest");
-  EXPECT_EQ(oldest.above_10, 0);
-  const std::array<double, 4> of_linear{0.529, 0.209, 0.058, 0.011}, of_square{0.510, 0.146, 0.015, 0.0003},
-      of_oldest{0.5, 0, 0, 0};
-  for (std::size_t i = 0; i < 4; ++i) {
-    expect_near(linear.stale[i], of_linear[i], "stale, linear");
-    expect_near(square.stale[i], of_square[i], "stale, square");
-    expect_near(oldest.stale[i], of_oldest[i], "stale, oldest");
-  }
+  const std::array<double, 4> of_square{0.510, 0.146, 0.015, 0.0003};
+  for (std::size_t i = 0; i < 4; ++i) expect_near(square.stale[i], of_square[i], "stale, square");
 }
 
 }  // namespace

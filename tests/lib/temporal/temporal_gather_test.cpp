@@ -442,21 +442,11 @@ TEST(TemporalGather, WhatIsNotThereHasNoRecords) {
 
 void expect_same(const KeptHemispheres& a, const KeptHemispheres& b) {
   ASSERT_EQ(a.records.size(), b.records.size());
-  KeptHemisphere room_a, room_b;
   for (std::size_t i = 0; i < a.records.size(); ++i) {
     EXPECT_EQ(a.records[i].record, b.records[i].record);
-    const SeenSamples of_a = see(a, a.records[i], room_a), of_b = see(b, b.records[i], room_b);
-    EXPECT_TRUE(std::ranges::equal(of_a.samples, of_b.samples)) << i;
-    EXPECT_TRUE(std::ranges::equal(of_a.anchors, of_b.anchors)) << i;
+    EXPECT_EQ(a.records[i].samples, b.records[i].samples) << i;
+    EXPECT_EQ(a.records[i].anchors, b.records[i].anchors) << i;
   }
-}
-
-/// Like kept_in(), with a shelf that holds so many bytes in memory.
-KeptHemispheres on_shelf(const KeptHemispheres& kept, std::uint64_t limit) {
-  KeptHemispheres there = kept;
-  there.shelf = std::make_shared<SampleShelf>(::testing::TempDir(), limit);
-  for (KeptHemisphere& k : there.records) put_back(there, k);
-  return there;
 }
 
 // Coming back from a file: the same, and going on from it, too.
@@ -470,33 +460,6 @@ TEST(TemporalGather, AFileHoldsAllThatCounts) {
     take_samples(head, i, {kept.records[i].samples, kept.records[i].anchors}, {}, again);
   take_head(head, again);
   expect_same(advanced(room, brighter, kept, a), advanced(room, brighter, again, b));
-}
-
-// Samples in a file, all or half of them, change nothing. What stands is not looked at; of what is given up the places
-// are used again.
-TEST(TemporalGather, SamplesOnDiskAreThoseInMemory) {
-  Room room(1), brighter(1.3f), brightest(4);
-  TemporalCounts counts;
-  const KeptHemispheres kept = kept_in(room, counts);
-  std::uint64_t bytes = 0;
-  for (const KeptHemisphere& k : kept.records) bytes += 12 * k.samples.size();
-  for (const std::uint64_t limit : {std::uint64_t(0), bytes / 2, bytes}) {
-    const KeptHemispheres shelved = on_shelf(kept, limit);
-    EXPECT_LE(shelved.shelf->bytes_in_memory(), limit);
-    EXPECT_EQ(shelved.shelf->bytes_in_memory() + shelved.shelf->bytes_in_file(), bytes);
-    std::size_t elsewhere = 0;
-    for (const KeptHemisphere& k : shelved.records) elsewhere += k.samples.empty();
-    EXPECT_EQ(elsewhere > 0, limit < bytes);
-    expect_same(shelved, kept);
-    TemporalCounts a, b, c, d;
-    const KeptHemispheres next = advanced(room, brighter, shelved, a), expected = advanced(room, brighter, kept, b);
-    expect_same(next, expected);
-    EXPECT_EQ(a.scaled, b.scaled);
-    EXPECT_EQ(a.ages, b.ages);
-    expect_same(advanced(brighter, brightest, next, c),
-                advanced(brighter, brightest, expected, d));  // beyond 2: marks are made twice
-    EXPECT_EQ(c.lost, c.cells);
-  }
 }
 
 }  // namespace
