@@ -283,10 +283,11 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& 
   return irradiance;
 }
 
-Rgb FootprintDensity::estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const {
+Rgb FootprintDensity::estimate_around(Vec3 position, const LitSurface& surface, float& alike_within, Rgb& noise) const {
   Extents extents;
   const Rgb irradiance = estimate(position, surface, extents);
   alike_within = extents.inside / 9;
+  noise = extents.noise;
   return irradiance;
 }
 

@@ -94,7 +94,8 @@ class FootprintDensity {
   /// that distance, so that light changes by a few per cent within it; 0 if no footprint covers the place. The radii of
   /// two photons differ by at most their distance, because both reach to a k-th neighbour. So with m = max over
   /// covering photons of (r_i - d_i), every footprint that reaches within m / 9 of the place is wider than 4 m / 9.
-  Rgb estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const;
+  /// `noise` as for estimate().
+  Rgb estimate_around(Vec3 position, const LitSurface& surface, float& alike_within, Rgb& noise) const;
   /// For a surface without a normal map or a coat.
   Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const {
     return estimate(position, LitSurface(normal), smooth_over);

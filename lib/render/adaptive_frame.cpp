@@ -15,7 +15,7 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
   join(sum.own, first.own, count.own, means.own);
   join(sum.lit, first.lit, count.lit, means.lit);
   join(sum.onward, first.onward, count.onward, means.onward);
-  join(sum.known_noise, first.own, count.own, means.known_noise);
+  join(sum.stored_noise, first.own, count.own, means.stored_noise);
 }
 
 /// How many samples of each part a pixel that has `have` needs to reach `wanted`. Samples of the parts lit and onward
@@ -134,12 +134,12 @@ void AdaptiveFrame::put_together() {
   parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       pixels[p] = parts_[p].sum();
-      if (!frame_.mean.known_noise.empty()) frame_.mean.known_noise[p] = parts_[p].known_noise;
+      if (!frame_.mean.stored_noise.empty()) frame_.mean.stored_noise[p] = parts_[p].stored_noise;
     }
   });
   if (options_.spread_outliers) spread();
   frame_.noise = check_.measure(
-      pixels, [&](std::size_t pixel) { return parts_[pixel].sum(); }, frame_.mean.known_noise);
+      pixels, [&](std::size_t pixel) { return parts_[pixel].sum(); }, frame_.mean.stored_noise);
 }
 
 /// Spreads outliers: first takes further samples where too few have judged a bright one, then calls spread_outliers.

@@ -131,7 +131,7 @@ FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposu
       const Rgbd again = colour(of.again) + given;
       Squares error = squares(shown, again, exposure);
       error += squares(sampled + given, again, exposure) * -0.5;
-      error += squares(shown, shown + colour(of.known), exposure);
+      error += squares(shown, shown + colour(of.stored), exposure);
       return error;
     });
   return sums.noise(exposure, triples.size());

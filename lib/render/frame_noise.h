@@ -55,16 +55,17 @@ class NoiseCheck {
   /// Noise of `picture`. A pixel holds either as_sampled(pixel) or what spread_outliers made of it. Let x be the
   /// sampled value, y the second rendering, g the light that the pixel got from other pixels, z the value in `picture`,
   /// x' = x + g and y' = y + g. The variance of z is then about E (z - y')^2 - E (x' - y')^2 / 2: the second term
-  /// removes the variance of y'. Both renderings read the same records: the square of their noise
-  /// (LayerImage::known_noise; may be empty) is added.
+  /// removes the variance of y'. Both renderings read the same records and photons: the square of their noise
+  /// (LayerImage::stored_noise; may be empty) is added.
   template <class AsSampled>
   FrameNoise measure(const std::vector<Layers>& picture, const AsSampled& as_sampled,
-                     std::span<const Rgb> known_noise = {}) const {
+                     std::span<const StoredNoise> stored_noise = {}) const {
     std::vector<Triple> triples;
     for_each_pixel_of_grid([&](std::size_t pixel, std::uint32_t slot) {
-      Layers known;
-      if (!known_noise.empty()) known[Layer::indirect] = known_noise[pixel];
-      triples.push_back({picture[pixel], as_sampled(pixel), again_[slot].sum(), known});
+      Layers stored;
+      if (!stored_noise.empty())
+        for (const Layer layer : {Layer::caustic, Layer::indirect}) stored[layer] = *stored_noise[pixel].of(layer);
+      triples.push_back({picture[pixel], as_sampled(pixel), again_[slot].sum(), stored});
     });
     return measure(triples, exposure_of(picture, mask_));
   }
@@ -110,7 +111,7 @@ class NoiseCheck {
         if (i != x || j != y) body(std::size_t(j) * std::size_t(width_) + std::size_t(i));
   }
   struct Triple {
-    Layers shown, sampled, again, known;
+    Layers shown, sampled, again, stored;
   };
   template <class Body>
   void for_each_pixel_of_grid(const Body& body) const;

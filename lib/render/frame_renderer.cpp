@@ -29,7 +29,7 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
     const PixelPass pass{pixel, x, y, {first, first, first}, {count, count, count}};
     const PixelSum sum = sample_pixel({scene, view, of_pass}, pass, image.halves_of(pixel), counts);
     join(sum, first, count, image.pixels[pixel]);
-    if (!image.known_noise.empty()) join(sum.known_noise, first, count, image.known_noise[pixel]);
+    if (!image.stored_noise.empty()) join(sum.stored_noise, first, count, image.stored_noise[pixel]);
   });
   image.samples += count;
 }
@@ -50,7 +50,7 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
     check.again(slot).own = mean;
   });
   const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };
-  frame.noise = check.measure(frame.mean.pixels, as_sampled, frame.mean.known_noise);
+  frame.noise = check.measure(frame.mean.pixels, as_sampled, frame.mean.stored_noise);
   if (options.sample_halves) frame.mean.difference_share = check.shares(frame.mean.sample_halves, as_sampled);
 }
 
@@ -63,7 +63,7 @@ LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
   formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
   image.pixels.resize(count);
   if (options.sample_halves) image.sample_halves.resize(count);
-  if (options.known && options.known->records) image.known_noise.resize(count);
+  if (options.known && (options.known->records || options.known->photons)) image.stored_noise.resize(count);
   return image;
 }
 

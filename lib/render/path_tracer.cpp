@@ -341,8 +341,11 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   };
   if (known.has_caustic()) {
     at.caustic_known = true;
-    result[path.after(true).after(false).layer()] +=
-        reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+    const Layer caustic = path.after(true).after(false).layer();
+    Rgb noise(0.0f);
+    result[caustic] +=
+        reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf}, noise);
+    if (caustic == Layer::caustic) parts_.stored_noise.caustic += reflected * noise;
   }
   if (state.matte) {
     sample_bright(1);
@@ -353,7 +356,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
     ++counts_.lookups;
     at.indirect_known = true;
     result[layer] += reflected * *indirect;
-    if (layer == Layer::indirect) parts_.known_noise += reflected * noise;
+    if (layer == Layer::indirect) parts_.stored_noise.indirect += reflected * noise;
   } else {
     ++counts_.gathered;
     sample_bright(known.bright_samples);

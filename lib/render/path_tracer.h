@@ -28,6 +28,18 @@ struct LayersT {
 };
 using Layers = LayersT<float>;
 
+/// Noise of stored light, which all samples of a pixel share: numbers with a random sign whose mean squares are the
+/// variances of the layers [W/m^2/sr].
+template <class T>
+struct StoredNoiseT {
+  RgbT<T> caustic{T(0)};   ///< of the photons that layer caustic is read from (PhotonLight::caustic)
+  RgbT<T> indirect{T(0)};  ///< of the records that layer indirect is read from (IrradianceRecord::noise)
+  const RgbT<T>* of(Layer layer) const {
+    return layer == Layer::caustic ? &caustic : layer == Layer::indirect ? &indirect : nullptr;
+  }
+};
+using StoredNoise = StoredNoiseT<float>;
+
 /// Decides which layer light belongs to, from the events of a camera path so far.
 class EyePath {
  public:
@@ -118,10 +130,9 @@ struct PathParts {
   /// Everything that is in neither of the other two: light seen directly or by events S, and known light at the first
   /// matte surface.
   Layers own;
-  Layers lit;     ///< light sampled at the first matte surface
-  Layers onward;  ///< light found by rays from the first matte surface's Lambert lobe
-  /// Noise of the records that layer indirect is read from (IrradianceRecord::noise). `own` does not include it.
-  Rgb known_noise{0.0f};
+  Layers lit;                ///< light sampled at the first matte surface
+  Layers onward;             ///< light found by rays from the first matte surface's Lambert lobe
+  StoredNoise stored_noise;  ///< not included in `own`
   Layers sum() const {
     Layers all = own;
     for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += lit.value[l] + onward.value[l];

@@ -20,7 +20,7 @@ struct Remembered {
   Vec3 position, geometric, shading;
   float let_in = 1;  ///< the coat's transmittance for light along the normal
   float within = 0;  ///< m: the value is reused within this distance
-  Rgb irradiance{0.0f};
+  Rgb irradiance{0.0f}, noise{0.0f};
 
   static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
   bool holds_at(const PhotonLight* light, Vec3 place, const LitSurface& surface) const {
@@ -69,17 +69,21 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   if (caustic_->empty()) caustic_.reset();
 }
 
-Rgb PhotonLight::caustic(Vec3 position, const LitSurface& surface) const {
+Rgb PhotonLight::caustic(Vec3 position, const LitSurface& surface, Rgb& noise) const {
+  noise = Rgb(0.0f);
   if (!caustic_) return Rgb(0.0f);
   float within = 0;
-  if (!memory.used) return caustic_->estimate_around(position, surface, within);
+  if (!memory.used) return caustic_->estimate_around(position, surface, within, noise);
   auto& places = memory.places[memory.half];
   for (const Remembered& place : places)
-    if (place.holds_at(this, position, surface)) return place.irradiance;
-  const Rgb irradiance = caustic_->estimate_around(position, surface, within);
+    if (place.holds_at(this, position, surface)) {
+      noise = place.noise;
+      return place.irradiance;
+    }
+  const Rgb irradiance = caustic_->estimate_around(position, surface, within, noise);
   if (within > 0)
     places[memory.next[memory.half]++ % kRemembered] = {
-        this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), within, irradiance};
+        this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), within, irradiance, noise};
   return irradiance;
 }
 

@@ -42,8 +42,9 @@ class PhotonLight {
   /// photon_shift [m] is added to photon positions to bring them into scene space: the file's origin minus the frame's.
   PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift, const PhotonLightOptions& options);
 
-  /// Caustic irradiance [W/m^2] on the lit side of the surface.
-  Rgb caustic(Vec3 position, const LitSurface& surface) const;
+  /// Caustic irradiance [W/m^2] on the lit side of the surface. `noise` [W/m^2] receives a number with a random sign
+  /// whose mean square is the variance of the irradiance: the same sum with the signs of light paths (path_signs.h).
+  Rgb caustic(Vec3 position, const LitSurface& surface, Rgb& noise) const;
   /// Indirect irradiance [W/m^2] on the side of the normal (unit, geometric); call only if has_indirect(). Normal maps
   /// are read at their finest level.
   Rgb indirect(Vec3 position, Vec3 normal) const;

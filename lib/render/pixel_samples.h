@@ -19,7 +19,7 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
-  Rgbd known_noise{0.0};
+  StoredNoiseT<double> stored_noise;
   /// Sums of squares of single samples: of seen(), mirrored() of `own` and value() of `onward`.
   double seen_square = 0, mirrored_square = 0, onward_square = 0;
   bool for_filter = false;  ///< FrameOptions::for_filter: only noise of layer specular counts
@@ -27,7 +27,8 @@ struct PixelSum {
     add(sample.own, own);
     add(sample.lit, lit);
     add(sample.onward, onward);
-    known_noise += Rgbd(sample.known_noise);
+    stored_noise.caustic += Rgbd(sample.stored_noise.caustic);
+    stored_noise.indirect += Rgbd(sample.stored_noise.indirect);
     const auto square = [](double v) { return v * v; };
     seen_square += square(seen(sample.own));
     mirrored_square += square(mirrored(sample.own));
@@ -35,7 +36,8 @@ struct PixelSum {
   }
   PixelSum operator+(const PixelSum& more) const {
     PixelSum sum = *this;
-    sum.known_noise += more.known_noise;
+    sum.stored_noise.caustic += more.stored_noise.caustic;
+    sum.stored_noise.indirect += more.stored_noise.indirect;
     for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) {
       for (std::size_t l = 0; l < kLayerCount; ++l) (sum.*part).value[l] += (more.*part).value[l];
       (sum.*part).coverage += (more.*part).coverage;
@@ -84,9 +86,13 @@ inline void join(const LayersT<double>& sum, int first, int count, Layers& mean)
   mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
 }
 
-/// The same for one colour.
-inline void join(const Rgbd& sum, int first, int count, Rgb& mean) {
-  if (count > 0) mean = Rgb((Rgbd(mean) * double(first) + sum) * (1.0 / (first + count)));
+/// The same for the noise of stored light.
+inline void join(const StoredNoiseT<double>& sum, int first, int count, StoredNoise& mean) {
+  if (count <= 0) return;
+  const auto joined = [&](const Rgb& before, const Rgbd& more) {
+    return Rgb((Rgbd(before) * double(first) + more) * (1.0 / (first + count)));
+  };
+  mean = {joined(mean.caustic, sum.caustic), joined(mean.indirect, sum.indirect)};
 }
 
 /// The same for samples that have one of each part.

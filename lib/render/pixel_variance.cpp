@@ -128,8 +128,8 @@ void add_variance_channels(const LayerImage& layers, const std::vector<std::stri
       if (layers.media || l != std::size_t(Layer::volume))
         add_colour(std::string(kLayerNames[l]) + ".noise", image, [&](std::size_t p) {
           const Rgb noise = noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]);
-          const bool known = l == std::size_t(Layer::indirect) && !layers.known_noise.empty();
-          return known ? noise + layers.known_noise[p] : noise;
+          const Rgb* stored = layers.stored_noise.empty() ? nullptr : layers.stored_noise[p].of(Layer(l));
+          return stored ? noise + *stored : noise;
         });
   if (!asked(channels, "samples")) return;
   std::vector<float>& samples = image.add("samples").values;

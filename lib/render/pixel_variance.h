@@ -59,8 +59,8 @@ struct LayerImage;
 /// the half difference d of the samples' halves times the root of LayerImage::difference_share. Halves a and b that are
 /// stratified together err in opposite ways around their mean m. As a and b are exchangeable, d is uncorrelated with m,
 /// so m + s d and m - s d have the covariance Var(m) - s^2 Var(d), which is 0 for s^2 = Var(m) / Var(d). Light that
-/// spread_outliers took from a layer is also taken from |n|. To n of layer indirect the noise of records is added
-/// (LayerImage::known_noise).
+/// spread_outliers took from a layer is also taken from |n|. The noise of stored light is added to n of its
+/// layer (LayerImage::stored_noise).
 void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 }  // namespace tempolux

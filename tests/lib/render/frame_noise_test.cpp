@@ -43,7 +43,7 @@ TEST(FrameNoise, IncludesTheNoiseOfRecords) {
   sample[Layer::indirect] = Rgb(0.5f);
   for (std::uint32_t slot = 0; slot < check.size(); ++slot) check.again(slot).own = sample;
   const std::vector<Layers> picture(64 * 36, sample);
-  const std::vector<Rgb> known(picture.size(), Rgb(0.02f));
+  const std::vector<StoredNoise> known(picture.size(), {Rgb(0.0f), Rgb(0.02f)});
   const FrameNoise noise = check.measure(
       picture, [&](std::size_t pixel) { return picture[pixel]; }, known);
   EXPECT_NEAR(noise.image.linear, 0.02, 1e-6);

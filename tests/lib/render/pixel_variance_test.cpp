@@ -187,10 +187,11 @@ TEST(PixelVariance, NoiseIsAShareOfTheHalvesDifference) {
   EXPECT_EQ(image.find("direct.noise.G")->values, (std::vector<float>{-1, -0.5f}));
   EXPECT_EQ(image.find("emission.noise.G")->values, (std::vector<float>{0, 0}));
   EXPECT_EQ(image.find("volume.noise.G"), nullptr);
-  layers.known_noise = {Rgb(0.5f), Rgb(-2.0f)};
+  layers.stored_noise = {{Rgb(0.25f), Rgb(0.5f)}, {Rgb(0.0f), Rgb(-2.0f)}};
   Image with_records{2, 1, {}, {}, {}, {}};
   add_variance_channels(layers, {"halves"}, with_records);
   EXPECT_EQ(with_records.find("indirect.noise.G")->values, (std::vector<float>{0.5f, -2}));
+  EXPECT_EQ(with_records.find("caustic.noise.G")->values, (std::vector<float>{0.25f, 0}));
   EXPECT_EQ(with_records.find("direct.noise.G")->values, (std::vector<float>{-1, -0.5f}));
 }
 
