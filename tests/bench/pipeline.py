@@ -44,6 +44,19 @@ def estimate(project, tools, **variables):
     return {"cpu_s": float(cpu), "bytes": float(size) * {"kB": 1e3, "MB": 1e6, "GB": 1e9}[unit]}
 
 
+# ---- the tools alone
+
+def chain(run, common, stem, photons=(), points=(), records=(), pixels=(), map_beside=False):
+    """Photons, points, records and a frame by the tools alone, as STEM.photons, .irradpoints, .irradcache and .exr; run(tool, *words) runs one.
+    `common`: the scene and options of all tools; `map_beside`: the frame reads the photons, too. Returns what the four runs return."""
+    lit, points_file, cache = (f"{stem}.{end}" for end in ("photons", "irradpoints", "irradcache"))
+    return [run("photon-trace", *common, *photons, "-o", lit),
+            run("irradcache-build", "points", *common, "--photons", lit, *points, "-o", points_file),
+            run("irradcache-build", "records", *common, "--points", points_file, *records, "-o", cache),
+            run("frame-render", *common, "--points", points_file, "--irradcache", cache, *(("--photons", lit) if map_beside else ()), *pixels,
+                "-o", f"{stem}.exr")]
+
+
 # ---- what it has left
 
 def plan_of(out):
