@@ -31,7 +31,7 @@ bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving !=
 std::string static_content(const GraphBuilder& g, int frame) {
   Hasher hasher;
   const PlannedSegment& s = g.segment(frame);
-  for (const std::string& hash : {s.static_geometry, s.static_scene, s.frozen}) hasher.add(std::string_view(hash));
+  hasher.add(std::string_view(s.static_scene));
   for (const PlannedFrame& f : s.frames)
     hasher.add(std::string_view(f.light));  // movers of any frame decide which paths are touched
   return hasher.hex();

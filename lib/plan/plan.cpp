@@ -177,21 +177,11 @@ std::vector<int> PlannedSegment::states() const {
   return {values.begin(), values.end()};
 }
 
-std::vector<int> PlannedSegment::pictures() const {
-  std::set<int> values;
-  for (const PlannedFrame& frame : frames) values.insert(frame.picture);
-  return {values.begin(), values.end()};
-}
-
-std::vector<int> PlannedSegment::pictures(int lit) const {
+std::vector<int> PlannedSegment::pictures(std::optional<int> lit) const {
   std::set<int> values;
   for (const PlannedFrame& frame : frames)
-    if (frame.lit_frame == lit) values.insert(frame.picture);
+    if (!lit || frame.lit_frame == *lit) values.insert(frame.picture);
   return {values.begin(), values.end()};
-}
-
-bool Plan::has(int frame) const {
-  return std::ranges::any_of(segments, [&](const PlannedSegment& s) { return s.first <= frame && frame <= s.last; });
 }
 
 const PlannedSegment& Plan::segment_of(int frame) const {
