@@ -108,4 +108,3 @@ report/index.html:
 	$(quiet)test -f $@ || { $(write_report); }
 report: report/index.html
 	@cat report/report.md
-	$(if $(kept),@awk -f "$$PIPELINES/temporal_report.awk" $(kept))

@@ -45,9 +45,7 @@ sleep 0.5
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/killed"
 digests "$work/killed" | diff "$work/expected" - || bad 'killed and typed again: other frames'
 
-# What each frame cost, and keys with what lies between them: make finds its way along a segment from any of its frames.
-run report SCENE="$work/scene.glb" MOVING=time OUT="$work/time" REFERENCE_SAMPLES=2
-[ "$(grep -cE '^\| [0-7] \| [0-9]+ \| [0-9]+ \| [0-9]+ \| [0-9]+ \| (first|[0-9.]+ %) \| [0-9.]+ \| [0-9.]+ \|$' "$work/log")" = 8 ] || bad "report: $(tail -12 "$work/log")"
+# Keys with what lies between them: make finds its way along a segment from any of its frames.
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/walk" METHOD=walkthrough
 
 # The box takes another way at frame 1: its segment's frames are made again, those of the other are not.
