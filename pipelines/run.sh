@@ -37,11 +37,6 @@ for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ER
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
 done
-case $SURFACES in
-  gather) ;;
-  textures) set -- "$@" --textures ;;
-  *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;;
-esac
 # shellcheck disable=SC2086
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh" \
   --recipes "$TOP/pipelines/show.sh"

@@ -52,10 +52,8 @@ stands_cache/%.irradcache:
 	$(run)/irradcache-build records $(seen) -o $@ --stats stands_cache/$*.json
 kept/%.irradcache kept/%.radsamples:
 	$(run)/gather-temporal final $(seen) -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
-# In smoke and previews: light textures, which count photons in elements of the surfaces and smooth them. windows: the
+# In previews: light textures, which count photons in elements of the surfaces and smooth them. windows: the
 # photons of many frames.
-textures/%.meshirrad:
-	$(run)/st-filter mesh $(scene) -o $@ --stats textures/$*.json
 counts/%.meshirrad:
 	$(run)/st-filter mesh $(scene) -o $@ --stats counts/$*.json
 windows/%.meshirrad:
@@ -110,4 +108,3 @@ report/index.html:
 	$(quiet)test -f $@ || { $(write_report); }
 report: report/index.html
 	@cat report/report.md
-	$(if $(kept),@awk -f "$$PIPELINES/temporal_report.awk" $(kept))

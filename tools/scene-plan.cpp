@@ -128,8 +128,11 @@ void add_methods(tools::Tool& tool, Options& options) {
 void add_figures(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   Wish& wish = options.wish;
-  const auto words = [&](const char* name, std::string& value, const char* help) {
-    app.add_option(name, value, help)->type_name("WORDS");
+  const auto text = [&](const char* name, std::string& value, const char* type, const char* help) {
+    app.add_option(name, value, help)->type_name(type);
+  };
+  const auto number = [&](const char* name, auto& value, double least, double most, const char* help) {
+    return app.add_option(name, value, help)->capture_default_str()->check(tools::number_between(least, most));
   };
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
   app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")
@@ -137,47 +140,31 @@ void add_figures(tools::Tool& tool, Options& options) {
   tool.count_option("--photons", wish.photons,
                     "light paths of a photon map (preview: of a frame); up to 16 times as many where few of them "
                     "arrive; 0: the preset's");
-  app.add_option("--measured", options.measured,
-                 "preview: photons of each segment by what `make measure` has written into this file")
-      ->type_name("FILE");
+  text("--measured", options.measured, "FILE",
+       "preview: photons of each segment by what `make measure` has written into this file");
   app.add_option("--aqm", options.share,
                  "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
-  app.add_option("--rays", wish.rays, "largest number of gather rays of a record; 0: the preset's")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1 << 20));
-  app.add_option("--pixel-error", wish.pixel_error, "as frame-render --pixel-error; 0: the preset's")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 10));
-  words("--point-words", wish.points, "options of irradcache-build points instead of the preset's");
-  words("--record-words", wish.records, "options of irradcache-build records instead of the preset's");
-  words("--pixel-words", wish.pixels, "options of frame-render instead of the preset's");
-  words("--smoke-words", wish.smoke_words, "options of volume-compose");
-  app.add_flag("--textures", wish.textures, "with smoke: indirect light of surfaces from light textures");
-  app.add_option("--update", wish.update,
-                 "with smoke: trace this share of each photon map anew, such as 10%, and keep the remainder")
-      ->type_name("SHARE");
-  app.add_option("--refine", wish.refine,
-                 "with smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, "
-                 "such as 5%")
-      ->type_name("SHARE");
+  number("--rays", wish.rays, 0, 1 << 20, "largest number of gather rays of a record; 0: the preset's");
+  number("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
+  text("--point-words", wish.points, "WORDS", "options of irradcache-build points instead of the preset's");
+  text("--record-words", wish.records, "WORDS", "options of irradcache-build records instead of the preset's");
+  text("--pixel-words", wish.pixels, "WORDS", "options of frame-render instead of the preset's");
+  text("--smoke-words", wish.smoke_words, "WORDS", "options of volume-compose");
+  text("--update", wish.update, "SHARE",
+       "with smoke: trace this share of each photon map anew, such as 10%, and keep the remainder");
+  text("--refine", wish.refine, "SHARE",
+       "with smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%");
   app.add_option("--strategy", wish.strategy, "groups of photons that --update traces, as photon-trace --strategy")
       ->capture_default_str();
-  app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")
-      ->capture_default_str()
-      ->check(tools::number_between(2, 1000));
-  app.add_option("--halve-above", wish.threshold,
-                 "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
-                 "(AQM), such as 5%")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1))
+  number("--key-distance", wish.key_distance, 2, 1000, "frames between the first keys of a walkthrough");
+  number("--halve-above", wish.threshold, 0, 1,
+         "an interval between keys is halved if a viewer sees errors in more than this share of its pixels (AQM), such "
+         "as 5%")
       ->transform(tools::percent([] {}));
-  app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")
-      ->type_name("FRAMES");
-  app.add_option("--reference-samples", wish.reference_samples, "samples per pixel of the reference")
-      ->capture_default_str()
-      ->check(tools::number_between(2, 1 << 20));
+  text("--report", options.report, "FRAMES", "frames to compare with path tracing; ends: the first and the last");
+  number("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
 }
 
 }  // namespace
@@ -193,24 +180,22 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   add_methods(tool, options);
   add_figures(tool, options);
-  const auto add = [&](CLI::Option* option) {
+  // Options that change no file of a plan are left out of its history.
+  const auto aside = [&](const char* name, auto& value, const char* type, const char* help) {
+    CLI::Option* option = app.add_option(name, value, help)->type_name(type);
     tool.leave_out_of_history(option);
     return option;
   };
-  add(app.add_option("--recipes", options.recipes,
-                     "files with the rules of make: if one of them changes, all files are made again"))
-      ->type_name("FILE");
-  add(app.add_option("--samples", options.samples,
-                     "write two small plans into this folder instead of a plan; make runs them, and --estimate reads "
-                     "their statistics"))
-      ->type_name("FOLDER");
-  add(app.add_option("--estimate", options.estimate,
-                     "print the estimated cost of a run instead of planning: CPU seconds and bytes of each stage, from "
-                     "the samples in this folder (make -f Makefile.example estimate)"))
-      ->type_name("FOLDER");
-  add(app.add_option("--tidy", options.tidy_folder,
-                     "remove unfinished files of killed runs from this folder and its subfolders instead of planning"))
-      ->type_name("FOLDER");
+  aside("--recipes", options.recipes, "FILE",
+        "files with the rules of make: if one of them changes, all files are made again");
+  aside("--samples", options.samples, "FOLDER",
+        "write two small plans into this folder instead of a plan; make runs them, and --estimate reads their "
+        "statistics");
+  aside("--estimate", options.estimate, "FOLDER",
+        "print the estimated cost of a run instead of planning: CPU seconds and bytes of each stage, from the samples "
+        "in this folder (make -f Makefile.example estimate)");
+  aside("--tidy", options.tidy_folder, "FOLDER",
+        "remove unfinished files of killed runs from this folder and its subfolders instead of planning");
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   std::string arguments = std::filesystem::current_path().string();

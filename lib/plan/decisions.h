@@ -53,7 +53,6 @@ struct Wish {
       pixels;  ///< options of irradcache-build points and records, and of frame-render; "": from the preset
   bool preset_pixels = false;  ///< `pixels` holds the preset's options without --pixel-error, which is in Decisions
   std::string channels = "RGBA,Z,N,id";
-  bool textures = false;  ///< SURFACES=textures: light textures give the indirect light in smoke
   std::string smoke_words;
   std::string update;                ///< share of the photon groups that is traced again in smoke, "10%"; "": all
   std::string refine;                ///< further light paths for smoke, as a share of a map's paths, "5%"; "": none

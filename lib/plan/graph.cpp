@@ -95,8 +95,8 @@ std::string GraphBuilder::add(const StageInfo& stage, const std::string& frames,
        {std::string(stage.name), tool_hash(std::string(stage.tool)), command.words, command.content, wish.common})
     hasher.add(std::string_view(part));
   const std::string stem = std::string(stage.folder) + "/" + frames + "-" + key_of(hasher.hex());
-  GraphFile file{
-      stem + std::string(stage.extension), {}, std::string(stage.name), command.words, false, command.inputs};
+  GraphFile file{stem + std::string(stage.extension), {},    std::string(stage.name),
+                 command.words + command.state_words, false, command.inputs};
   for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
   if (!graph.find(file.name)) graph.add(file);
   return file.name;
@@ -160,8 +160,7 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
     throw InputError(
         "METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
   if (plan.media && wish.method == FrameMethod::preview)
-    throw InputError(
-        "METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
+    throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
   if (wish.filter > 1 && wish.method == FrameMethod::walkthrough)

@@ -15,7 +15,8 @@ namespace tempolux {
 struct Command {
   std::string words;
   std::vector<std::string> inputs;
-  std::string content;  ///< hashes of the scene's states that it depends on
+  std::string content;           ///< hashes of the scene's states that it depends on
+  std::string state_words = {};  ///< further options: files of state/, which count by their content
 
   void option(const std::string& text) {
     if (!text.empty()) words += (words.empty() ? "" : " ") + text;
@@ -23,6 +24,12 @@ struct Command {
   void file(const std::string& option_name, const std::string& name) {
     if (name.empty()) return;
     option(option_name.empty() ? name : option_name + " " + name);
+    inputs.push_back(name);
+  }
+  /// A file of state/. Its name holds the first frame of the segment, on which the result does not depend.
+  void state_file(const std::string& option_name, const std::string& name) {
+    state_words += " " + option_name + " " + name;
+    content += name.substr(name.find('-'));
     inputs.push_back(name);
   }
 };

@@ -12,7 +12,7 @@ namespace {
 void add_view(GraphBuilder& g, int frame, Command& c) {
   const PlannedSegment& s = g.segment(frame);
   if (s.decisions.view.empty()) c.option("--importance none");
-  else c.file("--importance", g.add_state("view", s.first, s.decisions.view));
+  else c.state_file("--importance", g.add_state("view", s.first, s.decisions.view));
 }
 
 std::string majorants_file(GraphBuilder& g, int frame) {
@@ -31,7 +31,7 @@ bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving !=
 std::string static_content(const GraphBuilder& g, int frame) {
   Hasher hasher;
   const PlannedSegment& s = g.segment(frame);
-  for (const std::string& hash : {s.static_geometry, s.static_scene, s.frozen}) hasher.add(std::string_view(hash));
+  hasher.add(std::string_view(s.static_scene));
   for (const PlannedFrame& f : s.frames)
     hasher.add(std::string_view(f.light));  // movers of any frame decide which paths are touched
   return hasher.hex();
@@ -157,12 +157,6 @@ std::string record_file(GraphBuilder& g, int frame) {
   });
 }
 
-std::string textures(GraphBuilder& g, int lit) {
-  Command c = g.at(lit);
-  c.file("--photons", photon_map(g, lit));
-  return g.add(stage::textures, lit, c);
-}
-
 constexpr int kReach = kPreviewWindow / 2;
 /// The photon map of a frame of a preview. Each frame has its own map even if other frames have the same light, so
 /// that windows collect different photons. A segment with one state of light has as many maps as a window has frames.
@@ -219,7 +213,8 @@ std::string photon_map(GraphBuilder& g, int lit) {
   Command c = g.at(lit);
   add_view(g, lit, c);
   c.option(photon_words(g, lit));
-  if (g.plan.media && !(g.wish.update.empty() && g.wish.refine.empty())) c.file("--majorants", majorants_file(g, lit));
+  if (g.plan.media && !(g.wish.update.empty() && g.wish.refine.empty()))
+    c.state_file("--majorants", majorants_file(g, lit));
   if (g.plan.media && !g.wish.update.empty()) add_update(g, lit, c);
   return g.add(stage::photons, lit, c);
 }
@@ -227,7 +222,7 @@ std::string photon_map(GraphBuilder& g, int lit) {
 std::string refined_photon_map(GraphBuilder& g, int lit) {
   if (g.wish.refine.empty()) return photon_map(g, lit);
   Command c = g.at(lit);
-  c.file("--majorants", majorants_file(g, lit));
+  c.state_file("--majorants", majorants_file(g, lit));
   c.file("--update", photon_map(g, lit));
   c.option("--refine " +
            std::to_string(std::uint64_t(std::stod(g.wish.refine) / 100 * double(g.decided(lit).photon_paths))));
@@ -256,8 +251,6 @@ void add_light(GraphBuilder& g, int frame, Command& c) {
   c.content += g.state(frame).light;
   if (g.preview() && d.photons()) {
     c.file("--meshirrad", preview_light(g, lit));
-  } else if (g.plan.media && g.wish.textures && d.photons()) {
-    c.file("--meshirrad", textures(g, lit));
   } else if (d.points()) {
     if (d.records()) {
       c.file("--irradcache", record_file(g, frame));

@@ -84,7 +84,7 @@ std::string picture_file(GraphBuilder& g, int frame) {
   Command c{"--frame " + std::to_string(frame), {}, g.state(frame).light + g.cameras({frame})};
   c.file("--base", clear);
   c.file("--photons", refined_photon_map(g, lit));
-  if (!g.wish.textures && g.decided(frame).points()) c.file("--points", point_file(g, lit));
+  if (g.decided(frame).points()) c.file("--points", point_file(g, lit));
   c.option(g.wish.smoke_words);
   return g.add(stage::smoke, frame, c);
 }

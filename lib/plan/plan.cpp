@@ -93,16 +93,6 @@ std::string static_scene_hash(const SceneFrame& frame) {
   return hasher.hex();
 }
 
-/// Materials of the scene's triangles.
-std::set<std::uint32_t> used_materials(const Scene& scene) {
-  std::set<std::uint32_t> used;
-  for (const Node& node : scene.nodes)
-    if (node.mesh >= 0)
-      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
-        if (!primitive.triangles.empty()) used.insert(primitive.material);
-  return used;
-}
-
 /// Numbers in the given order; consecutive ones as a range: "-2, 48 to 60".
 std::string in_words(std::span<const int> frames) {
   std::string words;
@@ -122,25 +112,22 @@ std::string extent_in_words(const Scene& scene, const TimeOptions& options) {
   return last == std::numeric_limits<int>::max() ? "0 and later" : "0 to " + std::to_string(last);
 }
 
-/// The materials at all frames of the segment; once if no animation changes them.
-std::vector<std::vector<Material>> material_states(const Scene& scene, const PlannedSegment& segment,
-                                                   const TimeOptions& options) {
-  const Animator animator(scene);
-  if (animator.property_tracks().empty()) return {scene.materials};
-  std::vector<std::vector<Material>> states;
-  for (const PlannedFrame& frame : segment.frames) states.push_back(animator.materials(frame.frame / options.fps));
-  return states;
-}
-
+/// The lobes of the materials of all triangles, at all frames of the segment.
 MaterialFacts material_facts(const Scene& scene, const PlannedSegment& segment, const TimeOptions& options) {
+  const Animator animator(scene);
   MaterialFacts facts;
-  const std::vector<std::vector<Material>> at_frames = material_states(scene, segment, options);
-  for (const std::uint32_t material : used_materials(scene))
-    for (const std::vector<Material>& materials : at_frames) {
-      const Lobes lobes = lobes_of(materials[material]);
-      facts.lambert |= lobes.lambert;
-      facts.other |= lobes.specular;
+  for (const PlannedFrame& frame : segment.frames) {
+    const std::vector<Material> materials = animator.materials(frame.frame / options.fps);
+    for (const Node& node : scene.nodes) {
+      if (node.mesh < 0) continue;
+      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives) {
+        const Lobes lobes = lobes_of(materials[primitive.material]);
+        facts.lambert |= lobes.lambert && !primitive.triangles.empty();
+        facts.other |= lobes.specular && !primitive.triangles.empty();
+      }
     }
+    if (animator.property_tracks().empty()) break;  // no animation changes them
+  }
   return facts;
 }
 
@@ -190,21 +177,11 @@ std::vector<int> PlannedSegment::states() const {
   return {values.begin(), values.end()};
 }
 
-std::vector<int> PlannedSegment::pictures() const {
-  std::set<int> values;
-  for (const PlannedFrame& frame : frames) values.insert(frame.picture);
-  return {values.begin(), values.end()};
-}
-
-std::vector<int> PlannedSegment::pictures(int lit) const {
+std::vector<int> PlannedSegment::pictures(std::optional<int> lit) const {
   std::set<int> values;
   for (const PlannedFrame& frame : frames)
-    if (frame.lit_frame == lit) values.insert(frame.picture);
+    if (!lit || frame.lit_frame == *lit) values.insert(frame.picture);
   return {values.begin(), values.end()};
-}
-
-bool Plan::has(int frame) const {
-  return std::ranges::any_of(segments, [&](const PlannedSegment& s) { return s.first <= frame && frame <= s.last; });
 }
 
 const PlannedSegment& Plan::segment_of(int frame) const {

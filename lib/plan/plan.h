@@ -48,8 +48,7 @@ struct PlannedSegment {
   /// First frame of each state of light transport, ascending.
   std::vector<int> states() const;
   /// First frame of each different picture, ascending; with `lit` only pictures in that state of light.
-  std::vector<int> pictures() const;
-  std::vector<int> pictures(int lit) const;
+  std::vector<int> pictures(std::optional<int> lit = {}) const;
 };
 
 struct Plan {
@@ -65,7 +64,6 @@ struct Plan {
 
   /// The segment that holds a frame of the animation. Throws std::out_of_range if it is not in the plan.
   const PlannedSegment& segment_of(int frame) const;
-  bool has(int frame) const;
 };
 
 /// Hash of the media at a frame (SceneHashes::media). Empty: there are no media.

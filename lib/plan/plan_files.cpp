@@ -176,15 +176,12 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   std::string text = "# Written by scene-plan; format: formats/plan/plan.md.\n";
   std::string passing;
-  std::string kept;  // stats of records kept over time, for the report
   for (const GraphFile& file : graph.files) {
-    if (file.stage == stage::kept.name) kept += " " + beside(file.name, ".json");
     const std::string made = file.name + words_of(file.beside);
     if (file.passing) passing += " " + file.name;
     text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
   }
   if (!passing.empty()) text += "passing :=" + passing + "\n";
-  if (!kept.empty()) text += "kept :=" + kept + "\n";
   return text + shown_rules(plan, graph, tool_hash) + report_rules(graph, tool_hash);
 }
 

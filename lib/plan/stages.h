@@ -33,7 +33,6 @@ inline constexpr StageInfo records{"irradcache-build records", "cache", ".irradc
 inline constexpr StageInfo static_records{"irradcache-build records --map static", "stands_cache", ".irradcache",
                                           "irradcache-build", "records"};
 inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", "gather-temporal", "records"};
-inline constexpr StageInfo textures{"st-filter mesh", "textures", ".meshirrad", "st-filter", "count"};
 inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
 inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal",
                                    "read counts,windows,filter,write"};
@@ -51,11 +50,12 @@ inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare",
 
 /// In the order in which they run.
 inline constexpr std::array kStages{
-    stage::static_photons, stage::photons, stage::moved_photons, stage::refined,  stage::static_points,
-    stage::points,         stage::split,   stage::textures,      stage::counts,   stage::windows,
-    stage::static_records, stage::records, stage::kept,          stage::keys,     stage::walk,
-    stage::walked,         stage::raw,     stage::filtered,      stage::pictures, stage::smoke,
-    stage::reference,      stage::error};
+    stage::static_photons, stage::photons,        stage::moved_photons, stage::refined,
+    stage::static_points,  stage::points,         stage::split,         stage::counts,
+    stage::windows,        stage::static_records, stage::records,       stage::kept,
+    stage::keys,           stage::walk,           stage::walked,        stage::raw,
+    stage::filtered,       stage::pictures,       stage::smoke,         stage::reference,
+    stage::error};
 
 /// Fills in the values that the wish leaves open; all presets are defined here. draft is coarser than final and takes
 /// less than half of its time.

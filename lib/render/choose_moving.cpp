@@ -26,12 +26,6 @@ constexpr int kNeighbours = 200;
 constexpr double kLeastLight = 0.2, kLightByTouched = 3;
 constexpr double kLeastRecords = 0.1;  ///< cost of the records of a state of light, likewise: the constant part
 
-std::string per_cent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.0f %%", 100 * share);
-  return text;
-}
-
 float largest(Rgb flux) { return std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)}); }
 
 /// Sum of the largest channel of |flux|, W.
@@ -120,9 +114,11 @@ MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double 
   const double light =
       1 / double(std::max<std::size_t>(states, 1)) + kLeastLight + kLightByTouched * pilot.touched_share;
   const double records = static_records + kLeastRecords + pilot.gathered_share;
-  const std::string because = "what moves touches " + per_cent(pilot.touched_share) +
-                              " of the paths of light and matters at " + per_cent(pilot.gathered_share) +
-                              " of what is seen; " + std::to_string(states) + " states of light";
+  char because[160];
+  std::snprintf(
+      because, sizeof because,
+      "what moves touches %.0f %% of the paths of light and matters at %.0f %% of what is seen; %zu states of light",
+      100 * pilot.touched_share, 100 * pilot.gathered_share, states);
   return {!(light < 1) ? MovingMethod::anew : records < 1 ? MovingMethod::records : MovingMethod::light, because};
 }
 

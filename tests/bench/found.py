@@ -33,6 +33,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
+import pipeline
 from furnish import LEAST_ROUGHNESS, Asset, furnished, roughened, with_sun
 from measure import Bench, Missing, commit_of, figure
 
@@ -111,14 +112,11 @@ class Found:
         return exr.read(image), [exr.read(image.with_name(f"path_{h}.exr")) for h in "ab"], cpu, warnings
 
     def by_photons(self, scene, size, photons, seed, *options):
-        photon_map, points, cache, image = (self.folder / f"chain.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
         common = [scene, "--frame", FRAME, "-q", "--seed", seed, *self.sky, *options]
-        runs = [self.tool("photon-trace", *common, "--photons", photons, "-o", photon_map),
-                self.tool("irradcache-build", *common, "--photons", photon_map, "--point-count", POINTS, "--light-samples", LIGHT_SAMPLES, "--keep-points", points,
-                          "--size", size, "-o", cache),
-                self.tool("frame-render", *common, "--size", size, "--irradcache", cache, "--points", points, "--photons",
-                          photon_map, *FRAME_OPTIONS, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
-        return image, sum(stats["cpu_s"] for stats, _ in runs)
+        runs = pipeline.chain(self.tool, common, self.folder / "chain", ["--photons", photons],
+                              ["--point-count", POINTS, "--light-samples", LIGHT_SAMPLES], ["--size", size],
+                              ["--size", size, *FRAME_OPTIONS, "--channels", "RGBA,layers", "--compression", "none"], map_beside=True)
+        return self.folder / "chain.exr", sum(stats["cpu_s"] for stats, _ in runs)
 
     def chains(self, scene, seeds, photons):
         """Pictures by the photon chain, CPU seconds of all."""

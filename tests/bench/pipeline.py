@@ -10,7 +10,7 @@ from pathlib import Path
 
 # Folders of OUT by the part of the work that tables show.
 STAGES = {"photons": ("photons", "stands", "moved", "refined"), "points": ("points", "stands_points", "split"),
-          "cache": ("cache", "stands_cache", "kept", "textures"),
+          "cache": ("cache", "stands_cache", "kept"),
           "frames": ("lights", "keys", "walk", "walked", "raw", "filtered", "pictures", "smoky")}
 
 
@@ -42,6 +42,19 @@ def estimate(project, tools, **variables):
     done = subprocess.run(command(project, tools, "none", "estimate", **variables), capture_output=True, text=True, env=environment(), check=True)
     cpu, size, unit = re.search(r"^all +(\S+) +(\S+) (\S+)$", done.stdout, re.M).groups()
     return {"cpu_s": float(cpu), "bytes": float(size) * {"kB": 1e3, "MB": 1e6, "GB": 1e9}[unit]}
+
+
+# ---- the tools alone
+
+def chain(run, common, stem, photons=(), points=(), records=(), pixels=(), map_beside=False):
+    """Photons, points, records and a frame by the tools alone, as STEM.photons, .irradpoints, .irradcache and .exr; run(tool, *words) runs one.
+    `common`: the scene and options of all tools; `map_beside`: the frame reads the photons, too. Returns what the four runs return."""
+    lit, points_file, cache = (f"{stem}.{end}" for end in ("photons", "irradpoints", "irradcache"))
+    return [run("photon-trace", *common, *photons, "-o", lit),
+            run("irradcache-build", "points", *common, "--photons", lit, *points, "-o", points_file),
+            run("irradcache-build", "records", *common, "--points", points_file, *records, "-o", cache),
+            run("frame-render", *common, "--points", points_file, "--irradcache", cache, *(("--photons", lit) if map_beside else ()), *pixels,
+                "-o", f"{stem}.exr")]
 
 
 # ---- what it has left

@@ -23,6 +23,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "stress")]
 import cycles    # noqa: E402
 import exr       # noqa: E402
+import pipeline  # noqa: E402
 import pixels    # noqa: E402
 
 FRAME, SIZE = 12, "320x180"
@@ -63,12 +64,11 @@ class Runner:
     def chain(self, common, stem, seed):
         """Frame and CPU seconds."""
         common = [*common, "--seed", seed]
-        p, n, c = (f"{stem}.{kind}" for kind in ("photons", "irradpoints", "irradcache"))
-        spent = self.run("photon-trace", *common, *CHAIN["photons"], "-o", p)
-        spent += self.run("irradcache-build", "points", *common, "--photons", p, *CHAIN["points"], "-o", n)
-        spent += self.run("irradcache-build", "records", *common, "--points", n, "--size", SIZE, *CHAIN["records"], "-o", c)
-        spent += self.run("frame-render", *common, "--photons", p, "--points", n, "--irradcache", c, "--size", SIZE, *CHAIN["frame"], "-o", stem + ".clear.exr")
-        spent += self.run("volume-compose", *common, "--photons", p, "--points", n, "--base", stem + ".clear.exr", *CHAIN["smoke"], "-o", stem + ".exr")
+        clear, size = stem + ".clear", ["--size", SIZE]
+        spent = sum(pipeline.chain(self.run, common, clear, CHAIN["photons"], CHAIN["points"], [*size, *CHAIN["records"]],
+                                   [*size, *CHAIN["frame"]], map_beside=True))
+        spent += self.run("volume-compose", *common, "--photons", clear + ".photons", "--points", clear + ".irradpoints", "--base", clear + ".exr",
+                          *CHAIN["smoke"], "-o", stem + ".exr")
         return exr.read(stem + ".exr"), spent
 
     def opacity(self, common, stem):
@@ -76,7 +76,7 @@ class Runner:
         clear = exr.read(stem + ".clear.exr")
         one = [1.0] * (clear.width * clear.height)
         exr.write(stem + ".one.exr", clear.width, clear.height, {"R": one, "G": one, "B": one, "Z": clear.channels["Z"]})
-        self.run("volume-compose", *common, "--photons", stem + ".photons", "--base", stem + ".one.exr", "-o", stem + ".dimmed.exr")
+        self.run("volume-compose", *common, "--photons", stem + ".clear.photons", "--base", stem + ".one.exr", "-o", stem + ".dimmed.exr")
         dimmed = exr.read(stem + ".dimmed.exr")
         return [1 - (r - v) for r, v in zip(dimmed.channels["R"], dimmed.channels["volume.R"])]
 

@@ -15,6 +15,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pipeline
+
 SIZE = "256x144"   # of smaller ones records are so far apart that indirect light comes out half a per cent low (--size 64x36)
 DARK = 0.005                                 # layers below are not judged: the room has about 0.2
 MATTE = {"roughnessFactor": 1, "metallicFactor": 0}
@@ -157,12 +159,10 @@ def compare(bin_folder, folder, name, case, seeds, paths, size):
     for seed in range(seeds):
         common = [scene, *smoke, "--seed", seed]
         run("frame-render", *common, *size, "--integrator", "path", "--spp", paths // seeds, "--channels", "RGBA,layers", "-o", stem + ".path.exr")
-        run("photon-trace", *common, "--photons", "300k", "--kinds", "caustic,indirect,volume", "-o", stem + ".photons")
-        run("irradcache-build", "points", *common, "--photons", stem + ".photons", "-o", stem + ".irradpoints")
-        run("irradcache-build", "records", *common, *size, "--points", stem + ".irradpoints", "-o", stem + ".irradcache")
-        run("frame-render", *common, *size, "--photons", stem + ".photons", "--points", stem + ".irradpoints", "--irradcache", stem + ".irradcache",
-            "--spp", 16, "--pixel-error", 0.01, "--channels", "RGBA,layers,Z", "-o", stem + ".clear.exr")
-        run("volume-compose", *common, "--photons", stem + ".photons", "--points", stem + ".irradpoints", "--base", stem + ".clear.exr", "--spp", 8, "-o", stem + ".chain.exr")
+        clear = stem + ".clear"
+        pipeline.chain(run, common, clear, ["--photons", "300k", "--kinds", "caustic,indirect,volume"], (), size,
+                       [*size, "--spp", 16, "--pixel-error", 0.01, "--channels", "RGBA,layers,Z"], map_beside=True)
+        run("volume-compose", *common, "--photons", clear + ".photons", "--points", clear + ".irradpoints", "--base", clear + ".exr", "--spp", 8, "-o", stem + ".chain.exr")
         chain.append(means(bin_folder / "tempolux-info", stem + ".chain.exr"))
         path.append(means(bin_folder / "tempolux-info", stem + ".path.exr"))
     return chain, path

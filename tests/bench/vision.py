@@ -152,11 +152,10 @@ def errors(tools, out):
 
 def key(tools, scene, out, frame):
     """A rendered key frame with little noise."""
-    light, size = ["--photons", out / f"{frame}.photons"], ["--frame", frame, "--size", "320x180"]
-    run(tools / "photon-trace", scene, "--frame", frame, "--photons", "700k", "--kinds", "caustic,indirect", "-o", light[1])
-    run(tools / "irradcache-build", scene, *size, *light, "--rays", 212, "--keep-points", out / f"{frame}.points", "-o", out / f"{frame}.cache")
-    run(tools / "frame-render", scene, *size, *light, "--irradcache", out / f"{frame}.cache", "--points", out / f"{frame}.points", "--spp", 16,
-        "--pixel-error", 0.004, "--channels", "RGBA,specular,Z,N,id", "-o", out / f"{frame}.exr")
+    size = ["--size", "320x180"]
+    pipeline.chain(lambda tool, *words: run(tools / tool, *words), [scene, "--frame", frame], out / str(frame),
+                   ["--photons", "700k", "--kinds", "caustic,indirect"], (), [*size, "--rays", 212],
+                   [*size, "--spp", 16, "--pixel-error", 0.004, "--channels", "RGBA,specular,Z,N,id"], map_beside=True)
 
 
 def flow(tools, scene, out):

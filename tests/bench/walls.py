@@ -23,6 +23,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
+import pipeline
 from scenes import Scene, add, box_mesh, cross, normalize
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -133,15 +134,10 @@ class Walls:
         return [sum(pixel) / 3 for pixel in zip(*(image.channels[f"{name}.{c}"] for c in "RGB"))], image
 
     def chain(self, scene, seed, size):
-        files = [self.out / f"chain.{end}" for end in ("photons", "irradpoints", "irradcache", "exr")]
-        photons, points, cache, frame = files
-        common = [scene, "--seed", seed]
-        cpu = [self.run("photon-trace", *common, "--photons", self.options.photons, "--kinds", "caustic,indirect", "-o", photons),
-               self.run("irradcache-build", "points", *common, "--photons", photons, "-o", points),
-               self.run("irradcache-build", "records", *common, "--points", points, "--size", size, "-o", cache),
-               self.run("frame-render", *common, "--irradcache", cache, "--points", points, "--size", size, "--spp", 4,
-                        "--pixel-error", 0.016, "--channels", "layers,id", "--compression", "none", "-o", frame)]
-        return frame, cpu
+        cpu = pipeline.chain(self.run, [scene, "--seed", seed], self.out / "chain", ["--photons", self.options.photons, "--kinds", "caustic,indirect"], (),
+                             ["--size", size],
+                             ["--size", size, "--spp", 4, "--pixel-error", 0.016, "--channels", "layers,id", "--compression", "none"])
+        return self.out / "chain.exr", cpu
 
     def paths(self, scene, name, size):
         frame = self.out / f"{name}-{size}-path-{self.options.paths}.exr"

@@ -6,6 +6,7 @@
 bin=$1
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
+. tests/support/chain.sh
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
 python3 -B - "$work" <<'END' || exit 3
@@ -33,16 +34,13 @@ mean() { "$bin/tempolux-info" --json "$1" | python3 -c 'import json, sys
 means = {c["channel"]: c["mean"] for c in json.load(sys.stdin)["channels"]}
 print(sum(means[c] for c in "RGB") / 3)'; }
 compare() {
-  size="--size 96x54 -q"
-  "$bin/frame-render" "$1" $2 $size --spp 64 -o "$work/path.exr" &&
-  "$bin/photon-trace" "$1" $2 -q --photons 400k --kinds caustic,indirect -o "$work/p.photons" &&
-  "$bin/irradcache-build" "$1" $2 $size --photons "$work/p.photons" --keep-points "$work/p.irradpoints" -o "$work/c.irradcache" &&
-  "$bin/frame-render" "$1" $2 $size --spp 16 --photons "$work/p.photons" --points "$work/p.irradpoints" \
-    --irradcache "$work/c.irradcache" -o "$work/chain.exr" || { bad "$1: exit $?"; return; }
+  of_photons='--photons 400k --kinds caustic,indirect' of_records='--size 96x54' of_pixels='--size 96x54 --spp 16'
+  "$bin/frame-render" "$1" $2 --size 96x54 -q --spp 64 -o "$work/path.exr" &&
+  light "$work/p" "$1" $2 && frame "$work/p" "$1" $2 --photons "$work/p.photons" || { bad "$1: exit $?"; return; }
   python3 -c 'import sys
 path, chain = map(float, sys.argv[1:])
 print(f"mean {path:.5f} by paths, {chain:.5f} by the chain: {100 * (chain / path - 1):+.2f} %")
-sys.exit(not abs(chain / path - 1) < 0.015)' "$(mean "$work/path.exr")" "$(mean "$work/chain.exr")" || bad "$1: means differ by more than 1.5 %"
+sys.exit(not abs(chain / path - 1) < 0.015)' "$(mean "$work/path.exr")" "$(mean "$work/p.exr")" || bad "$1: means differ by more than 1.5 %"
 }
 if [ -n "$3" ]; then compare "$2" "--environment $3"; else echo 'skipped: no scene and map of your own given'; fi
 compare "$yard" "$sky"

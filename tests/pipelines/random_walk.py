@@ -50,7 +50,7 @@ VALUES = {
     "POINTS": ["--point-count 500 --light-samples 1", "--point-count 400 --light-samples 1"],
     "TIME": ["--segment 4", "--segment 8"],
 }
-OF_SMOKE = {"MOVING": ["", "", "anew", "auto", "light"], "UPDATE": ["", "20%"], "SURFACES": ["", "textures"]}
+OF_SMOKE = {"MOVING": ["", "", "anew", "auto", "light"], "UPDATE": ["", "20%"]}
 SEEDED = ["photon-trace", "irradcache-build", "frame-render"]        # replaced by one that takes another seed
 # How a file that an edit changes is put in place.
 WAYS = ["renamed", "in place", "older", "kept"]

@@ -18,7 +18,8 @@ import struct
 import zlib
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
+sys.path[:0] = [str(Path(__file__).resolve().parents[1] / folder) for folder in ("stress", "bench")]
+import pipeline
 import exr
 
 
@@ -124,12 +125,9 @@ def main():
         make(scene)
         picture = ["--size", "64x48", "--channels", "RGBA,layers", "--compression", "none"]
         run(tools / "frame-render", scene, *picture, "--integrator", "path", "--spp", 256, "--halves", "-o", work / "path.exr")
-        photons, points, cache = (work / f"room.{end}" for end in ("photons", "irradpoints", "irradcache"))
-        run(tools / "photon-trace", scene, "--photons", "300k", "--kinds", "caustic,indirect", "-o", photons)
-        run(tools / "irradcache-build", scene, "--photons", photons, "--size", "64x48", "--keep-points", points, "-o", cache)
-        run(tools / "frame-render", scene, *picture, "--irradcache", cache, "--points", points, "--photons", photons, "-o",
-            work / "chain.exr")
-        run(tools / "frame-render", scene, *picture, "--photons", photons, "--spp", 32, "-o", work / "density.exr")
+        pipeline.chain(lambda tool, *words: run(tools / tool, *words), [scene], work / "chain",
+                       ["--photons", "300k", "--kinds", "caustic,indirect"], (), ["--size", "64x48"], picture, map_beside=True)
+        run(tools / "frame-render", scene, *picture, "--photons", work / "chain.photons", "--spp", 32, "-o", work / "density.exr")
         path, chain, density, a, b = (exr.read(work / f"{name}.exr") for name in ("path", "chain", "density", "path_a", "path_b"))
     everywhere, pane = range(64 * 48), [64 * y + x for y in range(23, 38) for x in range(5, 25)]
     good = not (path.not_finite() or chain.not_finite() or density.not_finite())

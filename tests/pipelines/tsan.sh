@@ -15,15 +15,14 @@ echo 'race:^std::__cxx11::basic_string' >> suppressions
 export TSAN_OPTIONS="suppressions=$scratch/suppressions ignore_noninstrumented_modules=1 halt_on_error=0 exitcode=66 log_path=$scratch/report"
 "${PYTHON:-python3}" -B "$here/../bench/walls.py" --write leaves leaves.gltf &&
 "${PYTHON:-python3}" -B "$here/edit_gltf.py" "$here/../../pipelines/scenes/S2_cornell_moving.glb" room.glb mirror || exit 1
+. "$here/../support/chain.sh"
+of_photons='--photons 20k --kinds caustic,indirect' of_points='--point-count 2k' of_records='--rays 30 --size 48x27'
+of_pixels='--photons f.photons --size 48x27 --spp 2 --channels RGBA,layers,id'
 failed=0
 run() { "$@" -q --threads 4 || { echo "$1: exit $?"; failed=1; }; }
 for scene in room.glb leaves.gltf; do
   run "$bin/scene-plan" $scene --frames 0-2 -o plan
-  run "$bin/photon-trace" $scene --photons 20k --kinds caustic,indirect -o p.photons
-  run "$bin/irradcache-build" points $scene --photons p.photons --point-count 2k -o p.irradpoints
-  run "$bin/irradcache-build" records $scene --points p.irradpoints --rays 30 --size 48x27 -o c.irradcache
-  run "$bin/frame-render" $scene --irradcache c.irradcache --points p.irradpoints --photons p.photons --size 48x27 --spp 2 \
-    --channels RGBA,layers,id -o f.exr
+  light f $scene --threads 4 && frame f $scene --threads 4 || { echo "chain: exit $?"; failed=1; }
   run "$bin/frame-render" $scene --integrator path --halves --size 48x27 --spp 2 --channels RGBA -o r.exr
   run "$bin/aqm-compare" f.exr --reference-halves r_a.exr r_b.exr --json e.json
 done

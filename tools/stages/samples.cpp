@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "formats/error.h"
+#include "lib/plan/graph_builder.h"
 
 namespace tempolux::tools {
 namespace {
@@ -28,38 +28,21 @@ struct Runs {
   double count = 0, work = 0, bytes = 0;
 };
 
-bool makes_photons(const GraphFile& file) { return file.name.ends_with(".photons"); }
-bool makes_records(const GraphFile& file) { return file.name.ends_with(".irradcache"); }
-
-/// The value of --rays among the options; 0 if missing.
-double rays_of(const std::string& words) {
-  const std::size_t at = words.find("--rays ");
-  return at == std::string::npos ? 0 : std::stod(words.substr(at + 7));
-}
-
-/// Number of cameras for which records are placed: the frames of --frames.
-double cameras_of(const std::string& words) {
-  const std::size_t at = words.find("--frames ");
-  return at == std::string::npos ? 1
-                                 : 1 + double(std::ranges::count(words.substr(at, words.find(' ', at + 9) - at), ','));
-}
-
-std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sample, double photons) {
-  std::map<std::string, double> sample_rays;
-  for (const GraphFile& file : sample.files) sample_rays[file.stage] = rays_of(file.words);
+std::map<std::string, Runs> runs_by_stage(const Planned& whole, double photons, double rays) {
   const Decisions& d = whole.plan.segment_of(whole.plan.shows.at(whole.plan.frames.front())).decisions;
   std::set<const GraphFile*> needed;
   std::map<std::string, Runs> runs;
   const std::function<void(const std::string&)> need = [&](const std::string& name) {
     const GraphFile* file = whole.graph.find(name);
     if (!file || !needed.insert(file).second) return;
-    const double cameras = makes_records(*file) ? d.records_of(cameras_of(file->words)) : 1,
-                 bytes = makes_photons(*file) ? photons : cameras;
-    const double rays =
-        makes_records(*file) && sample_rays[file->stage] > 0 ? rays_of(file->words) / sample_rays[file->stage] : 1;
+    const bool records = file->name.ends_with(".irradcache");
+    // Commas stand between the frames of the cameras that share records.
+    const double bytes = file->name.ends_with(".photons") ? photons
+                         : records ? d.records_of(1 + double(std::ranges::count(file->words, ',')))
+                                   : 1;
     Runs& stage = runs[file->stage];
     stage.count += 1;
-    stage.work += bytes * rays;
+    stage.work += bytes * (records ? rays : 1);
     stage.bytes += bytes;
     for (const std::string& input : file->inputs) need(input);
   };
@@ -81,32 +64,25 @@ struct Cost {
   double fixed_cpu_s = 0, work_cpu_s = 0, bytes = 0;
 };
 
-std::set<std::string> work_phases(const StageInfo& stage) {
-  std::set<std::string> work;
-  std::istringstream names{std::string(stage.work)};
-  for (std::string name; std::getline(names, name, ',');) work.insert(name);
-  return work;
-}
-
-/// `stems`: names of the files in `folder`. Empty if they have no statistics.
-std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage, const std::vector<std::string>& stems) {
-  const std::set<std::string> work = work_phases(stage);
-  Cost mean;
-  for (const std::string& stem : stems) {
-    std::ifstream stream(folder + "/" + stem + ".json");
+/// `files`: names of the files in `folder` that each command of the stage has written. Empty if one has no statistics.
+std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
+                            const std::vector<std::vector<std::string>>& files) {
+  Cost sum;
+  for (const std::vector<std::string>& names : files) {
+    std::ifstream stream(folder + "/" + beside(names.front(), ".json"));
     if (!stream) return std::nullopt;
     const nlohmann::json json = nlohmann::json::parse(stream);
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
-      if (work.contains(phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
-    mean.work_cpu_s += in_work / double(stems.size());
-    mean.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work) / double(stems.size());
+      if (has_channel(std::string(stage.work), phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
+    sum.work_cpu_s += in_work;
+    sum.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work);
+    for (const std::string& name : names)
+      if (fs::exists(folder + "/" + name)) sum.bytes += double(fs::file_size(folder + "/" + name));
   }
-  for (const auto& entry : fs::directory_iterator(folder + "/" + std::string(stage.folder)))
-    if (entry.path().extension() != ".json" &&
-        std::ranges::find(stems, std::string(stage.folder) + "/" + stem_of(entry.path().filename())) != stems.end())
-      mean.bytes += double(entry.file_size()) / double(stems.size());
-  return stems.empty() ? std::nullopt : std::optional(mean);
+  const double count = double(files.size());
+  return count == 0 ? std::nullopt
+                    : std::optional(Cost{sum.fixed_cpu_s / count, sum.work_cpu_s / count, sum.bytes / count});
 }
 
 }  // namespace
@@ -133,11 +109,16 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
     planned.graph = planner.graph(planned.plan, less);
     out.write(planned, planner.tool_hash(), "", "");
     fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
-    for (const GraphFile& file : planned.graph.files) json[kSamples[i]][file.stage].push_back(stem_of(file.name));
-    if (i > 0)
-      for (const auto& [stage, runs] : runs_by_stage(whole, planned.graph, 1 / (large * large)))
-        json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
+    for (const GraphFile& file : planned.graph.files) {
+      std::vector<std::string> names{file.name};
+      names.insert(names.end(), file.beside.begin(), file.beside.end());
+      json[kSamples[i]][file.stage].push_back(names);
+    }
   }
+  // With --rays among the wish's words the samples have as many as the whole.
+  const double rays = has_word(wish.records, "--rays") ? 1 : kFewerRays;
+  for (const auto& [stage, runs] : runs_by_stage(whole, 1 / (large * large), rays))
+    json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
   std::ofstream(folder + "/samples.json") << json;
 }
 
@@ -150,7 +131,7 @@ std::vector<StageEstimate> estimate_from(const std::string& folder) {
     const std::string name(stage.name);
     if (!json.at("runs").contains(name)) continue;
     const auto cost = [&](const char* sample) {
-      return cost_of(folder, stage, json.at(sample).value(name, std::vector<std::string>{}));
+      return cost_of(folder, stage, json.at(sample).value(name, std::vector<std::vector<std::string>>{}));
     };
     const std::optional<Cost> a = cost(kSamples[0]), b = cost(kSamples[1]);
     if (!a || !b) continue;

@@ -228,6 +228,20 @@ TEST(Graph, AFrameMadeAloneHasTheFilesThatItHasInARange) {
       }
 }
 
+// Segments of 4 and of 8 frames with the same bounds: the file of what cameras see has another name, the same content.
+TEST(Graph, ANameDoesNotChangeWithTheFirstFrameOfTheSegment) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 3, 1, 2, 0, 1.5, 3, 0.5});
+  Decisions d = records();
+  d.view = "tempolux view 1.0\n1 2 3 4 5\n";
+  const Graph four = graph_of(plan_of(scene, {5}, 4), d), eight = graph_of(plan_of(scene, {5}, 8), d);
+  EXPECT_NE(four.states[0].name, eight.states[0].name);
+  for (const char* folder : {"photons", "points", "cache", "pictures"})
+    EXPECT_EQ(names(four, folder), names(eight, folder)) << folder;
+  d.view = "tempolux view 1.0\n1 2 3 4 6\n";
+  EXPECT_NE(names(graph_of(plan_of(scene, {5}, 8), d), "photons"), names(eight, "photons"));
+}
+
 TEST(Graph, ANameChangesWithAllThatTheFileIsMadeFromAndWithNothingElse) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 2});
