@@ -4,7 +4,7 @@ PACKAGES = g++ cmake ninja-build ccache pkg-config libembree-dev libopenexr-dev 
   libjpeg62-turbo-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libopenvdb-dev libboost-iostreams-dev \
   libseccomp-dev libfftw3-dev gnuplot-nox python3 git make
 INSTALL = apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $(PACKAGES)
-deps: # Debian: packages that are missing are installed, by root only. Elsewhere they are yours to provide.
+deps: # installs missing packages on Debian, by root only; elsewhere provide them yourself
 	@command -v dpkg-query > /dev/null || exit 0; \
 	there=$$(dpkg-query -W -f '$${db:Status-Status}\n' $(PACKAGES) 2> /dev/null | grep -cx installed); \
 	test $$there -ge $(words $(PACKAGES)) || \
@@ -13,15 +13,15 @@ in_top = cd "$$TOP" &&
 configured: deps ; @$(in_top) { test -f build/release/build.ninja || cmake --preset release; }
 build: configured ; @$(in_top) cmake --build --preset release --target tools
 build_all: configured ; @$(in_top) cmake --build --preset release
-check: build_all # all tests; those skipped are counted and named
+check: build_all # all tests; skipped tests are counted and named
 	@$(in_top) ctest --preset release -j 2; code=$$?; \
 	sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
-# Evidence that takes longer. Programs are those of this tree; results go to OUT.
+# Measurements that take longer. They use the programs of this tree and write to OUT.
 bench: build_all # error against time, required figures, into RESULTS.md
 	$(in_top) python3 -B tests/bench/bench.py --out "$$OUT/bench" $(if $(PEERS),--peers)
 report-papers: build # figures of the papers with our numbers
 	$(in_top) python3 -B tests/bench/papers.py build/release/bin "$$OUT/papers"
-ablation: configured # what each idea of the samplers is worth
+ablation: configured # the gain of each idea of the samplers
 	$(in_top) python3 -B tests/bench/ablation.py --out "$$OUT/bench" --page docs/results/ablation.md
 stress: build # extreme cases; STRESS=--long for some hours more
 	$(in_top) python3 -B tests/stress/stress.py --bin build/release/bin $(STRESS)
@@ -42,5 +42,5 @@ deb: programs # a Debian package
 	$(in_top) cpack --config build/release/CPackConfig.cmake -B build/release/deb
 help:
 	@sed -n '/^names :=/q; s/^# //p; /^[A-Z_]* *=/p' "$$TOP/Makefile.example"
-clean: # what was built here and what was made in OUT, and nothing else
+clean: # removes what was built here and what was made in OUT, and nothing else
 	@sh "$$TOP/pipelines/clean.sh"

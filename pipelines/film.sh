@@ -7,7 +7,7 @@ command -v ffmpeg > /dev/null ||
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 n=0
-for name in $(sed -n 's/^previews := //p' plan.mk); do   # in the order asked for, whatever their numbers
+for name in $(sed -n 's/^previews := //p' plan.mk); do   # in the order asked for
   ln -s "$PWD/$name" "$work/$(printf %06d $n).png" || exit 3
   n=$((n + 1))
 done

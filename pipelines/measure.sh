@@ -1,12 +1,12 @@
 #!/bin/sh
-# measure.sh -- how much of the noise a viewer sees, before a long run: `make measure`. Run by run.sh after
+# measure.sh -- measures how much of the noise a viewer sees, before a long run: `make measure`. run.sh runs it after
 # scene-plan; it has make's variables.
 #
-# Of each segment the frame in the middle is rendered twice, each time with random numbers of its own. Of equal
-# renderings AQM says in which share of the pixels a viewer sees the noise of one (aqm-compare --either).
-# METHOD=preview chooses its photons so: a frame of n photons is compared with one of 2 n, so that the blur that more
-# photons take away is seen as well as noise; n starts at 3125 and is doubled until the share is at most AQM, or has
-# not become smaller twice. OUT/measured.json has all that was tried; scene-plan --measured chooses by it.
+# The middle frame of each segment is rendered twice with independent random numbers. AQM estimates the share of the
+# pixels in which a viewer sees the noise of one rendering (aqm-compare --either).
+# With METHOD=preview it chooses the number of photons: a frame of n photons is compared with one of 2 n. The difference
+# is noise, and blur that more photons remove. n starts at 3125 and is doubled until the share is at most AQM, or until
+# two doublings have not reduced it. OUT/measured.json has all results; scene-plan --measured chooses by them.
 least=3125 most=1000000
 runs=$OUT/measure
 table=$OUT/measured.json
@@ -19,25 +19,25 @@ render() {   # render SEED FRAME PHOTONS
     sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 || { tail -3 "$work/log" >&2; exit 3; }
 }
 
-compare() {   # compare FRAME [--either]: percent of the pixels in which a viewer sees that the two renderings differ
+compare() {   # compare FRAME [--either]: percent of the pixels in which a viewer sees a difference
   name=$(printf %04d "$1").exr
   shift
   "$BIN/aqm-compare" "$runs/1/frames/$name" "$runs/2/frames/$name" "$@" --metric aqm --json "$work/c.json" -q || exit 3
   sed -n 's/^ *"percent": *\([0-9.e+-]*\),*$/\1/p' "$work/c.json" | head -1   # of the whole picture
 }
 
-tell() {   # tell FRAME PHOTONS PERCENT: at the screen, and one more that was tried
+tell() {   # tell FRAME PHOTONS PERCENT: prints a result and adds it to the list
   if [ -n "$2" ]; then what=errors; else what=noise; fi
   echo "frame $1${2:+, $2 photons a frame}: a viewer sees $what in $(printf %.1f "$3") % of the pixels" >&2
   tried="$tried${tried:+, }{\"photons\": ${2:-0}, \"aqm\": $(awk "BEGIN { print $3 / 100 }")}"
 }
 
-goes_on() {   # goes_on PERCENT: is it above AQM, and have more photons helped within the last two doublings?
+goes_on() {   # goes_on PERCENT: true if it is above AQM and one of the last two doublings has reduced it
   if awk "BEGIN { exit !($1 < $best) }"; then best=$1 worse=0; else worse=$((worse + 1)); fi
   [ $worse -lt 2 ] && [ "$n" -le $most ] && awk "BEGIN { exit !($1 > ${AQM%\%}) }"
 }
 
-segment() {   # segment FIRST LAST: its line of the table
+segment() {   # segment FIRST LAST: prints its line of the table
   frame=$((($1 + $2) / 2)) tried=
   if [ "$METHOD" = preview ] && [ -z "$PHOTONS" ]; then
     n=$least one=1 two=2 best=101 worse=0

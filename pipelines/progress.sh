@@ -14,9 +14,9 @@ clock() {
 
 stage() {   # a file inside OUT in words
   case $1 in
-    photons) echo photons;; stands) echo 'photons of what stands still';; moved) echo 'photons that movers change';;
+    photons) echo photons;; stands) echo 'photons of the static scene';; moved) echo 'photons that movers change';;
     refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';;
-    stands_points) echo 'light on what stands still';;
+    stands_points) echo 'light on static surfaces';;
     split) echo 'bright points apart';; cache) echo 'indirect light';;
     stands_cache) echo 'indirect light on what stands still';; kept) echo 'indirect light, kept over time';;
     textures) echo 'light textures';; counts) echo 'photons counted';; lights) echo 'which way sky and sun come in';;
@@ -35,9 +35,9 @@ weigh() {
 }
 
 say() {
-  [ -n "$PROGRESS" ] || return 0   # not begun: an estimate, or rules of stages.mk by hand
+  [ -n "$PROGRESS" ] || return 0   # make has not begun: an estimate runs, or a user runs stages.mk
   echo "$1" >> "$PROGRESS"
-  n=$(grep -nxF -- "$1" "$PROGRESS" | tail -1 | cut -d: -f1)   # this one, whatever other jobs have added
+  n=$(grep -nxF -- "$1" "$PROGRESS" | tail -1 | cut -d: -f1)   # number of this command; other jobs may have added lines
   [ "$n" -le "$TOTAL" ] || TOTAL=$n   # a walkthrough adds keys as it goes
   passed=$(($(date +%s) - BEGAN))
   left=

@@ -4,7 +4,7 @@
 # Makefile.example runs this script and exports its variables. File names stay in quoted variables from here to the
 # commands.
 set -f   # words are split at blanks and nothing else
-absolute() {   # absolute NAME: the variable, if it names a file, by its whole path
+absolute() {   # absolute NAME: makes the variable an absolute path if it names a file
   eval "value=\$$1"
   case $value in '' | /* | none) ;; *) eval "$1=\$PWD/\$value" ;; esac
   export "${1?}"
@@ -50,17 +50,17 @@ set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes
 plan=plan.mk folder=$OUT
 aside=$(mktemp -d) || exit 3
 trap 'rm -rf "$aside"' EXIT
-makes() {   # in a process of its own
+makes() {   # runs in a subshell
   goal=$1; shift
   exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
-estimate() {   # options of scene-plan: the first picture, small, at two sizes
+estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
   ending $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
   for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside"
 }
 if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
-if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
+if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which is removed
   [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
   echo "$RUN $BIN/scene-plan $* -o $OUT"
   "$BIN/scene-plan" "$@" -o "$aside" -q || exit
@@ -88,7 +88,7 @@ TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROG
 : > "$PROGRESS"
 export TOTAL WEIGHT PROGRESS BEGAN
 [ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
-if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each stage
+if [ "$TOTAL" -ge 500 ]; then   # a long run: estimate hours and disk first, by short runs of each stage
   (estimate "$@")
   df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
 fi

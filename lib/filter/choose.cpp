@@ -91,8 +91,8 @@ class Choice {
     });
   }
 
-  /// The scale 1 / (mean light of the neighbourhood + part of the own light's difference from it, of the half that
-  /// differs most)^2.
+  /// Computes each pixel's scale: 1 / (mean light of the neighbourhood + kOwnLight x the larger difference of the
+  /// pixel's two halves from this mean)^2.
   void take_scale() {
     Plane light(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
@@ -109,7 +109,7 @@ class Choice {
     });
   }
 
-  /// Computes an estimate's neighbourhood means: scaled, summed over colours.
+  /// Computes the neighbourhood means of an estimate, scaled and summed over colours.
   template <class Estimate>
   Plane around(const Estimate& estimate) const {
     Plane values = Plane::unset(near_.width(), near_.height());
@@ -190,8 +190,8 @@ class Choice {
     return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
-  /// Gives the light that filtering took from each half of pixels to the filtered pixels around, so that the
-  /// sum of the layer stays: w B(light / B(w)), B the sums over 7 x 7 pixels, twice.
+  /// Filtering takes light from pixels or adds it. Spreads this difference over the filtered pixels around, for each
+  /// half, so that the sum of the layer stays: adds w B(light / B(w)), where B sums over 7 x 7 pixels, twice.
   void give_back() {
     const auto sums = [&](const Plane& values) {
       const Plane once = box_sums(values, near_.width(), near_.height());

@@ -17,7 +17,7 @@ using Colours = std::array<std::vector<float>, 3>;
 struct Halves {
   Colours a, b;
 };
-/// Halved first: the sum may not be a number.
+/// (a + b) / 2; each is halved first, because a + b may overflow.
 inline float mean_of(float a, float b) { return a / 2 + b / 2; }
 
 /// The neighbourhood of a pixel: pixels of its kind, weighted. The weights are those of two box filters of 7 x 7
@@ -41,26 +41,30 @@ class Neighbourhood {
   Plane share_;  ///< 1 / number of pixels of the kind within 7 x 7
 };
 
-/// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel; in halves, of
-/// which each is mixed from one half of the samples alone, with the same shares.
-/// A and B are the raw halves, f and g are a candidate made from A alone and from B alone, M = (A + B) / 2 and F = (f +
-/// g) / 2. Unbiased estimates at a pixel are
+/// Mixes a raw layer and its filtered candidates so that the squared error is the least, for each pixel. Each half of
+/// the result is mixed from one half of the samples alone, with the same shares.
+///
+/// A and B are the raw halves; f is a candidate made from A alone, and g the same candidate made from B alone. M = (A
+/// + B) / 2 and F = (f + g) / 2. Unbiased estimates at a pixel are
 ///     the squared error of M:   V = (A - B)^2 / 4
 ///     the covariance of both:   C = (f - g) (A - B) / 4
 ///     the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal
 ///     distribution, 1981].
-/// Each estimate is divided by the square of (the mean light of the neighbourhood, at least `dark`, plus a quarter of
-/// the larger difference of the pixel's A and B from this mean), summed over colours and averaged over the
-/// neighbourhood. The own difference lowers a pixel's weight in all three estimates alike, so a single bright pixel
-/// does not decide for its neighbours, whether one half shows it or both. The candidate with the least error is taken;
-/// shares of candidates are averaged over the neighbourhood, too. Rousselle, Knaus, Zwicker: Adaptive rendering with
-/// non-local means filtering, 2012. The result is w F + (1 - w) M with w = (V - C + s) / (mean of (F - M)^2), clamped
-/// to [0, 1]. Inside surfaces s is the standard error that V - C - (F - M)^2 would have with noise alone; at edges s =
-/// 0. The light that this takes from pixels goes to the filtered pixels around, in proportion to w times the result, so
-/// that the sum of the layer stays that of M. Where both halves are equal over a neighbourhood, the result is M, to the
-/// bit if (A + B) / 2 is. A pixel of which a half is not finite, or too bright for squares in float32, enters no
-/// estimate; its result is M, or the last candidate if M is not finite. All planes have one element per pixel;
-/// `candidates` is not empty. Thread-safe; the same result for any number of threads.
+/// Each estimate is summed over colours, scaled, and averaged over the neighbourhood. The scale is 1 / square of (the
+/// mean light of the neighbourhood, at least `dark`, plus a quarter of the larger difference of the pixel's A and B
+/// from this mean). A pixel's own difference lowers its weight in all three estimates alike, so a single bright pixel
+/// does not decide for its neighbours, whether one half shows it or both.
+///
+/// The candidate with the least error is taken; the shares of candidates are averaged over the neighbourhood, too
+/// [Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012]. The result is w F + (1 - w)
+/// M with w = (V - C + s) / (mean of (F - M)^2), clamped to [0, 1]. Inside surfaces s is the standard error that V -
+/// C - (F - M)^2 would have with noise alone; at edges s = 0. The light that this takes from pixels goes to the
+/// filtered pixels around, in proportion to w times the result, so that the sum of the layer stays that of M.
+///
+/// Where both halves are equal over a neighbourhood, the result is M, to the bit if (A + B) / 2 is. A pixel with a
+/// half that is not finite, or too bright for squares in float32, enters no estimate. Its result is M, or the last
+/// candidate if M is not finite. All planes have one element per pixel; `candidates` is not empty. Thread-safe; the
+/// same result for any number of threads.
 Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
 
 /// The light up to which a layer counts as dark: 2 % of its mean over the picture [W/m^2/sr].

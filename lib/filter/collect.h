@@ -31,8 +31,8 @@ class Collector {
   /// The next add() calls pass the frames after the middle (direction 1) or before it (-1), the nearest first.
   void start(int direction);
   void add(const WindowFrame& frame);
-  /// Call once, at the end. Weighted means over the frames in which the pixel has `use`; if there is none, over all
-  /// frames.
+  /// Returns the collected light; call once, at the end. Weighted means over the frames in which the pixel has `use`;
+  /// if there is no such frame, over all frames.
   Light take();
 
  private:

@@ -150,7 +150,7 @@ struct FrameFilter::State {
     }
   }
 
-  /// If the light is not negative, its mean is not, either; this corrects rounding.
+  /// The mean of light that is not negative is not negative. Clamps what rounding has made negative.
   static void put_mean(const Halves& halves, std::size_t c, std::vector<float>& values) {
     for (std::size_t p = 0; p < values.size(); ++p) {
       const float mean = mean_of(halves.a[c][p], halves.b[c][p]);

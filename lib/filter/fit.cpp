@@ -130,7 +130,8 @@ class StripFit {
     }
   }
 
-  /// Sum over the window of factors (value - own), for three planes. Differences keep constant light to the bit.
+  /// Sum over the window of factors (value - own), for three planes. Differences to the own value keep constant light
+  /// exact, to the last bit.
   std::array<Float8, 3> sum_of(const Taps& factors, const ColourPlane& from) const {
     const std::array<Float8, 3> own{at(from[0], 0, 0), at(from[1], 0, 0), at(from[2], 0, 0)};
     Float8 r{}, g{}, b{};

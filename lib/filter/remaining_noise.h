@@ -34,13 +34,15 @@ class RemainingNoise {
 /// Writes the root mean square of the remaining error over pixels and colours, in W/m^2/sr and in sRGB codes, to the
 /// frame's attributes tempolux:noise.*, in place of the raw frame's (formats/frames/frames.md 3).
 ///
-/// The squared error is the mean of `whole`, or of `noise` if that is larger: choose() takes the candidate with the
-/// least `whole`, so its `whole` is too small, most of all if few pixels hold most of the noise. To this is added the
-/// error that halves cannot show, because both halves agree about an object smaller than a pixel that samples met or
-/// missed: the square of the raw frame's noise, measured with pixels that were rendered twice, less one standard error,
-/// minus the mean of `known`. The error in codes is the linear error times the slope of the sRGB curve at the filtered
-/// value, 0 where the code is clipped. The standard error comes from blocks of 32 x 32 pixels, because errors of
-/// neighbouring pixels are correlated.
+/// The squared error is the sum of two terms. The first is the mean of `whole`, or of `noise` if that is larger:
+/// choose() takes the candidate with the least `whole`, so its `whole` is too small, most of all if few pixels hold
+/// most of the noise. The second is the error that halves cannot show: samples met or missed an object smaller than a
+/// pixel, and both halves agree. It is the square of the raw frame's noise, measured with pixels that were rendered
+/// twice, less one standard error, minus the mean of `known`.
+///
+/// The error in codes is the linear error times the slope of the sRGB curve at the filtered value, 0 where the code
+/// is clipped. The standard error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are
+/// correlated.
 ///
 /// If nothing was filtered or R, G and B are missing, the attributes are removed.
 void write_remaining_noise(const RemainingError& error, Image& frame);

@@ -41,7 +41,7 @@ class Unmixing {
       for (std::size_t c = 0; c < 3 && !is_black(l); ++c) {
         const Sums& s = sums_[l][c];
         const double mean = count_ > 0 ? s.plain / count_ : double(mixed(l, c, x, y));
-        const double fitted = own ? double(fitted_.weight.at(x, y)) / frames_ : 0;  // pixels' worth
+        const double fitted = own ? double(fitted_.weight.at(x, y)) / frames_ : 0;  // in pixels
         const double plain = fitted > 0 ? 0 : 1;
         const double unmixed =
             (s.product + plain * mean + fitted * double(fitted_.layers[l][c].at(x, y))) / (s.square + plain + fitted);
@@ -57,7 +57,8 @@ class Unmixing {
   bool is_black(std::size_t layer) const { return collected_.layers[layer][0].empty(); }
   bool is_known(int x, int y) const { return fitted_.weight.at(x, y) >= kFewestPixels; }
   float albedo(std::size_t c, int x, int y) const { return surfaces_.albedo_at(c, x, y); }
-  /// Light of all surfaces of the pixel together: of all frames if it is an edge in all of them, else of this frame.
+  /// Light of all surfaces of the pixel together: the mean over all frames if the pixel is an edge in all of them,
+  /// else of this frame.
   float mixed(std::size_t l, std::size_t c, int x, int y) const {
     const Plane& plane = (collected_.weight.at(x, y) == 0 ? collected_ : raw_).layers[l][c];
     return plane.empty() ? 0 : plane.at(x, y);
@@ -109,7 +110,7 @@ std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const 
   for (std::size_t l = 0; l < other.size(); ++l)
     for (std::size_t c = 0; c < 3 && any_other && !fitted.layers[l][c].empty(); ++c)
       other[l][c] = Plane(surfaces.width, surfaces.height);
-  // Pixels whose light is found are only read, all others only written, so any order gives the same result.
+  // Pixels whose light the fit found are only read, all others are only written, so any order gives the same result.
   parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
     Unmixing unmixing(group, half, collected, coverage, frames, fitted, other);
     for (int y = int(first); y < int(last); ++y)

@@ -21,10 +21,10 @@ namespace {
 constexpr double kSitesPerPoint = 16;
 /// In units of R: where the explicit share of light begins and where it reaches 1.
 constexpr float kFadeFrom = 4, kFadeTo = 6;
-/// Size of cells for photons that no point represents: so many cells per kBesideLamp spacings.
+/// The edge of the cells that group photons which no point represents is kBesideLamp spacings over this number.
 constexpr float kCellsPerReach = 8;
 
-/// Cubes of space in which a requested point may lie.
+/// The cubes of space that may hold a requested point.
 class NearPoints {
  public:
   explicit NearPoints(float edge) : inverse_(1 / double(edge)) {}
@@ -75,8 +75,8 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
       lamp_reach_(kBesideLamp * points.spacing()) {
   high_.resize(points.size(), 0.0f);
   // If a point's indirect light is not that of the hit, the gather ray continues and finds light that the point does
-  // not hold. So no share of it may be sampled explicitly. Direct light of lamps close to a surface has its own
-  // division.
+  // not store. No share of that light may be sampled explicitly, so the high share becomes 0. Direct light of lamps
+  // close to a surface is divided separately (lamp_share).
   for (std::uint32_t i = 0; i < high_.size(); ++i)
     if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_uniform_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
@@ -100,8 +100,8 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   const double spacing = double(points.spacing());
-  // Points may be requested up to one cube outside of `near`. Pieces of a sphere that hold all surface within 3/4 of
-  // its radius.
+  // Points may be requested up to one cube outside of `near`. The pieces of a sphere's surfaces hold all surface
+  // within 3/4 of the sphere's radius.
   const AimSphere around{
       Vec3d(box.lower + box.upper) * 0.5,
       (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};

@@ -95,7 +95,7 @@ class BrightPoints {
     Rgb irradiance{0.0f};  ///< W/m^2: the high part
     Bsdf bsdf;
     float radius;             ///< m: radius of the density estimate of its point
-    float area;               ///< m^2; 1 for a photon, whose flux stands for irradiance x area
+    float area;               ///< m^2; 1 for a photon, whose flux is irradiance x area
     std::uint32_t spot;       ///< index of its point, or above all points that of a cell of photons
     float lamp_distance = 0;  ///< m: distance of the photon's lamp; 0: the light is a point's
   };

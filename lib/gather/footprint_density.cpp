@@ -210,7 +210,8 @@ bool FootprintDensity::measure_leaf(std::size_t number) const {
   return true;
 }
 
-/// Measures the area of a footprint. A footprint that is mostly empty (of a photon on a wire) is made smaller.
+/// Measures the area of a footprint. Makes the footprint smaller while it is mostly empty, as around a photon on a
+/// wire.
 FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   const Vec3 position = index_.position(photon), normal = normal_of(photon);
   const PathRandom random(0x666f6f74ull, index_.source(photon));

@@ -22,9 +22,9 @@ struct FootprintOptions {
   int neighbours = 25;  ///< k, below kMaxNeighbours
   /// m; 0: from the photons (photon_reach), such that one photon in twenty is farther from its neighbours
   float max_radius = 0;
-  /// Number of photons, among those whose footprints cover a place, that are tested for reachability. They are drawn by
-  /// their contribution; 0: all. Unbiased, and without noise where all reach the place or none does. For estimates of
-  /// which a pixel averages several.
+  /// At most this many of the photons whose footprints cover a place are tested for reachability; 0: all. They are
+  /// drawn in proportion to their contribution. The estimate stays unbiased, and has no added noise where all photons
+  /// or none reach the place. Use it for estimates that a pixel averages.
   int asked = 0;
   /// Share of max_radius: light counts as smooth only if no narrower footprint lies within this distance.
   float margin = 0;
@@ -54,19 +54,22 @@ float received_share(Vec3 wi, Vec3 normal, const LitSurface& at);
 ///     E(x) = sum over photons i that reach x of flux_i s_i K(d_i / r_i) / A_i,   K(t) = 2 (1 - t^2)  [Epanechnikov
 ///     1969]
 ///
-/// s_i: received_share at x (normal map and coat) if photons store directions, else 1. d_i: distance from the photon in
-/// the metric of the ellipsoid r_i : r_i : r_i / kFlattening around the photon. r_i [m]: distance to the photon's k-th
-/// neighbour, at most max_radius, at least Reach::offset(), and halved while hardly any of the ellipsoid is surface (on
-/// wires). A_i [m^2]: area reachable from the photon, weighted by K (Reach, which also decides whether x is reachable).
-/// So the light of a photon is spread over exactly the reachable surface, and the integral of E equals the flux, also
-/// at walls, edges and steps. Footprints smaller than 64 Reach::offset(), in which float positions do not resolve
+/// - s_i: received_share at x (normal map and coat) if photons store directions, else 1.
+/// - d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening around the photon.
+/// - r_i [m]: distance to the photon's k-th neighbour, at most max_radius, at least Reach::offset(), and halved while
+/// hardly any of the ellipsoid is surface (on wires).
+/// - A_i [m^2]: area reachable from the photon, weighted by K (Reach, which also decides whether x is reachable).
+///
+/// The light of a photon is spread over exactly the reachable surface. So the integral of E equals the flux, also at
+/// walls, edges and steps. Footprints smaller than 64 Reach::offset(), in which float positions do not resolve
 /// heights, count as whole discs.
 ///
-/// The radius belongs to the photon and not to x [Breiman, Meisel & Purcell 1977], because the k nearest photons of x
-/// give too much light. Their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 is proportional to 1
-/// / E. Around a spot each x reaches as far as the spot, and the integral of the estimates, k / (pi d^2), is bounded by
-/// max_radius only. For a disc of 1000 photons, 25 nearest photons give 8 to 12 % too much, for 5000 photons 4 %. With
-/// r_i in proportion to 1 / sqrt(E) at the photon, the error is of fourth order in r [Abramson 1982].
+/// The radius belongs to the photon and not to x [Breiman, Meisel & Purcell 1977]. The k nearest photons of x would
+/// give too much light: their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 is proportional to
+/// 1 / E. Around a spot each x would reach as far as the spot, and the integral of the estimates, k / (pi d^2), would
+/// be bounded by max_radius only. For a disc of 1000 photons, 25 nearest photons give 8 to 12 % too much light, for
+/// 5000 photons 4 %. With r_i in proportion to 1 / sqrt(E) at the photon, the error is of fourth order in r [Abramson
+/// 1982].
 ///
 /// Stratified photons (a mirror keeps the stratification of Halton's sequence) and independent photons have the same
 /// mean, so the formula has no k - 1 or k - 1/2. Thread-safe; same values for any number of threads.

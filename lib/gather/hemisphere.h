@@ -44,9 +44,9 @@ class Hemisphere {
   ///
   ///     pi/(M N) sum_p s_p (L_2p - L_2p+1),   s_p = -1 or 1 at random,
   ///
-  /// over pairs of neighbouring cells in their order of index. Its mean square is the variance of the irradiance plus
-  /// (pi/(M N))^2 times the squared differences of the light that arrives in the two cells of each pair. `key`: of the
-  /// signs.
+  /// over pairs p of cells with successive indices. Its mean square is the variance of the irradiance plus (pi/(M
+  /// N))^2 times the squared differences of the light that arrives in the two cells of each pair. `key`: of the
+  /// random signs.
   Rgb noise(std::uint64_t key) const;
 
   /// Number of further rays for each cell: the standard deviation of the cells around it (eight, five at the rims) over

@@ -105,8 +105,8 @@ void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double
       points.end());
 }
 
-/// Of the spheres around what cameras see, those in which points are spread; empty: everywhere. Chosen by the area of
-/// static surfaces, or of movers if no static surface lies in the spheres.
+/// The spheres in which points are spread: some of the spheres around what cameras see; empty: everywhere. They are
+/// chosen by the area of static surfaces, or of movers if no static surface lies in the spheres.
 std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const AimSphere> seen) {
   if (seen.empty()) return {};
   std::vector<double> standing(seen.size()), moving(seen.size());

@@ -49,10 +49,10 @@ struct PlacedSite {
   float area = 0;
 };
 
-/// Places that are uniform by area on both sides of those surfaces of the given objects (id.object, ascending) that
-/// have a Lambert lobe, within the sphere `around` and slightly outside (pieces_in). Each represents at most `area`
-/// [m^2]; the areas of a side add up to the surface's area. Only places inside the sphere that `wanted` accepts;
-/// `wanted` is called from many threads.
+/// Places that are uniform by area on both sides of the surfaces that have a Lambert lobe and belong to one of
+/// `objects` (id.object, ascending). The places lie within the sphere `around` or slightly outside (pieces_in). Each
+/// represents at most `area` [m^2]; the areas of a side add up to the surface's area. Returns only places inside the
+/// sphere that `wanted` accepts; `wanted` is called from many threads.
 std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects,
                                     const AimSphere& around, double area, std::uint64_t seed,
                                     const std::function<bool(Vec3)>& wanted);

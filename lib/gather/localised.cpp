@@ -11,17 +11,17 @@
 namespace tempolux {
 namespace {
 
-constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: what is darker is not told apart from black
+constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor, darker light counts as this much
 
-/// Dynamic photons are asked for in a disc this much wider than the one that k static photons fill, k = 50 as a rule.
-/// At the lower threshold, a share of .06 of the static light, it holds .06 x 50 x 7^2 = 150 of them, and their scatter
-/// is sqrt(150) / (50 x 7^2) = .5 % of the static light, which is about what gather rays leave. In the narrow disc it
-/// were 3 photons and 3.5 %: boiling. (docs/methods/dynamic.md)
+/// Dynamic photons are searched in a disc this much wider than the disc of k static photons. With k = 50 and an
+/// influence of .06, the lower threshold, the wide disc holds .06 x 50 x 7^2 = 150 dynamic photons. Their standard
+/// deviation is sqrt(150) / (50 x 7^2) = .5 % of the static light, about the noise of gather rays. The narrow disc
+/// would hold 3 photons with a standard deviation of 3.5 %, which a viewer sees as flicker (docs/methods/dynamic.md).
 constexpr float kWider = 7;
 
 constexpr InterpolationOptions kInfluenceStore{.least_cosine = 0, .only_read = true};
 
-constexpr float kAny = std::numeric_limits<float>::min();  ///< weight of whatever counts
+constexpr float kAny = std::numeric_limits<float>::min();  ///< any positive weight reaches this sum
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -84,7 +84,9 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
   store_.add(pairs);
   std::vector<IrradianceRecord> above, below;
   for (const IrradianceRecord& pair : pairs) {
-    // Without least_: the mean of what is lifted to it may be above the mean lifted to it.
+    // The static irradiance counts here as it is, without least_. A mean of values raised to least_ may be larger
+    // than the mean raised to least_, so an interpolated influence may be above `low` although no record with a
+    // raised value is.
     const Rgb light = pair.irradiance;
     if (light.r > thresholds_.low * light.g) above.push_back(pair);
     if (thresholds_.gathered_share(relative(light)) < 1) below.push_back(pair);

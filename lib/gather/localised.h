@@ -11,8 +11,8 @@
 
 namespace tempolux {
 
-/// Where what movers change is taken from: below `low` from the static records and the dynamic photons (E_t), above
-/// `high` from records gathered for the frame (E_y), in between from both.
+/// Thresholds of influence that choose a frame's records. Below `low` light comes from static records changed by
+/// dynamic photons (E_t), above `high` from records gathered for the frame (E_y). In between both are mixed.
 struct InfluenceThresholds {
   float low = 0.06f, high = 0.15f;  ///< shares of the static irradiance
 
@@ -20,45 +20,49 @@ struct InfluenceThresholds {
   float gathered_share(float influence) const;
 };
 
-/// DensityOptions::area_probes of dynamic maps for record_changes(). Eight columns spread over a disc tell its area to
-/// some 15 %: of a change that is a hundredth of the light as a rule, .15 % of the light.
+/// DensityOptions::area_probes for dynamic maps in record_changes(). Eight probes estimate the area of a disc with a
+/// standard error of 15 %. A change is usually a hundredth of the light, so the error is .15 % of the light.
 inline constexpr int kChangeProbes = 8;
 
-/// What the dynamic photons of a frame do to a static record.
+/// The change of a static record by the dynamic photons of a frame.
 struct RecordChange {
   Rgb update{0.0f};     ///< W/m^2: E_t = irradiance + change, not cut at 0
   float influence = 0;  ///< W/m^2
 };
 
-/// E_t of each record from the first of `maps`, its influence the largest over all of them (the frame's own and those
-/// before it: the region grows at once and shrinks over frames). The disc is seven times as wide as that of the
-/// irradiance point nearest to the record, which k static photons fill.
+/// Computes E_t of each record from the first of `maps`, and its influence as the largest over all maps. The maps are
+/// the frame's own and those of frames before, so the region of influence grows at once and shrinks over several
+/// frames. The disc is kWider times as wide as that of the irradiance point closest to the record, which k static
+/// photons fill.
 std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
                                          const PointLookup& points, std::uint64_t seed);
 
-/// Influence between static records, interpolated as their irradiance is. Thread-safe.
+/// Influence at any place, interpolated between static records as their irradiance is. Thread-safe.
 class InfluenceField {
  public:
-  /// influences[i] of records[i], which carry their static irradiance.
+  /// influences[i] [W/m^2] belongs to records[i], which store their static irradiance.
   InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                  const InfluenceThresholds& thresholds);
 
-  /// In the thresholds' terms: divided by the largest channel of the static irradiance there (at least a hundredth of
-  /// the records' mean) unless they are absolute. Infinity where no record is near.
+  /// Influence in the unit of the thresholds: W/m^2 if they are absolute, else the share of the largest channel of
+  /// the static irradiance there. The static irradiance counts as at least a hundredth of the records' mean. Infinite
+  /// where no record is valid.
   float at(Vec3 position, Vec3 normal) const;
-  /// Does a record above the lower threshold count there? If not and any record counts, E_y has no share: a mean of
-  /// influences over a mean of irradiances is at most the largest of their ratios. Most places have none.
+  /// True if a record above the lower threshold is valid there. If only records below it are valid, the share of E_y
+  /// is 0: the quotient of two weighted means is at most the largest quotient of single records. Most places have no
+  /// such record.
   bool is_above_low(Vec3 position, Vec3 normal) const;
-  /// Share of E_y there: at() by the thresholds. 1 where all records that count are above the upper one.
+  /// Share of E_y there: InfluenceThresholds::gathered_share(at()). 1 where no valid record is below the upper
+  /// threshold.
   float gathered_share(Vec3 position, Vec3 normal) const;
   const InfluenceThresholds& thresholds() const { return thresholds_; }
 
  private:
-  /// Influence in the thresholds' terms; pair: influence (r), static irradiance (g).
+  /// Influence in the unit of the thresholds. pair: r is the influence, g the static irradiance, both in W/m^2.
   float relative(Rgb pair) const;
 
-  /// Of influence (r) and static irradiance (g) as if they were irradiance: all records, those above the lower
-  /// threshold, those below the upper one.
+  /// Stores of records whose irradiance holds such pairs (r influence, g static irradiance): all records, those above
+  /// the lower threshold, those below the upper one.
   RecordStore store_, above_, below_;
   InfluenceThresholds thresholds_;
   float least_ = 0;  ///< W/m^2

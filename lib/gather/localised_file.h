@@ -12,7 +12,8 @@
 
 namespace tempolux {
 
-/// Set static: records of the static scene, changes[i] belongs to standing[i]. Set dynamic: records of the frame.
+/// Records of the set static belong to the static scene; changes[i] belongs to standing[i]. Records of the set
+/// dynamic were gathered for the frame.
 struct LocalisedRecords {
   std::vector<IrradianceRecord> standing, gathered;
   std::vector<RecordChange> changes;

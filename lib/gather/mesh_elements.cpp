@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kAtOnce = 1024;  ///< photons, or elements, per piece of parallel work
 /// Low bits, of 16, that are dropped from the normal of a joined element: 64 directions remain.
 constexpr int kNormalBits = 13;
-constexpr float kReach = 3;  ///< of a Gaussian, in standard deviations
+constexpr float kReach = 3;  ///< radius at which a Gaussian is cut, in standard deviations
 
 struct Corners {
   Vec3 a, b, c;
@@ -118,8 +118,8 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
   });
 }
 
-/// Elements joined within what the filter resolves: those in one cube of this edge [m] with the same orientation and
-/// material.
+/// Elements that are joined because the filter does not resolve them: those in one cube of this edge [m] with the
+/// same orientation and material.
 struct Joined {
   std::vector<Sample> cubes;
   std::vector<std::uint32_t> of;  ///< by element: the index of its cube
@@ -197,9 +197,10 @@ void put_right(const std::vector<Sample>& samples, const std::vector<formats::Me
         irradiance[i][c] *= before[c] / after[c];
 }
 
-/// Share of a band that is kept (Wiener): signal over signal and noise. `energy`: mean square of the band, difference
-/// of Gaussians of deviations s and 2 s; `variance`: of the narrower one. Over the plane the covariance of Gaussians s
-/// and t is q / (2 pi (s^2 + t^2)), so the band's variance is that of s times 1 + 1/4 - 2 x 2/5.
+/// Share of a band that is kept: signal / (signal + noise) [Wiener]. A band is the difference of the light after the
+/// Gaussians of deviations s and 2 s. `energy`: the mean square of the band. `variance`: the variance v of the light
+/// after the Gaussian s. White noise after the Gaussians s and t has the covariance q / (2 pi (s^2 + t^2)), so the
+/// variance of the band is v (1 + 1/4 - 2 x 2/5) = .45 v.
 double kept_share(double energy, double variance) {
   return energy > 0 ? std::max(0.0, 1 - 0.45 * variance / energy) : 0;
 }

@@ -32,9 +32,9 @@ struct MeshOptions {
   MeshFilter filter;
 };
 
-/// Divides the triangles of a frame into elements: each edge is cut so often that no piece is longer than `cell` [m],
-/// at most formats::kMostCuts times. Movers are measured in several frames, so that they have the same elements in all
-/// frames of a segment.
+/// Divides the triangles of a frame into elements. Each edge is cut into equal parts of at most `cell` [m], but into
+/// at most formats::kMostCuts parts. Movers are measured in several frames, so that they have the same elements in
+/// all frames of a segment.
 class MeshCuts {
  public:
   /// `measured`: at least one frame, all of one segment; they must outlive this object.
@@ -110,12 +110,12 @@ void put_sums(const MeshSums& sums, std::vector<formats::MeshElement>& elements)
 /// Removes the sides of triangles that receive neither light nor photons.
 void leave_out_dark(std::vector<formats::MeshElement>& elements);
 
-/// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area, both
-/// weighted by the same kernel around the element. Only elements count that face the same way (normals within 30
-/// degrees), lie within a width of its plane and have its material. So no light is lost at edges, and none spreads
-/// around corners. The bilateral filter also weights by the difference of irradiance after a Gaussian of the same
-/// width. Each object keeps its total flux. `widths` [m]: the width of each element, 0 where no light arrives; empty:
-/// the filter's width everywhere.
+/// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area,
+/// both weighted by the same kernel around the element. An element counts only if it faces the same way (normals
+/// within 30 degrees), lies within a width of the element's plane and has the same material. So no light is lost at
+/// edges, and none spreads around corners. The bilateral filter also weights by the difference of irradiance after a
+/// Gaussian of the same width. Each object keeps its total flux. `widths` [m]: the width of each element, 0 where no
+/// light arrives; empty: the filter's width everywhere.
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 
@@ -125,10 +125,11 @@ struct MeshFlux {
   std::vector<double> squares;  ///< W^2: variance of its luminance
 };
 
-/// Computes the irradiance of all_elements() as smooth_elements() does, but as smooth as the light allows: light is
-/// divided into bands by Gaussians of the deviations `width`, twice and four times that (`widths` likewise). Of the two
-/// finer bands each place keeps the share signal / (signal + noise), where signal + noise is the mean square of the
-/// band around the place and noise follows from the photons (Wiener). Each object keeps its total flux.
+/// Computes the irradiance [W/m^2] of all_elements() as smooth_elements() does, but smooths only as much as the noise
+/// needs. Gaussians of the deviations `width`, 2 `width` and 4 `width` [m] (`widths` likewise) divide light into a
+/// smooth part and two finer bands. Each place keeps the share signal / (signal + noise) of each band [Wiener]:
+/// signal + noise is the mean square of the band around the place, and noise follows from `flux.squares`. Each object
+/// keeps its total flux.
 void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double width, std::span<const float> widths,
                       std::vector<formats::MeshElement>& elements);
 

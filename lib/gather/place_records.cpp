@@ -24,14 +24,14 @@ std::vector<std::size_t> lattice(int width, int height, int stride) {
   return pixels;
 }
 
-/// What a pixel saw, in short.
+/// The properties of a pixel's seen point that decide whether an edge lies between two pixels.
 struct Glimpse {
   Vec3 position, normal;
   float footprint = 0;
   std::uint32_t object = 0;
   bool any = false, by_choice = false;
 
-  /// Could something else lie between this pixel's centre and its neighbour's?
+  /// True if another surface may lie between the centres of these two neighbouring pixels.
   bool parted_from(const Glimpse& o) const {
     if (any != o.any || object != o.object) return true;
     if (!any) return false;
@@ -39,7 +39,8 @@ struct Glimpse {
   }
 };
 
-/// Pixels that differ from one beside or below them, both; and those seen by choice.
+/// Pixels at edges: both pixels of each pair of neighbours, right or below, that are parted, and pixels seen by
+/// choice.
 std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int width, int height) {
   std::vector<std::uint8_t> edge(glimpses.size());
   for (int y = 0; y < height; ++y)
@@ -56,9 +57,10 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
   return pixels;
 }
 
-/// Adds a record that was gathered twice to `counts`. Squares count as they are seen: the sRGB curve's slope squared is
-/// level^(-7/6). Errors of gradients are left out: with them, added at the mean distance of interpolation, the noise of
-/// a hut's picture was 1.12 times the difference of two seeds, and without them 1.02 times.
+/// Adds a record that was gathered twice to `counts`. Squared errors are weighted as a viewer sees them: the squared
+/// slope of the sRGB curve is proportional to level^(-7/6). Errors of gradients are left out: the noise estimated
+/// with them, at the mean distance of interpolation, was 1.12 times the difference of two seeds in a hut's picture,
+/// and 1.02 times without them.
 void compare(const IrradianceRecord& once, const IrradianceRecord& again, GatherCounts& counts) {
   const Rgbd a(once.irradiance), b(again.irradiance), n(once.noise), m(again.noise);
   const double level = channel_mean(a + b);
@@ -81,11 +83,11 @@ class Placement {
         counts_(counts),
         source_(source) {}
 
-  /// Points of pixels, in a fixed shuffled order. look(pixel): where to look; note(pixel, seen): what was seen.
-  /// checked: every fourth point is gathered twice.
+  /// Covers the points of `pixels`, in a fixed shuffled order. look(pixel) is where to look, note(pixel, seen)
+  /// receives the seen point. checked: every fourth point is gathered twice.
   template <class LookAt, class Note>
   void cover(const std::vector<std::size_t>& pixels, bool checked, const LookAt& look, const Note& note) {
-    // What is covered now stays covered: only the rest is put into order and looked at again, batch by batch.
+    // A covered point stays covered, so only uncovered points are sorted and tested again, batch by batch.
     constexpr std::size_t kChunk = 1024;
     std::vector<std::vector<Open>> found((pixels.size() + kChunk - 1) / kChunk);
     parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
@@ -106,7 +108,7 @@ class Placement {
 
  private:
   struct Open {
-    std::uint64_t key;  ///< what it is sorted by
+    std::uint64_t key;  ///< sort key: hash of the pixel
     std::size_t pixel;
     SeenPoint seen;
   };
@@ -162,7 +164,7 @@ class Placement {
 
 namespace {
 
-/// r before min_radius_px.
+/// The radius [m] before min_radius_px is applied.
 float radius_by_distances(const IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   return std::isinf(record.radius_unclamped) ? options.unseen_radius_px * footprint
                                              : options.error_bound * record.radius_unclamped;
@@ -177,8 +179,8 @@ float radius_of(const IrradianceRecord& record, float footprint, const Placement
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   record.radius = radius_of(record, footprint, options);
   record.radius_unclamped = radius_by_distances(record, footprint, options);
-  // double: sums of gradients, whatever the strength of the light, stay finite, and its power of two changes no
-  // gradient's share.
+  // In double, sums of gradients stay finite for light of any strength, and light scaled by a power of two keeps the
+  // same share of its gradients.
   double kept = std::min(1.0, double(record.radius_unclamped) / double(record.radius)), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
   const double e = channel_sum(Rgbd(record.irradiance)), over = kept * slope * double(record.radius);

@@ -29,8 +29,8 @@ struct SeenPoint {
   bool by_choice = false;  ///< the path has passed a surface at which it chose one of several directions
 };
 
-/// A raster position of a picture. Where the path forks (glass, gloss) the branch is drawn from `random`; without, the
-/// likelier branch is taken.
+/// A raster position of a picture. Where the path forks (glass, gloss), `random` chooses the branch. Without `random`
+/// the likelier branch is taken.
 struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;

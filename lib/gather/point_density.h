@@ -24,12 +24,14 @@ struct DensityOptions {
 ///
 ///     E = sum of flux over those of the k-1 nearest that are reachable / reachable area
 ///
-/// "Nearest" and the area refer to the ellipsoid 1 : 1/10 around the point that touches the k-th photon (or to that of
-/// max_radius with all of its photons, if it holds fewer), on surfaces within 84 degrees of the point's plane. If light
-/// is uniform on the reachable surface, E is unbiased, whatever the light elsewhere is: given the ellipsoid, each of
-/// the k-1 photons is reachable with the probability (reachable light / all light in the ellipsoid), and (k-1) / (all
-/// light in it) has the mean 1 (irradiance_estimate.h). This requires the same test (Reach) for photons and for area:
-/// clipping the area alone gains light at thin walls, and dropping photons alone loses it in corners.
+/// Distances are those of the ellipsoid 1 : 1/10 around the point, and only surfaces within 84 degrees of the point's
+/// plane count. The area is that in the ellipsoid that touches the k-th photon. If the ellipsoid of max_radius holds
+/// fewer than k photons, all of them and the area in that ellipsoid count.
+///
+/// If light is uniform on the reachable surface, E is unbiased, whatever the light elsewhere is. Given the ellipsoid,
+/// each of the k-1 photons is reachable with the probability (reachable light / all light in the ellipsoid), and
+/// (k-1) / (all light in it) has the mean 1 (irradiance_estimate.h). This requires the same test (Reach) for photons
+/// and for area: clipping the area alone gains light at thin walls, and dropping photons alone loses it in corners.
 class PointDensity {
  public:
   /// Where light is up to 16 times as sparse as the mean over the places with photons, k photons are still found.

@@ -27,10 +27,10 @@ struct TrianglePiece {
 /// spheres alone.
 std::vector<TrianglePiece> pieces_in(const Surface& surface, std::span<const AimSphere> spheres);
 
-/// Of the spheres around what cameras see, those in which irradiance points are placed: the spheres with the most
-/// weight per area of surface, until they hold kHeld of all weight. `areas`: m^2 of surface in each sphere; a sphere
-/// without surface is left out. Few gather rays end in the others; as no point represents their hits, these rays
-/// continue, so no light is lost (docs/methods/aim.md).
+/// Chooses the spheres in which irradiance points are placed among the spheres around what cameras see: those with
+/// the most weight per area of surface, until the chosen ones hold kHeld of all weight. `areas`: m^2 of surface in
+/// each sphere; a sphere without surface is not chosen. Few gather rays end in the other spheres. No point represents
+/// their hits there, so these rays continue and no light is lost (docs/methods/aim.md).
 std::vector<AimSphere> spheres_with_points(std::span<const AimSphere> spheres, std::span<const double> areas);
 
 }  // namespace tempolux

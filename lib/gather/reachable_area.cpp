@@ -105,11 +105,11 @@ bool ReachableArea::whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, flo
   return whole_from(start_of(position, normal), normal, outwards, radius, lift, depth_of(radius, lift));
 }
 
-/// Reachable surface in a column at offset `across` from the point, from `height` above the plane to as much below it,
-/// per cross section of the column: the sum of 1 / cos of the surfaces' tilts. For the round kernel, a surface at
-/// height h counts with probability 1 - (h / height)^2, the kernel's weight there over its weight in the plane, decided
-/// by `u` in [0, 1). Weights in place of probabilities would differ between columns and bias the inverse of the sum
-/// upwards. Flat kernel: u = 0.
+/// Area of the reachable surface in a column, over the column's cross section: the sum of 1 / cos of the surfaces'
+/// tilts. The column lies at offset `across` from the point and reaches from `height` above the plane to `height`
+/// below it. With the round kernel a surface at height h counts with the probability 1 - (h / height)^2, its kernel
+/// weight over the weight in the plane; `u` in [0, 1) decides. Weights in place of probabilities would differ between
+/// columns and bias the inverse of the sum upwards. With the flat kernel u is 0.
 inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
   const float half = std::max(4 * reach_.offset(), height);
   Vec3 top = position + across + normal * half;

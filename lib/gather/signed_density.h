@@ -43,8 +43,8 @@ class SignedDensity {
   };
   /// The same change. `area` is computed if it is needed and not known yet.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
-  /// Upper bound of Change::influence, which counts unreachable photons, too, so that no ray is traced. 0 if there are
-  /// no photons.
+  /// An upper bound of Change::influence that needs no ray: it counts photons that do not reach the place, too. 0 if
+  /// there are no photons.
   double most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
 
  private:

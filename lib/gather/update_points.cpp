@@ -15,7 +15,7 @@ namespace {
 using formats::PathKind;
 using formats::Photon;
 
-/// Without branches: it is asked of millions of photons, few of which are near.
+/// Written without branches: it tests millions of photons, and few of them are inside.
 bool inside(const Box3& box, Vec3 p, float margin) {
   return (p.x >= box.lower.x - margin) & (p.x <= box.upper.x + margin) & (p.y >= box.lower.y - margin) &
          (p.y <= box.upper.y + margin) & (p.z >= box.lower.z - margin) & (p.z <= box.upper.z + margin);
@@ -27,7 +27,7 @@ bool near_any(const MovingBoxes& boxes, Vec3 p, float margin) {
                      [&](const Box3& box) { return !box.empty() && inside(box, p, margin); });
 }
 
-/// Do lights move or change, so that what they give is another everywhere?
+/// True if a light moves or changes, so that direct light may change at every point.
 bool lights_change(const SceneFrame& frame) {
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
     if (frame.materials[frame.surfaces[s].material].emissive()) return true;
@@ -41,7 +41,7 @@ bool any_caustic(std::span<const Photon> photons) {
                      [](const Photon& photon) { return photon.kind == PathKind::caustic; });
 }
 
-/// m: the largest radius of an estimate, as far as points tell; 0 if they do not.
+/// Largest radius [m] of a density estimate: the option, or the largest among the points. 0: neither is known.
 float largest_radius(const PointOptions& options, std::span<const IrradiancePoint> points) {
   float largest = options.max_radius;
   if (!(largest > 0))
@@ -58,7 +58,8 @@ Rgb not_negative(const Rgbd& sum) {
 std::function<bool(Vec3, const Photon&)> static_photons_read(const SceneFrame& frame, const PointOptions& options,
                                                              std::span<const IrradiancePoint> points,
                                                              std::span<const Photon> dynamic_photons) {
-  // Points whose disc what moves may cut are anew: of a radius or less from it, and their photons as far again.
+  // A point is estimated anew if a mover may cut its disc, so if it lies within one radius of the mover. Its photons
+  // lie within one radius of the point, so within two radii of the mover.
   const float reach = 2 * largest_radius(options, points);
   return
       [boxes = moving_boxes(frame), reach, caustic = any_caustic(dynamic_photons)](Vec3 place, const Photon& photon) {
@@ -70,7 +71,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
                                 std::vector<IrradiancePoint>& points) {
   PointUpdateCounts counts;
   const SceneFrame& frame = in.whole.frame();
-  // Points that found fewer static photons than they wanted have the largest radius of all.
+  // Points that found fewer static photons than the estimate asks for have the largest radius of all.
   DensityOptions density{options.neighbours, largest_radius(options, points),
                          std::min(options.area_probes, kChangeProbes)};
   const SignedDensity density_of_change(in.standing, in.dynamic_photons.photons, density, in.dynamic_shift);
@@ -107,7 +108,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   counts.changed = changed;
 
   const PhotonMaps maps{in.static_photons, in.dynamic_photons, in.static_shift, in.dynamic_shift};
-  // Beside what moves: all photons that an estimate there may ask for.
+  // Close to movers: all photons that an estimate there may use.
   const formats::PhotonBlock near =
       anew.empty() ? formats::PhotonBlock{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
         return near_any(boxes, place, widest + density.max_radius);
@@ -118,7 +119,8 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   limited.max_radius = density.max_radius;
   if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, limited, anew, points);
 
-  // Caustic light has footprints instead of discs: all of it anew if any is another.
+  // A caustic photon lights its own footprint, so one changed photon can reach any point. If the dynamic map holds a
+  // caustic photon, caustic light is estimated anew at every point.
   if (any_caustic(in.dynamic_photons.photons)) {
     const formats::PhotonBlock all =
         whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });

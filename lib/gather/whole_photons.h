@@ -15,10 +15,10 @@ struct PhotonMaps {
 };
 
 /// The photons of the global map in another order: static photons that are not cancelled, and dynamic photons of
-/// positive flux. A dynamic photon of negative flux cancels the static photon that equals it in every bit but the sign
-/// of the flux. Only photons that `wanted` accepts, from position (scene space) and photon; it must accept both or
-/// neither of two photons that cancel. Positions are in scene space. Directions are kept if both maps have them (or one
-/// map has no photons).
+/// positive flux. A dynamic photon of negative flux cancels the static photon that equals it in every bit but the
+/// sign of the flux. `wanted` selects photons by position (scene space) and photon; it must accept both or neither of
+/// two photons that cancel. Positions are in scene space. Directions are kept if both maps store them (or one map has
+/// no photons).
 formats::PhotonBlock whole_photons(const PhotonMaps& maps,
                                    const std::function<bool(Vec3, const formats::Photon&)>& wanted);
 

@@ -187,8 +187,8 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   return uneven;
 }
 
-/// Called if the first entry of the table is of another cell: reads a later entry, or searches the cell and stores the
-/// result.
+/// Called if the first entry of the table belongs to another cell. Reads a later entry, or searches the cell and
+/// stores the result.
 PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
   if (q.cell == 0) {
     const Light* light = search(q);

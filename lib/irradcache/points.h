@@ -74,45 +74,49 @@ class PointLookup {
     const Question question = ask(position, normal);
     return read(question, answer(question));
   }
-  /// The nearest point that faces within 90 degrees of `normal`, whatever lies between: for what needs the scale of the
-  /// photons near a place, not its light. nullptr if no point faces this way.
+  /// The closest point that faces within 90 degrees of `normal`, even if a surface lies between. Gives the scale of
+  /// the photons around a place, not its light. nullptr if no point faces this way.
   const Light* nearest(Vec3 position, Vec3 normal) const;
   std::size_t size() const { return points_.size(); }
   float spacing() const { return spacing_; }
-  /// Of point number `point`.
+  /// The light of point number `point`.
   const Light& light(std::uint32_t point) const { return lights_[point]; }
   const IrradiancePoint& point(const Light& read) const { return points_[read.point]; }
   std::span<const IrradiancePoint> points() const { return points_; }
-  /// True if light of one kind changes little around a point. False if some neighbours (points within 1.5 spacings) get
-  /// kContrast times as much of it as others (indirect light: certainly kContrastOfIndirect times, see apart()), since
-  /// a shadow or a bright spot ends there. Direct light also needs at least two neighbours: a single point in a wall's
-  /// shadow does not represent the whole wall.
+  /// True if light of one kind changes little around a point. It does not if some neighbours (points within 1.5
+  /// spacings) get kContrast times as much of it as others, because a shadow or a bright spot ends there. For
+  /// indirect light the ratio must be kContrastOfIndirect for certain, see apart(). Direct light also needs at least
+  /// two neighbours: a single point in a wall's shadow does not represent the whole wall.
+  ///
   /// If direct light is uneven, the hit samples it by a shadow ray instead. The point's light would reach a spacing
   /// into shadows, where it matters: a chair sees mostly the ground in its own shadow. If indirect light is uneven
-  /// (compared among points of one object), the gather ray continues. A lamp a finger's width below the ceiling lights
-  /// the ceiling behind it a hundred times as strongly as the visible ceiling; the point's light would spread a spacing
-  /// beyond the gap.
+  /// (compared among points of one object), the gather ray continues. A lamp a finger's width below the ceiling
+  /// lights the ceiling behind it a hundred times as strongly as the visible ceiling; the point's light would spread
+  /// by a spacing from the gap onto the visible ceiling.
+  ///
   /// A point's own light is not compared: it is estimated from a few shadow rays or photons. If points that came out
   /// too bright were left out, the mean of the light read would be too dark.
   bool is_uniform(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
   bool is_uniform_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
-  /// Does not compare neighbours: light counts as even around all points. For few points that stand for many, whose
-  /// neighbours are much nearer and so more alike. Must not be called during look-ups.
+  /// Skips the comparison of neighbours: light counts as uniform around all points. For a few points that represent
+  /// many, whose real neighbours are much closer and so more alike. Must not be called during look-ups.
   void take_as_even() {
     for (Light& light : lights_) light.uneven.store(kKnown, std::memory_order_relaxed);
   }
   static constexpr float kContrast = 8;
-  /// Marks a point's direct light as uneven. A lamp so close lights a spot smaller than the spacing: most spots contain
-  /// no point, and a point in one would represent too large an area. Must not be called during look-ups.
+  /// Marks a point's direct light as uneven because a lamp is close. Such a lamp lights a spot smaller than the
+  /// spacing: most spots contain no point, and a point in a spot would represent too large an area. Must not be
+  /// called during look-ups.
   void note_lamp(std::uint32_t point) { lights_[point].beside_lamp = true; }
   /// Continuing a gather ray costs several reads, and leaks at moderate contrast are small. With 8 instead of 32 S8's
   /// frame took 17 % and S4's records 11 % more CPU at the same error; the gap in CornellBox has a contrast of 100.
   static constexpr float kContrastOfIndirect = 32;
   /// True if indirect light at `bright` is kContrastOfIndirect times the light at `dark`, with three standard errors.
-  /// An estimate from k = PointOptions::neighbours photons has a relative error of 1 / sqrt(k). An estimate with fewer
-  /// photons has the widest radius of all points and an unknown number of photons, so as `bright` it proves nothing. As
-  /// `dark` its photons are taken to be like those of `bright`: each adds e = E_bright r_bright^2 / (k r_dark^2), and n
-  /// photons have the variance (n + 1) e^2 (one is added because finding no photon does not prove that there is none):
+  /// An estimate from k = PointOptions::neighbours photons has a relative error of 1 / sqrt(k). An estimate with
+  /// fewer photons has the widest radius of all points, and their number is not stored. As `bright` it proves
+  /// nothing. As `dark` its photons are assumed to have the flux of those of `bright`: each adds e = E_bright
+  /// r_bright^2 / (k r_dark^2), and n photons have the variance (n + 1) e^2 (one is added because finding no photon
+  /// does not prove that there is none):
   ///     E_bright - c E_dark > 3 sqrt(E_bright^2 / k + c^2 (E_dark e + e^2)),   c = kContrastOfIndirect
   bool apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const;
 
@@ -120,7 +124,7 @@ class PointLookup {
   /// At closer hits the blur of the estimate would be visible.
   static constexpr float kNear = 2;
   /// True if a hit at `distance` m from the last Lambert lobe along the path is too close to read its point. u in [0,
-  /// 1) moves the limit between half and one and a half of its value, so that it leaves no visible seam.
+  /// 1) varies the limit between half and one and a half times its value, so that it leaves no visible seam.
   static bool is_near(const Light& light, float distance, float u) {
     return distance < kNear * light.radius * (0.5f + u);
   }

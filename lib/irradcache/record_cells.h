@@ -22,7 +22,7 @@ struct Cell {
 };
 
 inline Cell cell_at(Vec3d local, double inverse) {
-  // Records far outside the scene share one cell beyond number 2^60.
+  // Cell numbers are clamped to 2^60, so records far outside the scene share one cell.
   const auto index = [&](double x) { return std::int64_t(std::floor(std::clamp(x * inverse, -0x1p60, 0x1p60))); };
   return {index(local.x), index(local.y), index(local.z)};
 }

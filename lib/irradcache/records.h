@@ -24,7 +24,7 @@ struct IrradianceRecord {
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
   float further_share = 0;   ///< further rays per cell that the unevenness of its light calls for; not in files
-  Clearance clearance;       ///< the record does not count beyond it; measured about `normal`
+  Clearance clearance;       ///< the record does not count outside of it; measured about `normal`
   std::uint32_t object = 0;  ///< the object it lies on
   /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (gathered_record.h); 0: unknown
   Rgb noise{0.0f};
@@ -80,20 +80,20 @@ class RecordStore {
   ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - least_cosine)))      where both are positive
   ///
   /// with the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which are zero at the border of validity, so
-  /// that records have no visible borders. Every extrapolation is clamped at 0. A record does not count if the point is
-  /// not on one surface with it: |(x - x_i) . (n + n_i)/2| > 0.05 r_i (0 along circles). Ward 1988 tests this behind
-  /// the record; in front it matters, too, or the bright ground below a plate's rim would light the top of the plate. A
-  /// record does not count either if an obstacle lies between (clearance). Where no record counts, records within the
-  /// angle of kWideCosine do.
+  /// that records have no visible borders. Every extrapolation is clamped at 0. A record is not valid if the point
+  /// does not lie on the record's surface: |(x - x_i) . (n + n_i)/2| > 0.05 r_i (0 along circles). Ward 1988 tests
+  /// only points behind the record. Points in front matter, too: the bright ground below a plate's rim would light
+  /// the top of the plate. A record is not valid either if an obstacle lies between (clearance). If no record is
+  /// valid, records within the angle of kWideCosine are used.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Weighted mean of further_share over the records that are valid at a place; 0 without any.
   float expected_further_share(Vec3 position, Vec3 normal) const;
   /// Sum of the weights, at a record's own place, of the records added before it, except the marked ones (`marked` may
   /// be empty).
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
-  /// True if the sum of the weights is at least `weight`; stops as soon as it is. Also true if the sum would be with
-  /// all radii limited to least_reach and within the angle of kWideCosine: where normals turn quickly, records need not
-  /// be denser than the smallest radius allows.
+  /// True if the sum of the weights is at least `weight`; stops as soon as it is. Also true if the sum would be at
+  /// least `weight` with all radii limited to least_reach [m] and within the angle of kWideCosine: where normals turn
+  /// quickly, records need not be denser than the smallest radius allows.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
   /// Multiplies IrradianceRecord::noise of the records from `first` on.
   void scale_noise(std::size_t first, float factor);
@@ -131,7 +131,7 @@ class RecordStore {
     double inverse_cell = 0;
     std::size_t listed = 0;  ///< number of entries in all buckets
     std::vector<std::uint32_t> members;
-    /// by the hash of the cell, a power of two of them: records that may be valid in the cell
+    /// records that may be valid in a cell, by the hash of the cell; the number of buckets is a power of two
     std::vector<Bucket> buckets;
     /// With only_read, in place of buckets: bucket b is eights[first[b]] to eights[first[b + 1]].
     std::vector<std::uint32_t> first;
@@ -145,8 +145,8 @@ class RecordStore {
   void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
   Entry entry_of(std::uint32_t record) const;
   void pack(Level& level) const;
-  /// Calls found(entry) for entries within a little more than their range of place and normal, in order, until found
-  /// returns true.
+  /// Calls found(entry), in order, for the entries that a slightly widened test of place and normal accepts, until
+  /// found returns true.
   template <class Found>
   static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);
   /// True if found(entry) is true for a record that may be valid at the point. Each record is tried once, until one is

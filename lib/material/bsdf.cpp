@@ -246,6 +246,12 @@ void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
   s.pdf_solid_angle = transmission_ * (1 - reflectance);
 }
 
+float Bsdf::fork_probability(const Direction& wo) const {
+  if (!(wo.w.z > 0)) return 1;
+  float cos_t;
+  return transmission_ > 0 ? fresnel_dielectric(wo.w.z, eta_reflected_, cos_t) : diffuse_probability(wo.reflected);
+}
+
 void Bsdf::sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const {
   s.wi = rough_->sample(wo.w, u_lobe, u);
   if (s.wi.z == 0) return;  // lost at the wrong side of the surface

@@ -126,10 +126,12 @@ class Bsdf {
   /// pdf [1/sr] of wi under the condition that event S is drawn; infinite for mirrors and for all materials with
   /// glass.
   float gloss_density(Vec3 wi, const Direction& wo) const;
-  /// True if events D and S can be sampled separately: a Lambert lobe under a reflection, without glass.
-  bool forks() const { return diffuse_ && specular_ && !(transmission_ > 0); }
-  /// P(D), if forks(): sample() draws event D for u_lobe below P(D), else event S. wo is above the surface.
-  float diffuse_probability(const Direction& wo) const { return wo.w.z > 0 ? diffuse_probability(wo.reflected) : 1; }
+  /// True if the lobes can be sampled separately: a Lambert lobe under a reflection, or the reflection and the
+  /// transmission of smooth glass and nothing else.
+  bool forks() const { return transmission_ > 0 ? transmission_ == 1 && !rough_ : diffuse_ && specular_; }
+  /// If forks(): sample() draws the Lambert lobe, or the reflection of glass, for u_lobe below this probability, else
+  /// the other lobe. wo is above the surface.
+  float fork_probability(const Direction& wo) const;
   /// True if sample() draws event D for this u_lobe, whatever its other random numbers are.
   bool draws_diffuse(const Direction& wo, float u_lobe) const;
 

@@ -36,7 +36,7 @@ CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wis
   return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
 }
 
-/// At most kMostViews of the frames, evenly spaced.
+/// At most kMostViews of `frames`, evenly spaced.
 std::vector<int> spread(const std::vector<int>& frames) {
   const std::size_t count = std::min(kMostViews, frames.size());
   std::vector<int> some;
@@ -44,15 +44,15 @@ std::vector<int> spread(const std::vector<int>& frames) {
   return some;
 }
 
-constexpr int kPlaces = 2048;  ///< of rough frames, all together
+constexpr int kPlaces = 2048;  ///< number of places in all rough frames of a segment together
 
-/// Is the way one that the user and the scene allow? Media are lit by photons, which points read, too.
+/// True if the user and the scene allow this way to light. Media exclude paths, because photons light media.
 bool is_allowed(const Way& way, const Wish& wish, bool media) {
   return !(media && way.method == IndirectMethod::paths) &&
          (wish.indirect == "auto" || kIndirectMethods[std::size_t(way.method)] == wish.indirect);
 }
 
-/// The needs of one looked frame.
+/// What the pilot of one frame measured.
 struct Look {
   std::vector<Way> ways;
   bool knows(IndirectMethod method) const {
@@ -72,7 +72,7 @@ class FramePilot {
         tracer_(frame_),
         lights_(frame_, table_) {}
 
-  /// places: of the rough frame. enough(look): is what is measured all that is asked for?
+  /// `places`: number of places of the rough frame. enough(look): true if the measurement answers the question.
   Look look(int places, const std::function<bool(const Look&)>& enough) {
     const Lights& aimed_lights = aimed();
     const auto look_of = [&](const RoughFrame& rough) {
@@ -139,14 +139,14 @@ std::vector<Way> joined_ways(const std::vector<Look>& looks) {
   return joined(of_frames);
 }
 
-/// The best way that is allowed, if there is one.
+/// The best allowed way, if any is allowed.
 std::optional<Way> best_of(const std::vector<Way>& ways, const Wish& wish, bool media) {
   const auto best = std::ranges::find_if(ways, [&](const Way& way) { return is_allowed(way, wish, media); });
   return best == ways.end() ? std::nullopt : std::optional(*best);
 }
 
-/// Looks at frames, each as far as its best way is known; then at those again that do not know the best way of all.
-/// middle: the pilot of the frame in the middle.
+/// Measures each frame until its own best way is certain. Then measures those frames further for which the segment's
+/// best way is uncertain. middle: the pilot of the frame in the middle.
 std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool media,
                           const std::function<std::unique_ptr<FramePilot>(int)>& pilot_of,
                           std::unique_ptr<FramePilot>& middle) {
@@ -164,12 +164,12 @@ std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool
     const std::optional<Way> best = best_of(joined_ways(looks), wish, media);
     if (!best || looks[i].knows(best->method)) continue;
     looks[i] = pilot_of(frames[i])->look(places, [&](const Look& look) { return look.knows(best->method); });
-    i = std::size_t(-1);  // the best way may be another one now
+    i = std::size_t(-1);  // the best way may have changed
   }
   return looks;
 }
 
-/// Joins what the looked frames ask for.
+/// Joins the needs of the measured frames.
 void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
   for (const Look& look : looks) { d.photon_paths = std::max(d.photon_paths, look.paths); }
   const std::vector<Way> ways = joined_ways(looks);
@@ -194,11 +194,11 @@ void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
       wish.split == "auto" ? pilot.split() : SplitChoice{wish.split == "on", "--split " + wish.split};
   if (wish.split == "on" && wish.moving == "records")
     throw InputError(
-        "--split on with --moving records: records that follow from those of what stands know no bright points; use "
+        "--split on with --moving records: records that follow from static records have no bright points; use "
         "--moving time or anew");
   d.split = choice.split && d.moving != MovingMethod::records;
   d.reasons.push_back(
-      {"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
+      {"photonmap-split", choice.split && !d.split ? "records follow from static records" : choice.because});
 }
 
 /// Number of pictures that share records. Joint records must cost at most twice one picture's own records, so that a
@@ -248,7 +248,7 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   d.reasons.push_back({"ibr-warp", because});
 }
 
-/// For light textures: the number of light paths that give the wanted photons, the width of the filter.
+/// For light textures: the number of light paths that stores the wanted photons, and the width of the filter.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
@@ -276,7 +276,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
     if (light(i) == light(i - 1)) continue;
     const bool stood = i >= 2 && light(i - 1) == light(i - 2),
                stays = i + 1 < segment.frames.size() && light(i) == light(i + 1);
-    if (!stood && !stays) continue;  // something begins or ends to move
+    if (!stood && !stays) continue;  // something begins to move or comes to rest
     events += looked.insert(segment.frames[i].frame).second;
   }
   std::set<int> pictures;
@@ -297,7 +297,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, static_tree);
     look_around(tracer, frame.camera(source.camera_node), width, height, seen);
-    // With lamps only, photons are not aimed, and in a room points are everywhere: one look suffices.
+    // With lamps only, photons are not aimed, and in a room points lie on all surfaces: the first picture decides.
     if (picture == segment.first && !from_afar && spheres_around(seen.places, radius).empty()) return "";
   }
   const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);

@@ -13,7 +13,7 @@
 
 namespace tempolux {
 
-/// Gives pilots the scene.
+/// Supplies the scene to pilots.
 struct SceneSource {
   /// The scene at a frame inside the animation; without media if `with_media` is false.
   std::function<SceneFrame(int frame, bool with_media)> at;
@@ -21,8 +21,9 @@ struct SceneSource {
   int camera_node = 0;
 };
 
-/// Frames of a segment for which pilots run: the first, the middle and the last one, and up to four at which something
-/// begins or ends to move. A frame that shows the same picture as an earlier one is left out. Ascending.
+/// Frames of a segment for which pilots run: the first, the middle and the last one, and up to four at which
+/// something begins to move or comes to rest. A frame that shows the same picture as an earlier one is left out.
+/// Ascending.
 std::vector<int> looked_frames(const PlannedSegment& segment);
 
 /// Makes the decisions of one segment. Each looked frame has its own pilot. Kinds of light are the union over the

@@ -20,7 +20,7 @@ inline constexpr const char* kQualities[] = {"draft", "final"};
 enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview };
 inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview"};
 
-/// The value that has this name in a list of names by value; none: it is none of them.
+/// The enumerator with this name, in a list of names by value; empty if no enumerator has it.
 template <class Enum, std::size_t n>
 std::optional<Enum> named(const char* const (&names)[n], const std::string& name) {
   const auto found = std::ranges::find(names, name);
@@ -51,7 +51,7 @@ struct Wish {
   double pixel_error = 0;         ///< 0: from the preset
   std::string points, records,
       pixels;  ///< options of irradcache-build points and records, and of frame-render; "": from the preset
-  bool preset_pixels = false;  ///< `pixels` are the preset's, without --pixel-error: Decisions has it
+  bool preset_pixels = false;  ///< `pixels` holds the preset's options without --pixel-error, which is in Decisions
   std::string channels = "RGBA,Z,N,id";
   bool textures = false;  ///< SURFACES=textures: light textures give the indirect light in smoke
   std::string smoke_words;
@@ -60,7 +60,7 @@ struct Wish {
   std::string strategy = "census";   ///< which groups: photon-trace --strategy
   int key_distance = 16;             ///< frames between the first keys of a walkthrough
   std::map<int, Measured> measured;  ///< photons of segments, by their first frame
-  /// An interval of a walkthrough is halved if a viewer sees errors (AQM) in a larger share of its pixels.
+  /// Share of pixels: an interval of a walkthrough is halved if a viewer sees errors (AQM) in a larger share.
   double threshold = 0.05;
   int reference_samples = 64;  ///< samples per pixel of a report's reference
   std::vector<int> report;     ///< frames that are compared with path tracing

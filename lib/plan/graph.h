@@ -1,8 +1,8 @@
 // lib/plan/graph.h -- the files that a plan needs, and the inputs of each.
 //
-// A file's name ends in a key: a hash of the program, its options, the scene's states that the file depends on, and the
-// names of its inputs, which end in keys themselves. So an existing file of the wanted name is right, whatever else the
-// folder holds and whatever machines' clocks say.
+// A file's name ends in a key: a hash of the program, its options, the scene's states that the file depends on, and
+// the names of its inputs, which end in keys themselves. So an existing file with the wanted name has the right
+// content. Other files in the folder and file times do not matter.
 #pragma once
 
 #include <functional>
@@ -55,14 +55,15 @@ using MajorantsText = std::function<std::string(int first, int last)>;
 /// `wish` is complete (with_preset). Throws InputError for wishes that exclude each other.
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants);
 
-/// Further frames whose segments the graph needs: windows of the filter, keys of a walkthrough, and their neighbours if
-/// pictures hold motion.
+/// Frames that the graph needs besides `frames`, and whose segments must be planned: windows of the filter, keys of a
+/// walkthrough, and the neighbours of both if pictures hold motion.
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish);
 
-/// "photons/0012-3fa94c21d0" for "photons/0012-3fa94c21d0.photons"; the same with another extension; the digits of a
-/// key, 40 bits: among 10 000 files two keys are equal by chance once in 20 000 plans.
+/// A file's name without its extension: "photons/0012-3fa94c21d0" for "photons/0012-3fa94c21d0.photons".
 std::string stem_of(const std::string& name);
+/// The same name with another extension.
 std::string beside(const std::string& name, const std::string& extension);
+/// The digits of a key: 40 bits of the hash. Among 10 000 files two keys are equal by chance once in 20 000 plans.
 std::string key_of(const std::string& hash);
 /// A frame number as in file names: at least four digits.
 std::string frame_digits(int frame);

@@ -1,5 +1,5 @@
-// lib/plan/graph_builder.h -- a graph in the making. Each function asks for the files that its file is made from, so
-// the graph holds what the pictures need and nothing else.
+// lib/plan/graph_builder.h -- builds a graph. Each function adds one file and the files that it is made from, so the
+// graph holds what the pictures need and nothing else.
 #pragma once
 
 #include <functional>
@@ -32,14 +32,14 @@ struct GraphBuilder {
   const Wish& wish;
   const ToolHash& tool_hash;
   const MajorantsText& majorants;
-  std::string size;  ///< option of all commands that draw or place for pictures
+  std::string size;  ///< the option --size, for all commands that render or place records for pictures
   Graph graph = {};
-  std::map<std::string, std::string> names = {};  ///< of once()
+  std::map<std::string, std::string> names = {};  ///< results of once(), by key
 
   const PlannedSegment& segment(int frame) const { return plan.segment_of(frame); }
   const Decisions& decided(int frame) const { return segment(frame).decisions; }
   const PlannedFrame& state(int frame) const { return segment(frame).at(frame); }
-  int clamped(int frame) const;  ///< to the animation
+  int clamped(int frame) const;  ///< the closest frame of the animation
   bool preview() const { return wish.method == FrameMethod::preview; }
 
   /// The beginning of a command that depends on the light of a frame.
@@ -52,7 +52,7 @@ struct GraphBuilder {
   std::string add(const StageInfo& stage, int frame, const Command& command,
                   const std::vector<std::string>& beside_extensions = {});
   std::string add_state(const char* concern, int first, const std::string& content);
-  /// The name that `make` returns, which is called for the first of equal keys only.
+  /// The name that `make` returns. `make` is called only the first time that a key comes up.
   std::string once(const std::string& key, const std::function<std::string()>& make);
 };
 
@@ -61,7 +61,7 @@ bool has_word(const std::string& words, const std::string& word);
 bool has_channel(const std::string& channels, const std::string& name);
 /// Adds the channels of `more` that are missing.
 std::string with_channels(std::string channels, const std::string& more);
-/// "3,4,7"
+/// The frames as text: "3,4,7".
 std::string joined(const std::vector<int>& frames);
 
 // light_files.cpp; `lit` is the first frame of a state of light.
@@ -83,10 +83,10 @@ std::string filtered_picture(GraphBuilder& g, int frame, const std::string& chan
 /// Channels of a raw frame from which these filtered channels are made. A window of several frames needs the motion
 /// between them.
 std::string raw_channels(const Wish& wish, const std::string& filtered);
-/// Options of a frame's pixels.
+/// The options of a frame's pixels.
 std::string pixels_of(const GraphBuilder& g, int frame);
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels);
-/// With the channel motion, a hash of the positions and cameras in a frame and its neighbours.
+/// A hash of the positions and cameras in a frame and its neighbours if `channels` has motion; else "".
 std::string in_motion(const GraphBuilder& g, int frame, const std::string& channels);
 /// The first frame of the segment with the same picture; with the channel motion its neighbours must be the same, too.
 /// At the ends of the segment only the frame itself qualifies, whatever frames are asked for.

@@ -164,8 +164,8 @@ std::string textures(GraphBuilder& g, int lit) {
 }
 
 constexpr int kReach = kPreviewWindow / 2;
-/// Photons of a frame: a map of its own even if other frames have the same light, so that windows collect different
-/// photons. A segment with one state of light has as many maps as a window.
+/// The photon map of a frame of a preview. Each frame has its own map even if other frames have the same light, so
+/// that windows collect different photons. A segment with one state of light has as many maps as a window has frames.
 std::string preview_photons(GraphBuilder& g, int frame, bool still) {
   const Decisions& d = g.decided(frame);
   Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, g.state(frame).light};

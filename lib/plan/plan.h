@@ -58,7 +58,7 @@ struct Plan {
   TimeOptions time;
   std::vector<int> frames;   ///< the frames asked for, in that order, each once
   std::map<int, int> shows;  ///< for each frame asked for: the frame itself, or the closest frame of the animation
-  int last_frame = 0;        ///< of the animation; later frames are the same. Large without animation
+  int last_frame = 0;        ///< last frame of the animation; without animation a very large number
   std::vector<PlannedSegment> segments;  ///< by first frame
   bool media = false;                    ///< true if the scene has media
   std::vector<std::string> warnings;

@@ -13,7 +13,7 @@ namespace tempolux {
 
 using Json = nlohmann::ordered_json;
 
-// How the parts of Decisions stand in JSON: methods by their names, reasons as an object by stage.
+// The form of parts of Decisions in JSON: methods by their names, reasons as an object by stage.
 void to_json(Json& json, IndirectMethod method) { json = kIndirectMethods[std::size_t(method)]; }
 void to_json(Json& json, MovingMethod method) { json = kMovingMethods[std::size_t(method)]; }
 void from_json(const Json& json, IndirectMethod& method) {
@@ -77,7 +77,7 @@ Json segment_json(const PlannedSegment& segment) {
   return json;
 }
 
-/// The stages: whether each makes any file, and the first segment's reason.
+/// The stages of the pipeline: whether each makes any file, and the first segment's reason.
 Json stages_json(const Plan& plan, const Graph& graph) {
   std::map<std::string, std::size_t> files;
   for (const GraphFile& file : graph.files) ++files[file.stage];
@@ -99,8 +99,8 @@ std::string words_of(const std::vector<std::string>& names) {
 
 std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
 
-/// What a file with a plain name waits for. `marker` in shown/ says what it shows now: if the marker is missing the
-/// file is made anew, if the file is missing it comes back (stages.mk has both rules).
+/// The inputs of a file with a plain name. Its `marker` in shown/ names the content that the file shows now. If the
+/// marker is missing the file is made anew; if the file is missing it is restored (stages.mk has both rules).
 std::string shown_lines(const std::string& name, const std::string& marker, const std::string& inputs) {
   return "shown/" + marker + ": | " + inputs + "\n" + name + ": | shown/" + marker + " " + inputs + "\n";
 }
@@ -174,7 +174,7 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
 }
 
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
-  std::string text = "# Written by scene-plan; formats/plan/plan.md says what stands here.\n";
+  std::string text = "# Written by scene-plan; format: formats/plan/plan.md.\n";
   std::string passing;
   std::string kept;  // stats of records kept over time, for the report
   for (const GraphFile& file : graph.files) {

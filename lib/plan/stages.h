@@ -57,8 +57,8 @@ inline constexpr std::array kStages{
     stage::walked,         stage::raw,     stage::filtered,      stage::pictures, stage::smoke,
     stage::reference,      stage::error};
 
-/// Fills in what the wish leaves open; all presets are defined here. draft is coarser and takes less than half of the
-/// time of final.
+/// Fills in the values that the wish leaves open; all presets are defined here. draft is coarser than final and takes
+/// less than half of its time.
 Wish with_preset(Wish wish);
 
 }  // namespace tempolux

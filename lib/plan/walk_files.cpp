@@ -13,8 +13,8 @@ struct Interval {
   int middle() const { return first + (last - first) / 2; }
 };
 
-/// Keys and what lies between them show the same light, so that no light is carried into a frame that does not have
-/// it.
+/// True if the keys of an interval and the frames between them show the same light. Otherwise warping would carry
+/// light into a frame that does not have it.
 bool same_light(const GraphBuilder& g, const Interval& interval) {
   for (int f = interval.first; f <= interval.last; ++f)
     if (g.state(f).light != g.state(interval.first).light) return false;
@@ -29,8 +29,9 @@ std::string key_picture(GraphBuilder& g, int frame) {
   return g.add(stage::keys, frame, frame_command(g, frame, pixels_of(g, frame), channels));
 }
 
-/// The interval of equal light between first keys that strictly holds a frame; false: the frame is a key. Intervals
-/// start at fixed multiples; an interval whose light changes is halved until it does not.
+/// Finds the interval of equal light between first keys that strictly holds a frame; false: the frame is a key.
+/// Intervals start at fixed multiples of the key distance; an interval whose light changes is halved until the light
+/// does not.
 bool interval_around(const GraphBuilder& g, int frame, Interval& interval) {
   const int first = frame - frame % g.wish.key_distance;
   interval = {first, g.clamped(first + g.wish.key_distance)};

@@ -65,8 +65,8 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const InfluenceField field(cache.standing, influences, input.influence);
   const MovingObjects moving(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
-  // E_y is blended with the share f, so its squared error counts by f^2. With the share f of the rays the error in the
-  // picture is at most the error of all rays where f is 1.
+  // E_y is blended with the share f, so its squared error counts by f^2. With f times the rays this error is 1 / f
+  // times as large. In the picture it is f times, so at most once, the error of a record with all rays.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
                               const float share =
                                   rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);

@@ -11,13 +11,13 @@ namespace tempolux {
 namespace {
 
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
-constexpr double kFewestRays = 64;  ///< of a record: with fewer its distances say too little of how far it holds
+constexpr double kFewestRays = 64;  ///< per record: distances along fewer rays do not determine a record's radius
 constexpr double kLeastError = 1e-12;
-/// Squared error of a raw frame over that of the filtered one, where no records carry the light: geometric mean of
-/// seven scenes (docs/pixels.md).
+/// Squared error of a raw frame over that of the filtered frame, for ways without records: geometric mean of seven
+/// scenes (docs/pixels.md).
 constexpr double kFilterGain = 2.4;
 
-/// What n samples leave of light that photons show and paths do not meet: at most all.
+/// Squared error that n samples leave of light that photons show and paths do not meet; at most all of the light.
 double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
 
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {

@@ -1,5 +1,5 @@
-// lib/render/choose_light.h -- by which way a frame's light is found, and how much work goes where: what costs least
-// for the error.
+// lib/render/choose_light.h -- chooses the way to light of a frame, and the work for each part: the least work for
+// the error.
 #pragma once
 
 #include <cstdint>
@@ -10,47 +10,51 @@
 
 namespace tempolux {
 
-/// How the light that surfaces send each other is found: by records between pixels, by one ray of the hemisphere for
-/// each sample of a pixel, which ends at irradiance points, or by paths that end nowhere but in the dark.
+/// How a frame finds the light that surfaces send each other. records: pixels interpolate between records. gather:
+/// each sample of a pixel sends one gather ray, which ends at irradiance points. paths: camera paths, which end only
+/// where they meet no light.
 enum class IndirectMethod : std::uint8_t { records, gather, paths };
 inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"};
 
-/// What is to be rendered: one picture, as if no other shared its light.
+/// The picture to be rendered, as if no other picture shared its light.
 struct Order {
-  double pixels = 0;                ///< of a picture
-  std::uint64_t photons = 700'000;  ///< paths of light
-  int rays = 500;                   ///< of a record at most
+  double pixels = 0;                ///< number of pixels of the picture
+  std::uint64_t photons = 700'000;  ///< light paths of the photon map
+  int rays = 500;                   ///< most gather rays per record
   bool filtered = true;             ///< lib/filter reduces the noise of samples
 };
 
-/// One way to a frame's light.
+/// A way to light, with its estimated work and error.
 struct Way {
   IndirectMethod method = IndirectMethod::paths;
-  bool map = false;        ///< caustic light where the eye looks is read from photons; else paths find it
-  int rays = 0;            ///< of a record
-  double work = 0;         ///< shadow rays, for a picture
-  double error = 0;        ///< squared, mean over the pixels, as SampleEffort has it
-  double pixel_error = 1;  ///< of frames, so that their samples leave the error that all ways have alike: of the wish
-  bool measured = true;    ///< or the least that work and error can be
+  bool map = false;        ///< visible caustic light is read from photons; else camera paths find it
+  int rays = 0;            ///< gather rays per record
+  double work = 0;         ///< shadow rays, for the whole picture
+  double error = 0;        ///< squared error, mean over the pixels, in the unit of SampleEffort
+  double pixel_error = 1;  ///< factor for the wish's pixel error, so that samples leave the error that all ways share
+  bool measured = true;    ///< false: work and error are lower bounds
   double score() const { return work * error; }
 };
 
-/// All ways, the best one first: the least work x squared error. With n samples a pixel, c work for each, V their
-/// variance, and M records of k rays, e / k their squared error, g the work for a ray:
+/// All ways, the best one first: the one with the least work x squared error. Let a pixel take n samples, each of
+/// work c and variance V. Let the frame have M records of k rays; a ray costs the work g, and a record has the
+/// squared error e / k. P is the number of pixels. Then
 ///
-///     work = fixed + P c n + M g k,   error = E / G + e / k + what stays wrong,   n = V / E
+///     work = fixed + P c n + M g k,   error = E / G + e / k + B,   n = V / E
 ///
-/// E is what the wish leaves of light that all ways find alike. G is what the filter makes of the noise of samples: a
-/// pixel's noise is independent of its neighbours', a record's error is not, so the filter leaves e / k as it is. Least
-/// for k = sqrt(e (fixed + P c n) / (M g (E / G + what stays wrong))): so work goes to records in proportion to the
-/// root of error x cost, as to samples. Wrong stay caustics by a density of photons, and light that photons show and
-/// paths do not meet.
+/// E is the squared error that the wish allows for the light that all ways sample alike. G is the factor by which the
+/// filter reduces the noise of samples. The filter does not reduce e / k, because the errors of neighbouring pixels
+/// that share a record are equal. B is the error that does not fall with work: of caustic light by a density of
+/// photons, and of light that photons show and paths do not meet. The product is least for
+///
+///     k = sqrt(e (fixed + P c n) / (M g (E / G + B)))
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
-/// The same for several frames together: of each way the work and the error of all, and the most rays.
+/// The ways for several frames together: for each way the sums of work and error over the frames, the largest number
+/// of rays and the smallest pixel error.
 std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames);
 
-/// Why the first of them is.
+/// The reason for the first way, as text: the score of each way as a multiple of the least.
 std::string because(const std::vector<Way>& ways);
 
 }  // namespace tempolux

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kPaths = 1 << 15;  ///< light paths of the pilot
 constexpr double kMostPaths = 16;          ///< largest number of paths, in multiples of the number of photons asked for
 
-/// Candidates: photons under the Gaussian, in steps of two in its width.
+/// Candidates for the number of photons under the Gaussian. From one to the next the Gaussian's width doubles.
 constexpr std::array<double, 5> kKernels{64, 256, 1024, 4096, 16384};
 constexpr std::size_t kWeights = 2;  ///< index of the candidate by which errors are weighted
 

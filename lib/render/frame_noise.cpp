@@ -142,7 +142,7 @@ namespace {
 /// Sums over pixels and channels of a layer.
 struct ShareSums {
   double variance = 0, square = 0, fourth = 0;
-  /// Effective number of pixels: how many equal ones would give the same uncertainty.
+  /// Effective number of pixels: the number of equal pixels that would give the same uncertainty.
   double count() const { return fourth > 0 ? square * square / fourth : 0; }
 };
 

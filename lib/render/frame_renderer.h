@@ -28,8 +28,8 @@ struct FrameOptions {
   /// True if lib/filter will filter the frame: pixel_error then considers only the noise that the filter does not
   /// remove, which is that of the layer specular.
   bool for_filter = false;
-  /// With pixel_error: spread light that a single sample found over the pixels around, of a masked frame over those of
-  /// the mask (lib/render/spread_outliers.h).
+  /// With pixel_error: spreads light that a single sample found over the pixels around. In a masked frame only pixels
+  /// of the mask receive it (lib/render/spread_outliers.h).
   bool spread_outliers = false;
   bool sample_halves = false;            ///< keep LayerImage::sample_halves
   const KnownLight* known = nullptr;     ///< light at which camera paths may end

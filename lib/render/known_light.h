@@ -25,21 +25,22 @@ class KnownLight {
   const PointLookup* points = nullptr;        ///< light of all kinds at the hits of rays that start at a Lambert lobe
   /// Caustic light; also indirect light if the map holds this kind and there are no records.
   const PhotonLight* photons = nullptr;
-  /// Those of `points` that are sampled explicitly at places without a record. Rays from such a place bring the
-  /// remaining light.
+  /// The bright points among `points`; places without a record sample them explicitly. Rays from such a place
+  /// contribute the remaining light.
   const BrightPoints* bright = nullptr;
   int bright_samples = 4;  ///< explicit samples at the first such place of a camera path; later places take one each
   /// Can a ray meet a light, that is, is there an environment or an emitting surface? If not, and indirect and caustic
   /// light are known at a place, no ray is sent from its Lambert lobe: the ray would find nothing.
   bool lights_are_met = true;
-  /// Do camera paths fork at the first surface with a Lambert lobe and a glossy lobe, to follow both? The glossy lobe
-  /// usually reflects 4 %: without a fork one path in 25 follows it, and a bright hit of this path makes a dot. If no
+  /// Do camera paths fork at the first surface with two lobes (a Lambert lobe under gloss, or the reflection and the
+  /// transmission of smooth glass), to follow both? Gloss and glass usually reflect 4 %: without a fork one path in 25
+  /// follows the reflection. A bright hit of this path makes a bright dot, and before a bright sky a dark one. If no
   /// light is known, both branches are whole paths, and a fork costs as much as it gains.
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 
-  /// Indirect irradiance at the first Lambert lobe of a camera path. Both normals are unit vectors on the side that is
-  /// seen. Empty where no record is valid: a gather ray must then estimate the light.
-  /// noise: also receives that of the records (RecordStore::Interpolated::noise).
+  /// Indirect irradiance [W/m^2] at the first Lambert lobe of a camera path. Both normals are unit vectors on the
+  /// side that is seen. Empty where no record is valid: a gather ray must then estimate the light. `noise` also
+  /// receives the noise of the records (RecordStore::Interpolated::noise).
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise = nullptr) const;
   bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
   /// Caustic irradiance; call only if has_caustic(). 0 if indirect() includes caustic light.

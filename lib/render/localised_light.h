@@ -13,9 +13,10 @@ namespace tempolux {
 
 /// Indirect irradiance [W/m^2] of a frame by localised gathering:
 ///     E = f E_y + (1 - f) E_t
-/// E_y is interpolated between records gathered for the frame. E_t is interpolated between static records, whose
-/// irradiance includes the changes by movers and whose gradients are those of the static irradiance; E_t is cut at 0. f
-/// is the gathered share for the influence at the place, and 1 on movers. Method: docs/methods/dynamic.md. Thread-safe.
+/// E_y is interpolated between records gathered for the frame. E_t is interpolated between static records: their
+/// irradiance includes the changes by movers, their gradients are those of the static irradiance, and negative sums
+/// are clamped to 0. f is the gathered share for the influence at the place, and 1 on movers. Method:
+/// docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
   /// changes[i] belongs to static_records[i]. least_cosine: the smallest cosine between normals for which a record of

@@ -35,7 +35,7 @@ struct PathState {
   bool specular = false;        ///< the path has had events S since
   /// Bright points were sampled explicitly there: a Lambert lobe that the path meets contributes only the rest.
   bool bright_sampled = false;
-  /// m: the distance from a Lambert lobe at which rays would have spread as far. Equal to the path's length since the
+  /// m: a ray from a Lambert lobe would have spread as far after this distance. Equal to the path's length since the
   /// last event D; 0 if the path has met only smooth mirrors and glass.
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
@@ -60,11 +60,12 @@ struct Vertex {
   bool forks = false;         ///< both lobes are followed
   float times_diffuse = 1, times_specular = 1;  ///< probability of a lobe over the Bsdf's, if the path forks
 
-  /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
-  void fork(float diffuse_probability) {
+  /// probability: Bsdf::fork_probability, in (0, 1). At glass times_diffuse is the reflection's factor and
+  /// times_specular that of the transmission.
+  void fork(float probability) {
     forks = true;
-    times_diffuse = 1 / diffuse_probability;
-    times_specular = 1 / (1 - diffuse_probability);
+    times_diffuse = 1 / probability;
+    times_specular = 1 / (1 - probability);
   }
 };
 
@@ -317,7 +318,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
   // The layer indirect, or the layer of the surface that the path has seen before.
   const Layer layer = path.after(true).after(true).layer();
-  // With bright points, a point's irradiance stands for the remaining light only. A glossy ray has not sampled bright
+  // With bright points, a point's irradiance represents only the remaining light. A glossy ray has not sampled bright
   // points, so the path continues.
   if (state.matte || (state.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::PointLight> stored =
@@ -391,7 +392,7 @@ bool EyeTracer::step(PathState& state) const {
   Vertex at{x, material, only_specular, only_specular, only_specular};
   if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
-    at.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+    at.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   add_light(at, state);
   return !(at.direct_known && !x.bsdf.has_specular()) && leave(at, state);
 }

@@ -150,27 +150,30 @@ struct RenderScene {
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 
-/// Radiance along a camera ray, by layer: path tracing with light sampling and scattering joined by the power heuristic
-/// [Veach 1997, 9.2], Russian roulette after three bounces, no clamping and no depth limit. Unbiased without `known`.
+/// Radiance along a camera ray, by layer: path tracing with light sampling and scattering joined by the power
+/// heuristic [Veach 1997, 9.2], Russian roulette after three bounces, no clamping and no depth limit. Unbiased
+/// without `known`.
 ///
-/// With `known`, a path ends where the light is known; the result has the bias of that light, and nothing is counted
+/// With `known`, a path ends where the light is known. The result has the bias of that light, and no light is counted
 /// twice:
 /// - At the first Lambert lobe x, caustic light is that of photons, if there are any. Light that the path meets by
-///   events S after x is then not added.
-/// - Indirect light at x is that of records. The path still continues to its next hit, because that ray is joined with
-///   light sampling by MIS, and by events S if caustic light is not known.
+/// events S after x is then not added.
+/// - Indirect light at x is that of records. The path still continues to its next hit, because that ray is joined
+/// with light sampling by MIS; it continues by events S if caustic light is not known.
 /// - Where no record is valid, the ray ends at a hit that a point represents, or continues as a path.
 ///
 /// An unlit material shows its base colour to the camera, directly and by events S; it lights and scatters nothing.
-/// In media (SceneFrame::media) paths fly by null collisions and take one light sample at each collision. With `known`,
-/// the camera ray is attenuated exactly, and volume-compose adds the light that media scatter towards it; after an
-/// event S media scatter as without `known`. Light that media scatter to a matte surface is part of its indirect light.
+/// In media (SceneFrame::media) paths move by null collisions and take one light sample at each collision. With
+/// `known`, the camera ray is attenuated exactly, and volume-compose adds the light that media scatter towards it;
+/// after an event S media scatter as without `known`. Light that media scatter to a matte surface is part of its
+/// indirect light.
 ///
 /// `cone` is the pixel's cone, for the level of textures (CameraView::cone); the default reads the finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const KnownLight* known, RayCounts& counts, RayCone cone = {});
-/// Radiance by parts along a ray whose first hit is known (surface kNone: it meets nothing). MIS weights are those of
-/// one sample of each part, whatever `effort` is: so each part divided by its number of samples is correct by itself.
+/// Radiance by parts along a ray whose first hit is known (surface kNone: the ray meets no surface). MIS weights are
+/// those of one sample of each part, whatever `effort` is, so each part divided by its number of samples is correct
+/// alone.
 PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
                          const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort);
 

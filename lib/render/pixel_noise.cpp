@@ -92,10 +92,10 @@ void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) co
     }
 }
 
-/// Variance of light that has edges: the variance of the neighbours' samples, and a share of the variance between
-/// neighbours above what their samples explain. If neighbours agree in themselves but differ from each other, an edge
-/// may run through this pixel alone, such as the rim of a lamp that just reaches into a row of dark pixels, and the
-/// pixel's first samples may miss the bright part or find too much of it.
+/// Variance of light that has edges: the variance of the neighbours' samples, plus a share of the variance between
+/// neighbours that their samples do not explain. If each neighbour's samples agree but neighbours differ, an edge may
+/// run through this pixel alone: for example the rim of a lamp that just reaches into a row of dark pixels. The
+/// pixel's first samples may then miss the bright part or overestimate it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_neighbour(x, y, kNearSharp, [&](const Pixel& pixel, int, int) {
@@ -126,11 +126,11 @@ struct PixelNoise::Around {
   }
 };
 
-/// Decides on each part separately. Light sampling: from the difference of pixels' halves, which includes the gain by
-/// stratification; with single samples from the variance between pixels. Rays onward: from the variance of samples,
-/// because few of them meet bright things. Each variance is the mean of the variance of close pixels and that of
-/// farther pixels: if one sample in 12 finds a window, all 96 samples of the close pixels miss the window in one place
-/// of 4000, and that place would stay dark.
+/// Decides on each part separately. The variance of light sampling comes from the difference of the pixels' halves,
+/// which includes the gain by stratification; with single samples it is the variance between pixels. The variance of
+/// rays onward is that of single samples, because few of them meet bright surfaces. Each is the mean of the variance
+/// of close pixels and that of farther pixels: if one sample in 12 finds a window, all 96 samples of the close pixels
+/// miss the window in one place of 4000, and that place would stay dark.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   Around near, wide;

@@ -59,10 +59,11 @@ class PixelNoise {
     double onward = 0, onward_variance = 0;
     float onward_rays = 0;  ///< rays of one sample of the part onward
   };
-  /// About so many pixels: their mean errs by 1 % if single pixels differ by 60 %.
+  /// Approximate number of lattice pixels: their mean has an error of 1 % if single pixels differ by 60 %.
   static constexpr double kOnLattice = 4096;
-  // Radii in pixels: noise is estimated from the 24 pixels around and from the 80 pixels around; light with edges from
-  // 8 pixels, because edges are narrow and all pixels that see one pay for it.
+  // Radii in pixels. Noise is estimated from the 24 pixels and from the 80 pixels around a pixel. For light with
+  // edges it is estimated from 8 pixels, because edges are narrow and all pixels that see an edge take further
+  // samples.
   static constexpr int kNear = 2, kWide = 4, kNearSharp = 1;
   struct Around;
 

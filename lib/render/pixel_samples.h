@@ -140,16 +140,16 @@ class Dealt {
   Vec2 offset_;
 };
 
-/// What samples of pixels are taken of.
+/// The camera, scene and options from which samples of pixels are taken.
 struct CameraSampler {
   const RenderScene& scene;
   const CameraView& view;
   const FrameOptions& options;
 };
 
-/// A pixel, and the samples of it that one pass takes: `count`, which continue its sequences after `first`. The first
-/// half of a pass belongs to one half of the pixel's samples, the second half to the other; each is stratified nearly
-/// as well as a pass of its size can be.
+/// A pixel and the samples that one pass takes of it: `count` samples, which continue the pixel's sequences after
+/// `first`. The first half of a pass belongs to one half of the pixel's samples, the second half to the other. Each
+/// half is stratified nearly as well as a pass of its size can be.
 struct PixelPass {
   std::size_t pixel;
   int x, y;

@@ -24,19 +24,20 @@ namespace tempolux {
 namespace {
 
 constexpr int kSamples = 4;
-constexpr double kFirst = 4;               ///< samples of a pixel of a frame, at least
+constexpr double kFirst = 4;               ///< fewest samples of a pixel of a frame
 constexpr int kRecords = 64;               ///< places with two records each
-constexpr int kColumns = 16, kRows = 9;    ///< of the picture, in whose parts the level of light is known
-constexpr std::uint64_t kPaths = 1 << 15;  ///< of light
-constexpr std::uint32_t kPoints = 500;     ///< of a side
-constexpr int kRays = 62;                  ///< of a rough record
-/// Pixels that are looked at for records: in a tenth of a second. Of a larger picture those of a lattice.
+constexpr int kColumns = 16, kRows = 9;    ///< parts of the picture; each part has its own allowed error
+constexpr std::uint64_t kPaths = 1 << 15;  ///< light paths
+constexpr std::uint32_t kPoints = 500;     ///< irradiance points per side
+constexpr int kRays = 62;                  ///< gather rays of a rough record
+/// Number of pixels at which the need for records is tested, in a tenth of a second. In a larger picture they form a
+/// lattice.
 constexpr double kLooks = 320 * 180;
 constexpr double kSure = 3;  ///< standard errors
 constexpr double kMapError2 =
     1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
 
-/// Light of one sample, mean of channels.
+/// Light of one sample [W/m^2/sr], mean of the channels.
 struct Sample {
   double other = 0, caustic = 0, indirect = 0;
   double sum() const { return other + caustic + indirect; }
@@ -66,7 +67,7 @@ Where where(int i, const CameraView& view, std::uint64_t seed) {
       std::size_t(std::min(kRows - 1, int(at.y * kRows)) * kColumns + std::min(kColumns - 1, int(at.x * kColumns)))};
 }
 
-/// Samples of all places, and the rays of all.
+/// Samples of all places; `counts` receives the rays of all of them.
 Samples take_samples(const RenderScene& scene, const CameraView& view, const KnownLight* known,
                      const RoughOptions& options, RayCounts& counts) {
   const std::uint64_t seed = options.seed;
@@ -87,7 +88,7 @@ Samples take_samples(const RenderScene& scene, const CameraView& view, const Kno
   return samples;
 }
 
-/// Of a sample.
+/// Work of one sample, in shadow rays.
 double work_of(const RayCounts& counts, const Samples& samples) {
   return (Work::kRay * double(counts.camera + counts.bounce) + double(counts.shadow) + double(counts.points_read)) /
          (kSamples * double(samples.size()));
@@ -100,10 +101,10 @@ double mean_of(const Samples& samples, const std::function<double(const Sample&)
   return sum / (kSamples * double(samples.size()));
 }
 
-/// What pixels show in the parts of the picture, and so what errors count there.
+/// Radiance in the parts of the picture, from which the allowed errors follow.
 struct Levels {
-  std::vector<std::size_t> part;  ///< by place
-  std::vector<double> allowed;    ///< by part: of pixel error 1
+  std::vector<std::size_t> part;  ///< part of each place
+  std::vector<double> allowed;    ///< by part: the allowed error at pixel error 1
   double picture = 0, white = 0;
 
   Levels(const Samples& samples, const CameraView& view, std::uint64_t seed) : allowed(kColumns * kRows) {
@@ -122,8 +123,8 @@ struct Levels {
 
 using PartOfLight = std::function<double(const Sample&)>;
 
-/// By part of the picture the variance of some of the light, over what a pixel may err by, squared. Of samples of which
-/// `times` make a pixel.
+/// For each part of the picture, the variance of a sample of some of the light, divided by the square of the allowed
+/// error. A sample counts at most as much as makes a pixel of `times` samples white.
 std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
   std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -141,8 +142,8 @@ std::vector<double> variances(const Samples& samples, const Levels& levels, doub
   return sum;
 }
 
-/// Samples go where noise is: n a pixel in the mean, in proportion to the root of each part's variance, leave (mean
-/// root)^2 / n.
+/// The variance that n adaptive samples per pixel divide by n. A frame takes samples in proportion to the root of
+/// each part's variance, which leaves (mean root)^2 / n.
 double adaptive(const std::vector<double>& variances) {
   double roots = 0;
   for (const double variance : variances) roots += std::sqrt(variance) / double(variances.size());
@@ -155,9 +156,9 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
           of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
 }
 
-/// Samples that the wish asks for, and the error that they leave of all light but layer indirect.
+/// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
 void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
-  constexpr double kWholeSample = 4;  // shadow rays, as wanted_samples has it
+  constexpr double kWholeSample = 4;  // shadow rays, as in pixel_noise.cpp
   for (const double variance :
        variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
@@ -167,10 +168,11 @@ void ask(const Samples& samples, const Levels& levels, double pixel_error, Rough
   rough.wanted = std::max(rough.wanted, pixel_error * pixel_error);
 }
 
-/// The files that a frame would read, made roughly.
+/// A rough version of the files that a frame would read.
 class RoughLight {
  public:
-  /// paths: of the map that a frame would read, whose estimates of density are narrower: as many hits are then near.
+  /// paths: number of light paths of the frame's map. Its density estimates are narrower than those of the pilot's
+  /// photons, so the radii of the points are reduced: the share of close hits is then that of the frame.
   RoughLight(const RenderScene& scene, formats::PhotonBlock photons, std::uint64_t paths, const RoughOptions& options)
       : photons_(std::move(photons)) {
     PointOptions placing;
@@ -187,7 +189,7 @@ class RoughLight {
     const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
     if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
   }
-  /// Of a frame's samples: as a rule only records sample bright points.
+  /// Known light for samples of pixels. Bright points are left out, because usually only records sample them.
   KnownLight known() const {
     KnownLight known;
     known.points = &*lookup_;
@@ -210,7 +212,7 @@ class RoughLight {
   std::optional<BrightPoints> bright_;
 };
 
-/// What is looked at.
+/// The picture that a rough frame measures.
 struct Picture {
   const RenderScene& scene;
   const CameraView& view;
@@ -225,7 +227,7 @@ struct Pair {
   GatherCounts counts;
 };
 
-/// Where the picture needs records: distances alone say so, their light is not gathered.
+/// Places records where the picture needs them. Distances decide the places, so no light is gathered.
 RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   const PlacementOptions options;
   RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
@@ -252,12 +254,12 @@ RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   return store;
 }
 
-/// Records whose mean has the variance of one over this, by how many are valid at a place. Places are spread evenly
-/// over a record's disc, so its weight w = 1 - d / r has the means 1/3 and, of its square, 1/6: (sum w)^2 / sum w^2 is
-/// 2/3 of their number.
+/// Number of independent records that would give the same variance as the interpolation between `records` valid ones.
+/// Places are uniform over a record's disc, so its weight w = 1 - d / r has the mean 1/3, and w^2 has the mean 1/6:
+/// (sum w)^2 / sum w^2 is 2/3 of the number of records.
 double independent(int records) { return std::max(1.0, 2.0 / 3 * records); }
 
-/// The two have random numbers of their own: half of their squared difference is the variance of one.
+/// Gathers twice with independent random numbers: half of the squared difference is the variance of one record.
 Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathers, const RecordStore& placed,
                  int place) {
   Pair pair;
@@ -301,8 +303,8 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
                        (gathered * kRays);
 }
 
-/// What paths surely miss of the light that photons show. n paths that miss light of radiance c have the variance n c^2
-/// at least (docs/methods/caustics.md).
+/// Light that photons show and that paths miss with certainty. Paths that find light of radiance c only once in n
+/// samples have at least the variance n c^2 (docs/methods/caustics.md).
 MissedLight missed_light(const SeenPhotons& photons, double found, double samples, double allowed2) {
   const double missed = std::max(0.0, photons.mean - found), error = kSure * photons.mean_error;
   const double sure = std::max(0.0, missed * missed - error * error);
@@ -310,7 +312,7 @@ MissedLight missed_light(const SeenPhotons& photons, double found, double sample
   return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
 }
 
-/// By photons: what paths miss, and what a map of caustics would err by.
+/// Compares paths with photons: the light that paths miss, and the error that a map of caustic photons would have.
 void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
   const double allowed2 = picture.levels.picture * picture.levels.picture;
   if (!(allowed2 > 0)) return;
@@ -324,8 +326,8 @@ void compare(const Picture& picture, const PhotonView& photons, const Samples& p
   rough.map_error = kMapError2 * caustics.square / allowed2;
 }
 
-/// The least that gathering and records can cost and err: a camera ray and one onward from what has a Lambert lobe, and
-/// indirect light without any noise.
+/// Sets lower bounds for gathering and records. Work: a camera ray, and one ray onward from each Lambert lobe. Error:
+/// indirect light without noise.
 void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   const double seen = double(rough.places) / options.places;
   rough.gather = rough.path;
@@ -341,8 +343,8 @@ void measure_gathering(const Picture& picture, const RoughLight& light, RoughFra
   const Samples gathered = take_samples(picture.scene, picture.view, &known, picture.options, counts);
   rough.gathered = true;
   rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
-  // Where a record is a ray still goes on from the Lambert lobe: it joins light sampling. It ends at the first thing
-  // that it meets.
+  // A sample that reads a record still sends a ray from the Lambert lobe, because that ray is joined with light
+  // sampling. The ray ends at its first hit.
   const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
   rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
 }

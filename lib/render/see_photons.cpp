@@ -16,7 +16,8 @@ namespace tempolux {
 namespace {
 
 constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture over which the mean square is taken
-/// Of the distance: a camera ray that ends closer to the camera than this does not see the photon's place.
+/// Share of the ray's length: if the hit of a camera ray is farther from the photon than this, the camera does not
+/// see the photon.
 constexpr float kSame = 1e-3f;
 
 /// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) covers; 0 if it cannot be computed.

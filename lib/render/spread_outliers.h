@@ -35,8 +35,8 @@ struct FurtherSamples {
   PathParts mean;
   PartCounts count;
 };
-/// The least number of samples that decides about an outlier. An object that covers a quarter of a pixel is met by one
-/// of four stratified samples, rightly, and by three more of 16.
+/// The least number of samples that decides about an outlier. An object that covers a quarter of a pixel is rightly
+/// met by one of four stratified samples, and then by three of 12 more.
 inline constexpr int kJudges = 16;
 
 /// A picture whose pixels have all their samples. Every span holds width * height elements, top row first.
@@ -55,11 +55,12 @@ struct SampledPixels {
 };
 
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994],
-/// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the pixel's
-/// allowed error, or as much as the pixel's other samples (FurtherSamples included) or the 24 pixels around show in
-/// that layer, whichever is most. The rest is taken out of `pixels` (sums of parts) and spread over so many pixels
-/// around that it is below the allowed error in each. Pixels without a surface (coverage 0) receive none. The sum of a
-/// layer over the picture stays the same up to rounding. Returns the share of the picture's light that was spread.
+/// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the largest of
+/// three values: the error that the pixel may have, the light that the pixel's other samples (FurtherSamples
+/// included) show in that layer, and the light that the 24 pixels around show there. The rest is taken out of
+/// `pixels` (sums of parts) and spread over so many pixels around that it is below the allowed error in each. Pixels
+/// without a surface (coverage 0) receive none. The sum of a layer over the picture stays the same up to rounding.
+/// Returns the share of the picture's light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
 
 /// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.

@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeast = 1.0 / 16;  ///< smaller steps are hidden in the noise of the filtered irradiance
 /// A jump is a step larger than this many times the sum of the neighbouring steps. Where motion starts or ends, one
 /// neighbouring step has the same size, so the start of a motion is no jump.
-constexpr double kStandsOut = 2;
+constexpr double kLeastOverNeighbours = 2;
 constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are compared
 
 /// Power of all lights, without textures, to compare two frames. Unit: W for lights given in W/sr or W/m^2/sr;
@@ -56,7 +56,7 @@ bool jumps(const FramesInARow& f, const Step& step) {
   const double here = step(*f.last, *f.here);
   if (!(here > kLeast)) return false;
   const double around = (f.before_last ? step(*f.before_last, *f.last) : 0) + (f.next ? step(*f.here, *f.next) : 0);
-  return here > kStandsOut * around;
+  return here > kLeastOverNeighbours * around;
 }
 
 }  // namespace

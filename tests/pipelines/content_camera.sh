@@ -1,7 +1,8 @@
 #!/bin/sh
-# A file without a camera, packed by Draco, goes through the whole chain: one line says where the camera is put. Run at the top of the tree: sh tests/pipelines/content_camera.sh BIN
+# A file without a camera, packed by Draco, goes through the whole chain, and one line reports where the camera is put:
+# sh tests/pipelines/content_camera.sh BIN. Run at the top of the tree.
 bin=$1
-unset MAKEFLAGS MFLAGS MAKELEVEL  # of the make that runs the tests: the one below is no part of it
+unset MAKEFLAGS MFLAGS MAKELEVEL  # make below is independent of the make that runs the tests
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 bad() { echo "$*"; cat "$work/log"; exit 1; }

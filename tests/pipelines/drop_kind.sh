@@ -1,14 +1,14 @@
 #!/bin/sh
-# A stage of one's own in the middle of the chain: sh tests/pipelines/drop_kind.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. pipelines/examples/drop_kind.py leaves out the photons of
-# one kind; what is left must be what photon-trace records when it is told not to record them.
+# A user's own stage in the middle of the chain: sh tests/pipelines/drop_kind.sh BIN
+# Run at the top of the tree; BIN is the folder with the tools. pipelines/examples/drop_kind.py removes the photons of
+# one kind. The result must equal the map that photon-trace writes without this kind.
 bin=$1 scene=pipelines/scenes/S2_cornell_moving.glb example=pipelines/examples/drop_kind.py
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
 digest() { "$bin/tempolux-info" --digest "$1" | cut -d' ' -f1; }
-# flux KEY FILE: the total of that name, three numbers.
+# flux KEY FILE: the total with this name, three numbers.
 flux() { "$bin/tempolux-info" --json "$2" | tr -d ' \n' | sed "s/.*\"$1\":\[\([^]]*\)\].*/\1/"; }
 trace() { "$bin/photon-trace" $scene --frame 3 --photons 20k --groups 4 "$@" -q || exit 1; }
 
@@ -22,7 +22,7 @@ for total in stored_flux_W emitted_flux_W escaped_flux_W absorbed_flux_W; do
 done
 "$bin/tempolux-info" "$work/dropped.photons" | grep -q '^  drop_kind.py direct$' || bad 'its line is missing in the history'
 
-# Every reader accepts it without a word, and makes of it what it makes of the file of the tool.
+# Every reader accepts the file without a message, and gives the same result as for the tool's file.
 for map in dropped indirect; do
   for command in "irradcache-build points $scene --point-count 1k -o $work/$map.irradpoints" \
       "irradcache-build $scene --point-count 1k --rays 20 --size 32x18 -o $work/$map.irradcache" \
@@ -35,7 +35,7 @@ for type in irradpoints irradcache exr; do
   [ "$(digest "$work/dropped.$type")" = "$(digest "$work/indirect.$type")" ] || bad ".$type differs"
 done
 
-# A photon map of which nobody knows the scene: one warning, the same result.
+# A photon map without the hashes of its scene: one warning, the same result.
 python3 - "$work/dropped.photons" "$work/stranger.photons" <<'END' || bad 'identity could not be removed'
 import sys
 sys.path.insert(0, "tests/formats")
@@ -51,7 +51,7 @@ END
 [ "$(wc -l < "$work/stderr")" = 1 ] && grep -q 'does not say which scene' "$work/stderr" || bad "without identity: $(cat "$work/stderr")"
 [ "$(digest "$work/stranger.irradpoints")" = "$(digest "$work/indirect.irradpoints")" ] || bad 'without identity: other points'
 
-# Of columns it keeps those of the photons it keeps; an empty map is a map; an overlay it refuses.
+# The script keeps the columns of the remaining photons, accepts an empty map and refuses an overlay.
 for file in tests/formats/photons/accept/*.photons; do
   for kind in direct caustic indirect volume; do
     if grep -q '^base: ' "$file"; then

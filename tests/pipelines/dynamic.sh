@@ -1,7 +1,8 @@
 #!/bin/sh
 # MOVING=light and records on the room whose box slides: sh tests/pipelines/dynamic.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Frames are those of MOVING=anew but for noise, direct light to the bit; a second
-# run makes nothing, one processor makes the same frames; a moved camera traces no photon; where nothing moves nothing of it runs.
+# Run at the top of the tree; BIN is the folder with the tools. Frames equal those of MOVING=anew except for noise, and
+# their direct light to the bit. A second run makes nothing. One processor makes the same frames. A moved camera traces
+# no photon. If nothing moves, none of these stages runs.
 bin=$1 failed=0 scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -31,8 +32,8 @@ for name in box mirror; do
     same $name-$moving direct 1e-6
     # 10 000 paths and 50 rays a record: two seeds of MOVING=anew differ by 4 %.
     same $name-$moving indirect 0.08
-    # Caustic photons are those of the global map in another order: sums of float32.
-    # Caustic photons are those of the global map in another order; probes of footprints' areas are drawn by their number in it.
+    # Caustic photons are those of the global map in another order, so sums in float32 differ.
+    # Caustic photons are those of the global map in another order. Their numbers there choose the probes of footprints.
     [ $name = box ] || same $name-$moving caustic 0.12
   done
 done

@@ -1,8 +1,8 @@
 #!/bin/sh
 # A scene lit by its environment alone, through all stages: sh tests/pipelines/environment.sh BIN [SCENE MAP]
-# Run at the top of the tree; BIN is the folder with the tools. Path tracing and the chain photon-trace -> irradcache-build ->
-# frame-render agree in the mean; a file made under another environment is refused; scene-plan notices. SCENE and MAP: a
-# scene of one's own with a camera, and a map, that must agree as well.
+# Run at the top of the tree; BIN is the folder with the tools. Path tracing and the chain photon-trace ->
+# irradcache-build -> frame-render agree in the mean. A file made with another environment is refused, and the plan
+# depends on the environment. SCENE and MAP: another scene with a camera, and a map, for which both must agree, too.
 bin=$1
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -28,7 +28,7 @@ write_hdr(work + "/sky.hdr", 64, [(9, sky), (2, sun), (5, sky), (16, ground)])
 END
 yard=$work/yard.gltf sky="--environment $work/sky.hdr"
 
-# compare SCENE ENVIRONMENT: mean of the frames, path tracing and chain, over all channels.
+# compare SCENE ENVIRONMENT: compares the means over all channels of the frames by path tracing and by the chain.
 mean() { "$bin/tempolux-info" --json "$1" | python3 -c 'import json, sys
 means = {c["channel"]: c["mean"] for c in json.load(sys.stdin)["channels"]}
 print(sum(means[c] for c in "RGB") / 3)'; }
@@ -47,7 +47,7 @@ sys.exit(not abs(chain / path - 1) < 0.015)' "$(mean "$work/path.exr")" "$(mean 
 if [ -n "$3" ]; then compare "$2" "--environment $3"; else echo 'skipped: no scene and map of your own given'; fi
 compare "$yard" "$sky"
 
-# What was made under another environment is stale, and so is what was made under none.
+# A file made with another environment, or with none, is stale.
 for other in "$sky --environment-strength 2" "$sky --environment-rotation 45" "--environment-color 1"; do
   "$bin/frame-render" "$yard" $other --photons "$work/p.photons" --size 8x8 -o "$work/x.exr" 2> "$work/stderr"
   [ $? = 2 ] && grep -q 'another state of the scene: lights differ' "$work/stderr" || bad "$other: $(cat "$work/stderr")"
@@ -55,7 +55,7 @@ done
 "$bin/photon-trace" "$yard" --photons 1k -o "$work/x.photons" 2> "$work/stderr"
 [ $? = 2 ] && grep -q -e --environment "$work/stderr" || bad "without a light: $(cat "$work/stderr")"
 
-# The plan names it, depends on it, and its lights change with it alone.
+# The plan names the environment and depends on it; of the hashes only that of the lights changes with it.
 "$bin/scene-plan" "$yard" $sky -q -o "$work/plan" || bad "scene-plan: exit $?"
 grep -q '"environment": "sky.hdr"' "$work/plan/plan.json" || bad 'plan.json does not name the environment'
 grep -q 'sky.hdr$' "$work/plan/state/inputs" || bad 'the plan does not depend on the environment'

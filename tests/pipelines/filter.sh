@@ -1,7 +1,8 @@
 #!/bin/sh
 # FILTER=3 on the Cornell box whose block moves: sh tests/pipelines/filter.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Each frame is st-filter's of the pictures around it, asked for or not, fewer at the
-# animation's ends; a second run makes nothing; another order gives the same frames; one raw picture made anew concerns its neighbours alone.
+# Run at the top of the tree; BIN is the folder with the tools. Each frame is filtered from the pictures around it,
+# asked for or not, and from fewer at the animation's ends. A second run makes nothing. Another order gives the same
+# frames. A raw picture that is made anew affects only its neighbours.
 bin=$1 failed=0
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -15,7 +16,7 @@ run OUT="$work/a" || { cat "$work/log"; exit 1; }
 digests "$work/a" > "$work/expected"
 [ "$(wc -l < "$work/expected")" = 5 ] || bad "5 frames, not $(wc -l < "$work/expected")"
 "$bin/tempolux-info" --json "$work/a/frames/0002.exr" | grep -q '"direct.R"' && bad 'channels that were not asked for'
-window() { # frame, position, the raw pictures that it comes from
+window() { # window FRAME POSITION PICTURE...: the raw pictures from which a frame is filtered
   frame=$1 position=$2; shift 2
   "$bin/st-filter" $(ls $(printf "$work/a/raw/%s-*.exr " "$@")) --position "$position" --channels RGBA,Z,N,id -o "$work/one.exr" -q || bad "st-filter of $frame"
   "$bin/tempolux-info" --diff "$work/one.exr" "$work/a/frames/$frame.exr" > /dev/null || bad "frame $frame is not that of $*"

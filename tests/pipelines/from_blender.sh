@@ -1,5 +1,6 @@
 #!/bin/sh
-# from_blender.sh BIN_DIR -- pipelines/blender/tempolux_export.py: lamps, constraints, world and numbers of frames come through. Skipped without Blender.
+# from_blender.sh BIN_DIR -- pipelines/blender/tempolux_export.py keeps lamps, constraints, world and numbers of frames.
+# Skipped without Blender.
 command -v blender > /dev/null || { echo 'there is no blender'; exit 77; }
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -51,7 +52,8 @@ nodes = [shot["nodes"][c["target"]["node"]]["name"] for a in shot["animations"] 
 assert "Cube Matte" in nodes and "Cube Chrome" not in nodes, nodes
 END
 
-# Exported again over a file whose triangles come in another order and whose corners are off by 1e-7 of their size: that file stays, to the byte. Moved by 1e-3: it does not.
+# An export over a file whose triangles have another order and whose corners differ by 1e-7 of their size leaves the
+# file as it is, to the byte. If corners have moved by 1e-3, the file changes.
 cat > "$work/stir.py" << 'END'
 import json, struct, sys
 import numpy

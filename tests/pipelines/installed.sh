@@ -1,5 +1,5 @@
 #!/bin/sh
-# What cmake --install puts in place is enough: the pipeline runs with it on two frames.
+# The installed files are sufficient: the pipeline renders two frames with them.
 #
 #     sh tests/pipelines/installed.sh BUILD          from the top of the tree
 build=$(cd "$1" && pwd)
@@ -15,12 +15,12 @@ for path in "$build"/bin/*; do
   [ -s "$scratch/usr/share/bash-completion/completions/$tool" ] || bad "$tool has no completion"
 done
 [ -s "$scratch/usr/share/doc/tempolux/formats/photons/photons.md" ] || bad 'the format pages are not installed'
-# The README's command, where there are no sources to build.
+# The README's command, in a folder without sources.
 scene=$PWD/pipelines/scenes/S2_cornell_moving.glb
 (cd "$scratch" && make -s -f usr/share/doc/tempolux/Makefile.example SCENE="$scene" BIN="$scratch/usr/bin" OUT=out FRAMES=0,40 SIZE=32x18 QUALITY=draft \
   PHOTONS=2k POINTS='--point-count 500' > "$scratch/log" 2>&1) || bad "$(tail -5 "$scratch/log")"
 [ -s "$scratch/out/sheet.png" ] && [ -s "$scratch/out/frames/0040.exr" ] || bad 'no frames were made'
-# Images come through a module, which must be found where it is installed, and missed where it is not.
+# A module reads images. It must be found where it is installed; without it the message must name it.
 trace() { "$scratch/usr/bin/photon-trace" pipelines/scenes/S1_cornell.glb --environment "$scratch/out/frames/0040.exr" \
   --photons 100 -q -o "$scratch/p.photons" 2> "$scratch/log"; }
 trace || bad "environment: $(cat "$scratch/log")"
@@ -29,7 +29,7 @@ trace
 [ $? = 2 ] && [ "$(wc -l < "$scratch/log")" = 1 ] &&
   grep -q 'tempolux-images.so, which was not .*; install all of tempolux together, or copy its folder' "$scratch/log" ||
   bad "without its module: $(cat "$scratch/log")"
-# So is what unpacks geometry and WebP, and a scene without needs none of it.
+# The same holds for the program that unpacks geometry and WebP; a scene without packed data does not need it.
 unpack() { "$scratch/usr/bin/photon-trace" "$1" --environment-color 1,1,1 --photons 100 -q -o "$scratch/p.photons" 2> "$scratch/log"; }
 unpack tests/data/packed/scenes/draco-lossless.glb || bad "packed: $(cat "$scratch/log")"
 find "$scratch/usr" -name tempolux-decode -exec rm {} +

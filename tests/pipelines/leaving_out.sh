@@ -1,7 +1,7 @@
 #!/bin/sh
-# What a scene does not need is not done, by the gathering chain: sh tests/pipelines/leaving_out.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Seen in the files, their statistics, the inputs each tool
-# says it read and the libraries that are mapped. What make leaves out: rerun.sh.
+# The gathering chain does no work that a scene does not need: sh tests/pipelines/leaving_out.sh BIN
+# Run at the top of the tree; BIN is the folder with the tools. The test reads the files, their statistics, the inputs
+# that each tool reports, and the mapped libraries. rerun.sh tests which commands make leaves out.
 bin=$1 scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -11,18 +11,18 @@ tool() { t=$1; shift; LD_DEBUG=files LD_DEBUG_OUTPUT="$work/libraries" "$bin/$t"
 edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
 planned() { python3 -B tests/pipelines/planned.py "$@"; }
 kinds() { "$bin/tempolux-info" --json "$1" | tr -d ' \n' | sed 's/.*"by_kind":{//' | grep -o '"[a-z]*":{' | tr -d '":{' | tr '\n' ' '; }
-# count NAME FILE: of its statistics
+# count NAME FILE: a count of the file's statistics
 count() { sed -n "s/.*\"$1\": *\([0-9.]*\).*/\1/p" "$2" | head -1; }
 
 edit $scene "$work/still.glb" still
 edit "$work/still.glb" "$work/walk.glb" camera-from 2
 small='--point-count 2k --rays 50'
 
-# Nothing but the camera moves: the photons of frame 0 are those of frame 2, bit for bit, and so are the points.
+# Only the camera moves: photons and points of frames 0 and 2 are equal, bit for bit.
 tool scene-plan "$work/walk.glb" --frames 0-3 -o "$work/plan"
 [ "$(grep -c '^photons/0000-.*words' "$work/plan/plan.mk")" = 1 ] && [ "$(grep -c '^photons/.*words' "$work/plan/plan.mk")" = 1 ] || bad 'only the camera moves: photons of more than frame 0'
 [ "$(planned "$work/plan" photon_kinds)" = indirect ] || bad 'no mirror, no glass: photons of other kinds than indirect'
-# A closed room that lamps light: no importance, of photons or points; a sky would bring it.
+# In a closed room with lamps neither photons nor points are aimed; with a sky they are.
 ls "$work"/plan/state/*.view 2> /dev/null && bad 'a closed room: a file of where cameras look'
 grep -q '[.]view' "$work/plan/plan.mk" && bad 'a closed room: photons are aimed'
 tool photon-trace "$work/walk.glb" --frame 0 --photons 20k --kinds indirect -o "$work/0.photons"
@@ -34,9 +34,9 @@ tool irradcache-build records "$work/walk.glb" --points "$work/0.irradpoints" --
   --stats "$work/0.json" --depfile "$work/0.d"
 grep -q '\.photons' "$work/0.d" && bad 'records from points: photons were read'
 
-# Pixels: records were placed for pixel centres, and a record counts within its own radius alone. A sample beside a centre may find none, in corners
-# and at edges: it follows a path, which may end at a point. Seven of 14 400 do here; at most one in a thousand may. Without mirror or glass photons
-# are not asked for.
+# Pixels: records were placed for pixel centres, and a record is valid only within its radius. In corners and at edges a
+# sample away from the centre may find no valid record. It then follows a path, which may end at a point. Here seven of
+# 14 400 samples do; at most one in a thousand may. Without mirror or glass no photons are read.
 tool frame-render "$work/walk.glb" --irradcache "$work/0.irradcache" --points "$work/0.irradpoints" --spp 1 --pixel-error 0 \
   --size 160x90 --channels RGBA,layers -o "$work/0.exr" --stats "$work/frame.json"
 [ "$(count gathered_in_pixels "$work/frame.json")" -le 14 ] || bad 'records are missing in the picture they were placed for'
@@ -44,7 +44,7 @@ tool frame-render "$work/walk.glb" --irradcache "$work/0.irradcache" --points "$
 "$bin/tempolux-info" --json "$work/0.exr" | tr -d ' \n' | grep -q '"caustic.G"[^}]*"max":0[.0]*[,}]' ||
   bad 'no mirror, no glass: a caustic layer that is not 0'
 
-# A lone object under a sky: paths alone. No photons, points or records are planned, and make makes none.
+# A single object under a sky is lit by paths alone: no photons, points or records are planned or made.
 python3 -B - "$work/lone.gltf" <<'END' || bad 'a lone object: no scene'
 import sys
 sys.path.insert(0, "tests/stress")
@@ -61,7 +61,7 @@ END
 [ -s "$work/lone/frames/0000.exr" ] || bad 'a lone object: no frame'
 find "$work/lone" -name '*.photons' -o -name '*.irradpoints' -o -name '*.irradcache' | grep . && bad 'a lone object: made for nothing'
 
-# A mirror brings caustic photons, and without one there are none of them even where they are asked for.
+# With a mirror there are caustic photons; without one there are none, even if they are asked for.
 tool photon-trace "$work/walk.glb" --photons 5k --kinds caustic,indirect -o "$work/matte.photons" --stats "$work/matte.json"
 [ "$(count specular_rays "$work/matte.json")" = 0 ] || bad 'no mirror, no glass: specular rays'
 [ "$(kinds "$work/matte.photons")" = 'indirect ' ] || bad "no mirror, no glass: photons of kinds $(kinds "$work/matte.photons")"
@@ -72,16 +72,17 @@ tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$
 [ "$(count specular_rays "$work/mirror.json")" -gt 0 ] || bad 'a mirror: no specular ray is counted'
 [ "$(kinds "$work/mirror.photons")" = 'caustic indirect ' ] || bad "a mirror: photons of kinds $(kinds "$work/mirror.photons")"
 
-# A lamp that is off in the middle of the frames: the pilot looks where it is on.
+# A lamp is off in the middle of the frames: the pilot runs at a frame at which it is on.
 edit $scene "$work/off.glb" event lamp-off
 tool scene-plan "$work/off.glb" --frames 3-5 -o "$work/off"
 [ "$(planned "$work/off" indirect)" = records ] || bad 'planned by a dark frame'
 
-# Where paths find indirect light the mirror's caustics alone are left to photons, or nothing is.
+# If paths find indirect light, photons carry only the mirror's caustics, or there are none.
 tool scene-plan "$work/mirror.glb" --frames 0 --indirect paths -o "$work/paths"
 [ -z "$(planned "$work/paths" photon_kinds)" ] || bad 'paths asked for: photons planned all the same'
 
-# A texture that no ray touches is not decoded, and what decodes is not opened; one that is touched shows that the list says it.
+# A texture that no ray touches is not decoded, and the decoder is not opened. A texture that a ray touches is in the
+# list.
 top=$(pwd)
 (cd "$work" && python3 -B "$top/tests/cli/make_floor.py") || bad 'make_floor.py'
 for camera in Aside Above; do
@@ -92,7 +93,7 @@ done
 grep -hoE 'file=[^ ]*(tempolux-images|libpng|libjpeg)[^ ]*' "$work"/textures-Aside.* | sort -u | grep . && bad 'these were mapped for no texture'
 grep -qhE 'file=[^ ]*tempolux-images' "$work"/textures-Above.* || bad 'the list of libraries lacks the module of images'
 
-# Libraries, those opened while running among them: the loader's own list.
+# The loader's list of libraries, including those opened at run time.
 ls "$work"/libraries.* > /dev/null 2>&1 || bad 'the loader lists no libraries'
 grep -hoE 'file=[^ ]*(OpenImageIO|openvdb|opencv)[^ ]*' "$work"/libraries.* | sort -u | grep . && bad 'these were mapped'
 grep -qhE 'file=[^ ]*embree' "$work"/libraries.* || bad 'the list of libraries lacks Embree: it says nothing'

@@ -1,6 +1,7 @@
 #!/bin/sh
-# looks.sh BIN_DIR -- `make compare`: a page of two runs that asks for nothing outside, whose slider, flicker and strip work in a browser. `make film`: a film, or one
-# line that says what is missing. The browser's part is skipped without chromium.
+# looks.sh BIN_DIR -- `make compare` writes a page of two runs that loads no other file; its slider, flicker and film
+# strip work in a browser. `make film` makes a film, or prints one line that names what is missing. The browser's part
+# is skipped without chromium.
 bin=$(cd "$1" && pwd) || exit 1
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -23,7 +24,7 @@ else
 fi
 
 command -v chromium > /dev/null || { echo 'compare and film are right; the page in a browser: skipped, there is no chromium'; exit 0; }
-# A script at the page's end moves the slider, presses keys, and leaves what it saw as the title.
+# A script at the page's end moves the slider, presses keys, and stores the result in the title.
 sed 's|</html>||' "$work/a/compare.html" > "$work/tried.html"
 cat >> "$work/tried.html" << 'END'
 <script>

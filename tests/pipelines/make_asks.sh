@@ -1,5 +1,5 @@
 #!/bin/sh
-# What Makefile.example does when only asked, or asked for what cannot be: sh tests/pipelines/make_asks.sh BIN
+# Makefile.example with make -n and with invalid requests: sh tests/pipelines/make_asks.sh BIN
 # Run at the top of the tree; BIN is the folder with the tools.
 bin=$1 top=$PWD
 work=$(mktemp -d) || exit 3
@@ -11,14 +11,14 @@ says() { grep -q -e "$1" "$work/said"; }
 demo() { goal=$1; shift; make_ "$goal" BIN="$bin" OUT="$work/out" FRAMES=0,30 SIZE=32x18 PHOTONS=2k REFERENCE_SAMPLES=2 \
   INDIRECT=records POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' PIXELS='--spp 1' "$@"; }
 
-# Before anything is built: -n lists what comes first, and leaves no trace.
+# Before anything is built: -n lists the first commands and leaves no file.
 for goal in all demo report; do
   (mkdir -p "$work/fresh" && cd "$work/fresh" && make_ -n $goal) || bad "-n $goal in a fresh tree: make failed"
   says 'cmake --preset release' && says 'bin/scene-plan .* -o .*/out' || bad "-n $goal in a fresh tree: no build, or no plan"
   [ -z "$(ls -A "$work/fresh")" ] || bad "-n $goal left $(ls -A "$work/fresh")"
 done
 
-# Asking changes nothing: afterwards nothing has to be done.
+# A question changes nothing: afterwards nothing has to be made.
 demo demo || bad 'demo'
 demo -n demo SIZE=48x27 || bad '-n with another size'
 says 'irradcache-build records' && says 'frame-render' && ! says '/photon-trace' || bad '-n with another size: other stages than those'
@@ -26,7 +26,7 @@ demo estimate SIZE=48x27 FRAMES=0-3 && says 'frame-render' || bad 'estimate with
 demo tidy SIZE=48x27 || bad 'tidy'
 demo demo && says 'Nothing to be done' || bad 'after questions something runs'
 
-# Refused before anything runs, by the name of what is wrong.
+# Invalid requests are refused before anything runs; the message names the error.
 refuses() { what=$1; shift; demo "$@" && bad "$*: not refused"; says "$what" || bad "$*: not said why"; }
 refuses "no goal 'dmeo'; .*help. lists them" dmeo
 demo help && says 'QUALITY=draft' && says 'Further goals: estimate' || bad 'help'
@@ -40,7 +40,7 @@ refuses 'my scene.glb' demo SCENE='my scene.glb'
 demo demo OUT="$work/o 4" && [ -s "$work/o 4/frames/0030.exr" ] || bad 'OUT with a blank'
 refuses 'frame 1 is none of --frames' report REPORT_FRAMES='0 1'
 refuses 'BIN=/nowhere: holds no scene-plan; ' demo BIN=/nowhere
-# A make that fails says whether another one runs in the same OUT.
+# A make that fails reports whether another make runs in the same OUT.
 refuses 'nonsense' demo PIXELS='--spp nonsense' FRAMES=0
 says 'another make runs here' && bad 'no other make runs, and it is blamed'
 (flock -s 8 && exec sleep 60) 8> "$work/out/state/.makes" & holder=$!
@@ -49,7 +49,7 @@ refuses 'another make runs here and may have removed a file' demo PIXELS='--spp 
 kill $holder
 demo report REPORT_FRAMES=30 && ls "$work"/out/error/0030-*.json > /dev/null || bad 'REPORT_FRAMES=30'
 
-# clean takes what make made, and nothing else.
+# clean removes the files that make made, and nothing else.
 (mkdir -p "$work/tree/build" && cp -r Makefile.example pipelines "$work/tree" && touch "$work/tree/build/mine" "$work/out/frames/mine.exr" &&
   top=$work/tree && demo clean) || bad 'clean'
 [ -e "$work/tree/build/mine" ] || bad 'clean removed a folder that is not ours'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Everything builds with -DTEMPOLUX_OIIO=OFF, into build/no-oiio, and what needs the helper is refused by its name: run at
-# the top of the tree. Not in ctest: it builds.
+# Everything builds with -DTEMPOLUX_OIIO=OFF, into build/no-oiio, and files that need the child program are refused by
+# its name. Run at the top of the tree. Not in ctest, because it builds.
 bad() { echo "without OpenImageIO: $*" >&2; exit 1; }
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT

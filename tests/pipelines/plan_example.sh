@@ -1,7 +1,7 @@
 #!/bin/sh
-# The example of formats/plan/plan.md is what scene-plan writes: sh tests/pipelines/plan_example.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Keys hash the programs, so they are compared as places only.
-# A second run must write nothing.
+# scene-plan writes the example of formats/plan/plan.md: sh tests/pipelines/plan_example.sh BIN
+# Run at the top of the tree; BIN is the folder with the tools. Keys hash the programs, so any key is accepted at its
+# place. A second run must write nothing.
 bin=$1 top=$PWD page=formats/plan/plan.md
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT

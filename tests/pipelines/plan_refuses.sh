@@ -1,12 +1,12 @@
 #!/bin/sh
-# What scene-plan refuses, with which exit code and words: sh tests/pipelines/plan_refuses.sh BIN
+# scene-plan refuses invalid requests with the right exit code and words: sh tests/pipelines/plan_refuses.sh BIN
 # Run at the top of the tree; BIN is the folder with the tools.
 bin=$1
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 source=pipelines/scenes/S2_cornell_moving.glb failed=0
 
-# refuses CODE WORDS ARGUMENT...: one line on standard error that has WORDS, and no plan.mk.
+# refuses CODE WORDS ARGUMENT...: expects one line on standard error that contains WORDS, and no plan.mk.
 refuses() {
   code=$1 words=$2; shift 2
   "$bin/scene-plan" "$@" > "$work/stdout" 2> "$work/stderr"

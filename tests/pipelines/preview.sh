@@ -1,7 +1,8 @@
 #!/bin/sh
 # METHOD=preview on the room whose box slides: sh tests/pipelines/preview.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Frames are those of METHOD=frames but for noise and blur; a second run makes nothing; one
-# processor makes the same frames; a frame made alone is that of the range; what light does not change in has one map and one window; smoke is refused.
+# Run at the top of the tree; BIN is the folder with the tools. Frames equal those of METHOD=frames except for noise and
+# blur. A second run makes nothing. One processor makes the same frames. A frame made alone equals that of the range. A
+# segment whose light does not change has one map and one window. Smoke is refused.
 bin=$1 failed=0 scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -20,7 +21,8 @@ run SCENE=$scene METHOD=preview PHOTONS=10k OUT="$work/preview"
   bad 'not six counts, six windows and no record'
 run SCENE=$scene INDIRECT=records PHOTONS=100k POINTS='--point-count 1k' CACHE='--rays 50 --error-bound 0.5' OUT="$work/frames"
 "$bin/aqm-compare" "$work/preview/frames/%04d.exr" "$work/frames/frames/%04d.exr" --frames 0-5 --layer indirect --json "$work/c.json" -q > /dev/null
-# Six frames of 10 000 paths: 60 000 under kernels of up to 2500 photons are blurred over half a metre: 14 % where it matters; the mean is right within 1.5 %.
+# Six frames of 10 000 paths make 60 000. Kernels of up to 2500 photons blur light over half a metre: 14 % of error at
+# edges of light. The mean is right within 1.5 %.
 python3 -c 'import json, sys; t = json.load(open(sys.argv[1]))["total"]; e = t["rmse"] / t["mean_reference"], t["bias"]; print(e); sys.exit(e[0] > 0.2 or abs(e[1]) > 0.03)' "$work/c.json" ||
   bad 'differs from METHOD=frames by more than 20 %, or its mean by more than 3 %'
 digests "$work/preview" > "$work/expected"
@@ -32,7 +34,7 @@ digests "$work/alone" | diff - "$work/expected" | grep '^<' && bad 'frame 4 alon
 run SCENE=$scene METHOD=preview PHOTONS=10k OUT="$work/one" -j1 RUN='taskset -c 0'
 digests "$work/one" | diff "$work/expected" - || bad 'one processor, one job: other frames'
 
-# Nothing but the camera moves: one map of 33 times as many paths for all frames.
+# Only the camera moves: one map of 33 times as many paths serves all frames.
 edit $scene "$work/still.glb" still
 edit "$work/still.glb" "$work/walk.glb" camera-from 2
 run SCENE="$work/walk.glb" METHOD=preview PHOTONS=1k OUT="$work/walk"
@@ -40,7 +42,8 @@ run SCENE="$work/walk.glb" METHOD=preview PHOTONS=1k OUT="$work/walk"
 paths=$(sed -n 's/.*--photons \([0-9]*\) .*/\1/p' "$work/walk/plan.mk")
 [ "$((paths % 33))" = 0 ] && [ "$paths" -ge 33000 ] || bad "a walk: not 33 times as many paths, $paths"
 
-# Photons by what a viewer sees: what was tried is written, chosen from, and said in the plan. Two sets of random numbers differ, or nothing would be seen.
+# The number of photons by what a viewer sees: all tried numbers are written, one is chosen, and the plan names it. The
+# two renderings have different random numbers; otherwise no difference would be visible.
 goal=measure
 run SCENE=$scene METHOD=preview OUT="$work/measured" AQM=0%
 python3 - "$work/measured/measured.json" << 'END' || bad "measured.json: $(cat "$work/measured/measured.json")"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# What make runs again after a change, and nothing else: sh tests/pipelines/rerun.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Compares the list of commands run; scene-plan always looks.
+# After a change make runs the necessary commands and no others: sh tests/pipelines/rerun.sh BIN
+# Run at the top of the tree; BIN is the folder with the tools. Compares the list of commands; scene-plan always runs.
 bin=$1
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -8,7 +8,7 @@ log=$work/log scene=$work/scene.glb source=pipelines/scenes/S2_cornell_moving.gl
 
 edit() { python3 tests/pipelines/edit_gltf.py "$@" || exit 1; }
 
-# make_runs WHAT EXPECTED [VARIABLE=VALUE...]: makes $target; the commands run, sorted, must be EXPECTED.
+# make_runs WHAT EXPECTED [VARIABLE=VALUE...]: makes $target; the sorted list of commands must be EXPECTED.
 target=demo segment=2
 make_runs() {
   what=$1 expected=$2; shift 2
@@ -33,7 +33,7 @@ light() { trace "$@"; points "$@"; cache "$@"; }
 frames() { for f; do echo frame-render:pictures/$f.exr tempolux-info:frames/$f.png; done; }
 same() { for f; do echo tempolux-info:frames/$f.png; done; }
 path() { for f; do echo frame-render:path/$f.exr aqm-compare:error/$f.json; done; }
-exposure=tempolux-info:stdout  # of the first frame; all pictures hang on it
+exposure=tempolux-info:stdout  # of the first frame; all previews depend on it
 sheet=tempolux-info:sheet.png
 
 all='0000 0001 0002 0003'

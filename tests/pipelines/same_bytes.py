@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-# The make that runs the tests is no part of those started here.
+# The makes started here are independent of the make that runs the tests.
 for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
 

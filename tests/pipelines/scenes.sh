@@ -1,5 +1,6 @@
 #!/bin/sh
-# The scenes of pipelines/scenes can be used, and those made by a script are what it makes: sh tests/pipelines/scenes.sh BIN
+# The scenes of pipelines/scenes render, and those written by a script equal the script's output: sh
+# tests/pipelines/scenes.sh BIN
 # Run at the top of the tree; BIN is the folder with the tools.
 bin=$1 failed=0
 work=$(mktemp -d) || exit 3

@@ -1,14 +1,15 @@
 #!/bin/sh
 # Smoke in the chain: sh tests/pipelines/smoke.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Eight frames of a rising ball in two segments, maps updated by 20 %. A second run
-# makes nothing; 1, 2, 3 and 7 threads make the same frames; when the smoke of one frame is edited below the segment's majorants the maps and
-# frames from there to the segment's end are made again, when above them those of the whole segment, those of the other segment never.
+# Run at the top of the tree; BIN is the folder with the tools. Eight frames of a rising ball in two segments, maps
+# updated by 20 %. A second run makes nothing. 1, 2, 3 and 7 threads make the same frames. If the smoke of one frame is
+# edited and stays below the segment's majorants, the maps and frames from there to the segment's end are made again; if
+# it exceeds them, those of the whole segment. Those of the other segment are never made again.
 bin=$1 failed=0 make_vdb=$1/../tests/make-vdb
 [ -x "$make_vdb" ] || { echo 'built without volumes'; exit 77; }
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
-# smoke FRAME LARGEST: the ball of a frame, with this density in its middle.
+# smoke FRAME LARGEST: writes the ball of a frame, with this density in its middle.
 smoke() {
   rm -f "$work/smoke_000$1.vdb"
   python3 -c '

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Bright points sampled explicitly, in the chain: sh tests/pipelines/split.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. A room with a narrow lamp is split by itself, the frame is that of SPLIT=off but
-# for noise; a second run makes nothing; without a bright spot nothing of it runs, and the frame is that of SPLIT=off to the bit.
+# Run at the top of the tree; BIN is the folder with the tools. In a room with a narrow lamp the plan decides to split,
+# and the frame equals that of SPLIT=off except for noise. A second run makes nothing. Without a bright spot none of
+# these stages runs, and the frame equals that of SPLIT=off to the bit.
 bin=$1 failed=0
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -16,7 +17,7 @@ for split in auto off; do run SCENE="$work/spot.glb" SPLIT=$split OUT="$work/spo
 [ "$(planned "$work/spot-auto" split)" = true ] || bad 'a bright spot, and no split is planned'
 [ "$(planned "$work/spot-off" split)" = false ] || bad 'SPLIT=off, and one is planned'
 grep -q '"bright_points": [1-9]' "$work/spot-auto/cache/0000-"*.json || bad 'records sample no bright points'
-# 100 rays a record leave some per cent in the mean of few records.
+# 100 rays per record leave an error of some per cent in the mean of few records.
 "$bin/aqm-compare" "$work/spot-auto/frames/0000.exr" "$work/spot-off/frames/0000.exr" --layer indirect --json "$work/c.json" -q > /dev/null
 python3 -c 'import json, sys; b = json.load(open(sys.argv[1]))["total"]["bias"]; print("bias", b); sys.exit(not -0.05 < b < 0.05)' "$work/c.json" ||
   bad 'other light by the split'

@@ -1,8 +1,9 @@
 #!/bin/sh
 # MOVING=time on the room whose box slides: sh tests/pipelines/temporal.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. Frames are those of MOVING=anew but for noise; a second run makes nothing; one
-# processor makes the same frames; after an edit of one frame those from there to its segment's end are made again, no others; killed and typed again it
-# makes the same; a frame made alone is that of the range; where nothing moves nothing of it runs.
+# Run at the top of the tree; BIN is the folder with the tools. Frames equal those of MOVING=anew except for noise. A
+# second run makes nothing. One processor makes the same frames. After an edit of one frame the frames of its segment
+# are made again, and no others. A run that was killed and started again makes the same frames. A frame made alone
+# equals that of the range. If nothing moves, none of these stages runs.
 bin=$1 failed=0 scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -36,7 +37,7 @@ digests "$work/alone" | diff - "$work/expected" | grep '^<' && bad 'frame 6 alon
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/one" -j1 RUN='taskset -c 0'
 digests "$work/one" | diff "$work/expected" - || bad 'one processor, one job: other frames'
 
-# Killed in the middle of records, and typed again.
+# Killed while records are made, and started again.
 make_it SCENE="$work/scene.glb" MOVING=time OUT="$work/killed" > "$work/log" 2>&1 &
 for i in $(seq 200); do ls "$work"/killed/kept/0001-*.radsamples > /dev/null 2>&1 && break; sleep 0.05; done
 kill -9 $! 2>/dev/null
@@ -45,17 +46,17 @@ sleep 0.5
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/killed"
 digests "$work/killed" | diff "$work/expected" - || bad 'killed and typed again: other frames'
 
-# What each frame cost, and keys with what lies between them: make finds its way along a segment from any of its frames.
+# The cost of each frame, and a walkthrough: make follows a segment from any of its frames.
 run report SCENE="$work/scene.glb" MOVING=time OUT="$work/time" REFERENCE_SAMPLES=2
 [ "$(grep -cE '^\| [0-7] \| [0-9]+ \| [0-9]+ \| [0-9]+ \| [0-9]+ \| (first|[0-9.]+ %) \| [0-9.]+ \| [0-9.]+ \|$' "$work/log")" = 8 ] || bad "report: $(tail -12 "$work/log")"
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/walk" METHOD=walkthrough
 
-# The box takes another way at frame 1: its segment's frames are made again, those of the other are not.
+# The box moves differently at frame 1: the frames of its segment are made again, those of the other segment are not.
 edit $scene "$work/scene.glb" nudge 1
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/time"
 case "$(gathered)" in *000[4-7]*) bad "an edit at frame 1 gathered $(gathered)";; *0001*) ;; *) bad "an edit at frame 1 gathered $(gathered)";; esac
 
-# Bright points divided from the others, too: samples hold the low part (pipelines/split.md).
+# With divided bright points samples hold the low part (pipelines/split.md).
 run SCENE=$scene MOVING=time SPLIT=on OUT="$work/both"
 grep -q 'gather-temporal final .*--points split/0002-.*.low.irradpoints --high split/0002-.*.high.irradpoints --previous' "$work/log" || bad "SPLIT=on: $(grep -m1 gather-temporal "$work/log")"
 grep -q 'irradcache-build records' "$work/log" && bad 'SPLIT=on: records are made anew, too'

@@ -1,11 +1,12 @@
 #!/bin/sh
-# A short chain under ThreadSanitizer, all stages with four threads, on a room with mirrors and glass and among leaves: no report.
+# A short chain under ThreadSanitizer, all stages with four threads, on a room with mirrors and glass and among leaves:
+# no report.
 #
 #     sh tests/pipelines/tsan.sh build/tsan/bin
 #
-# The tools of that build have loops of std::thread (lib/core/parallel_threads.cpp). Embree and OpenEXR are Debian's, not built
-# for it, and start threads of their own through TBB: what happens inside of them is left out (called_from_lib); so are strings, as
-# Embree calls those that our programs hold a copy of.
+# The tools of that build use loops of std::thread (lib/core/parallel_threads.cpp). Embree and OpenEXR are Debian's and
+# not built for the sanitizer, and they start threads through TBB. Reports from inside these libraries are suppressed
+# (called_from_lib), and so are reports about strings, because Embree calls the copies in our programs.
 bin=$(cd "$1" && pwd) && here=$(cd "$(dirname "$0")" && pwd) && scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1

@@ -1,7 +1,8 @@
 #!/bin/sh
 # METHOD=walkthrough on a room in which the camera pans: sh tests/pipelines/walkthrough.sh BIN [MOMENTS]
-# Run at the top of the tree; BIN is the folder with the tools. Keys are the rendered frames to the bit, a second run makes nothing, a frame that was
-# deleted comes back the same, other threads and other orders give the same frames, and so does a run that is killed with -9 MOMENTS times (2) on its way.
+# Run at the top of the tree; BIN is the folder with the tools. Keys equal the rendered frames to the bit. A second run
+# makes nothing. A deleted frame is made again with the same bytes. Other numbers of threads and other orders give the
+# same frames, and so does a run that is killed with -9 at MOMENTS moments (2).
 bin=$1 moments=${2:-2} failed=0
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -25,14 +26,14 @@ for key in 0000 0004; do case ",${marked#--mark }," in *",frames/$key.exr,"*) ;;
   cmp marked.png sheet.png && rm marked.png) || bad 'the sheet marks no keys'
 run METHOD=walkthrough OUT="$work/a"; grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
 
-# Every frame rendered: a key is that to the bit, but for the layer that keys have more.
+# A key equals the rendered frame to the bit, except for the layer that only keys have.
 run METHOD=frames OUT="$work/f" CHANNELS=RGBA,Z,N,id,specular || { cat "$work/log"; exit 1; }
 for key in 0000 0004; do
   [ "$("$bin/tempolux-info" --digest "$work/a/frames/$key.exr" | cut -d' ' -f1)" = "$("$bin/tempolux-info" --digest "$work/f/frames/$key.exr" | cut -d' ' -f1)" ] ||
     bad "key $key is not the frame rendered"
 done
 
-# Filtered: a key is the frame filtered alone, what is warped from keys is there.
+# With a filter: a key equals the frame filtered alone, and warped frames exist.
 run METHOD=walkthrough FILTER=1 OUT="$work/s" || { cat "$work/log"; exit 1; }
 run METHOD=frames FILTER=1 FRAMES=0,4 OUT="$work/sf" CHANNELS=RGBA,Z,N,id,layers || { cat "$work/log"; exit 1; }
 for key in 0000 0004; do
@@ -42,7 +43,8 @@ done
 [ "$(find "$work/s/frames" -name '*.exr' | wc -l)" = 7 ] || bad 'filtered walkthrough: not 7 frames'
 find "$work/s" -name '*.part*' | grep . && bad 'filtered walkthrough: left-overs'
 
-# One frame alone is that of the range. Left out: where the camera stands METHOD=auto takes no keys, and where nothing mirrors no pixel is masked for it.
+# A frame made alone equals that of the range. With a static camera METHOD=auto has no keys, and without mirrors no
+# pixel is masked as specular.
 run METHOD=walkthrough OUT="$work/one" FRAMES=3 || { cat "$work/log"; exit 1; }
 digests "$work/one" | diff - "$work/expected" | grep '^<' && bad 'frame 3 alone is another one'
 warps() { "$bin/scene-plan" "$1" --method auto --frames 0-47 -o "$work/plan" -q && grep -c '^walked/.*words' "$work/plan/plan.mk"; }
@@ -65,7 +67,7 @@ for threads in 1 2 3 7; do
   cmp "$work/all.1" "$work/all.$threads" || bad "ibr-warp: other bytes by $threads threads"
 done
 
-# Killed after a while, ever longer, with all it has started.
+# Kills make with all its processes, each time after a longer while.
 for moment in $(seq 1 "$moments"); do
   setsid make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 INDIRECT=records SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 METHOD=walkthrough OUT="$work/k" > "$work/log" 2>&1 &

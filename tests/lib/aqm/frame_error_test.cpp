@@ -61,10 +61,10 @@ TEST(FrameErrorTest, RelativeErrorDoesNotDependOnBrightness) {
   EXPECT_NEAR(scaled(2000) / scaled(2), 1, 1e-5);
 }
 
-// x = r in truth, halves with 60 % of noise: the numerator is 0 in the mean but correlated with the denominator, so
-// that relMSE comes out above 0 by up to 2 s^4 (3 r^2 - e^2) / (r^2 + e^2)^3, s^2 = 0.18, e = 0.1, and higher terms;
-// less here, as the denominator is a mean over channels: 0.015. With the true r in the denominator: 0 within 4 sigma =
-// 4 x 0.36 / 1.01 / sqrt(3 x 65536) = 0.0033.
+// x equals the truth r, and the halves of the reference have 60 % noise. The numerator is 0 in the mean but
+// correlated with the denominator, so relMSE is above 0: by up to 2 s^4 (3 r^2 - e^2) / (r^2 + e^2)^3 with s^2 = 0.18
+// and e = 0.1, plus higher terms. Here it is less, 0.015, because the denominator is a mean over channels. With the
+// true r in the denominator it is 0 within 4 sigma = 4 x 0.36 / 1.01 / sqrt(3 x 65536) = 0.0033.
 TEST(FrameErrorTest, ASmoothDenominatorTakesTheReferencesNoiseOutOfRelMse) {
   const Image x = constant_image(256, 256, 1), r1 = noisy_image(256, 256, 1, 0.6, 1),
               r2 = noisy_image(256, 256, 1, 0.6, 2);
@@ -73,7 +73,7 @@ TEST(FrameErrorTest, ASmoothDenominatorTakesTheReferencesNoiseOutOfRelMse) {
   const LayerPlanes smooth = layer_planes({&x, "smooth.exr"}, "");
   pair.smooth = smooth.planes;
   EXPECT_NEAR(figures_of(sum_errors(pair, 0), 64).relative_squared_error->value, 0, 0.0033);
-  // All that it changes is the denominator: 2 instead of 1 in it, x off by 1/4 everywhere, r without noise.
+  // The smooth denominator is the only change: it is 2 instead of 1; x is off by 1/4 everywhere, and r has no noise.
   const Image r = constant_image(256, 256, 1), off = constant_image(256, 256, 1.25),
               twice = constant_image(256, 256, 2);
   const ComparedInputs inputs{{&off, "x"}, {&r, "r"}, {}, {}, "", {&twice, "s"}};
@@ -132,8 +132,9 @@ TEST(FrameErrorTest, BelowTheReferencesNoiseTheRootIsZeroAndUnresolved) {
   EXPECT_LE(resolved, 1);
 }
 
-// Noise equal within squares of 4x4 pixels: independent samples are 16 times fewer than pixels. The scatter
-// of the image mean over seeds is what the standard error must say; per pixel it would be 4 times too small.
+// Noise that is equal within squares of 4x4 pixels: there are 16 times fewer independent samples than pixels. The
+// reported standard error must equal the scatter of the image mean over seeds. A standard error per pixel would be 4
+// times too small.
 TEST(FrameErrorTest, StandardErrorAllowsForNeighboursThatErrTogether) {
   double scatter = 0, claimed = 0;
   constexpr int kSeeds = 64;

@@ -39,17 +39,17 @@ double seen(const DisplayedPair& pair, double speed, Gaze gaze = Gaze::fixed) {
   return detection.probability[std::size_t(pair.height / 2 * pair.width + pair.width / 2)];
 }
 
-/// The contrast at which a grating is seen with probability 1/2, times its sensitivity: 1 where the model is
-/// right. On a plane the sum over channels grows as contrast^3.5, so P at contrast 1/S gives the threshold.
+/// The contrast at which a grating is seen with probability 1/2, times its sensitivity: 1 if the model is right. On a
+/// plane the sum over channels grows as contrast^3.5, so P at the contrast 1/S determines the threshold.
 double threshold_times_sensitivity(double frequency, double degrees, double speed) {
   const double sensitivity = contrast_sensitivity(frequency * kPixelsPerDegree, std::max(speed, kDriftSpeed));
   const double p = seen(grating(frequency, degrees, 1 / sensitivity), speed);
   return kHalfSeen / std::pow(-std::log1p(-p), 1 / kPsychometricSlope);
 }
 
-// Two estimates with equal errors, each d / sqrt(2) of their difference d: m + a and m - a are compared as m + a /
-// sqrt(2) and m - a / sqrt(2). Grey is below the display's white, so that nothing is clipped; mixtures round in
-// float32.
+// Two estimates with equal errors: each error is d / sqrt(2), where d is their difference. The model compares m + a
+// and m - a as m + a / sqrt(2) and m - a / sqrt(2). Grey is darker than the display's white, so nothing is clipped;
+// mixtures are rounded in float32.
 TEST(VisibleDifferenceTest, OfTwoEstimatesIsJudgedWhatEitherErrsBy) {
   const auto image = [](double amplitude) {
     return synthetic::rgb_image(
@@ -69,10 +69,10 @@ TEST(VisibleDifferenceTest, OfTwoEstimatesIsJudgedWhatEitherErrsBy) {
   EXPECT_GT(seen(amplitude, -amplitude, false), expected);
 }
 
-// Required: contrast 1/S is seen with probability 1/2 to within 15 % of contrast, at the crests, at band
-// centres. 192 pixels hold whole periods of each at 0 degrees. The response to contrasts up to 1/3 bends by
-// (m^2 / 8) (1 - p) (2 - p) = 1.8 %; masking by the plane is none; the rest is what the border's reflection
-// does to the lowest band.
+// Required: a grating of contrast 1/S at a band's centre is seen with probability 1/2 at its crests, to within 15 %
+// of contrast. 192 pixels hold whole periods of each grating at 0 degrees. The response to contrasts up to 1/3 is
+// bent by (m^2 / 8) (1 - p) (2 - p) = 1.8 %, and the plane masks nothing. The rest is the effect of reflection at the
+// border on the lowest band.
 TEST(VisibleDifferenceTest, GratingsAtBandCentresAreSeenAtTheirThreshold) {
   for (const int band : {2, 3, 4, 5})
     for (const double degrees : {0.0, 30.0})
@@ -85,9 +85,10 @@ TEST(VisibleDifferenceTest, GratingsAtBandCentresAreSeenAtTheirThreshold) {
       }
 }
 
-// Between bands and between orientations a grating excites several channels by parts: half in each of two
-// gives (2 / 2^3.5)^(1/3.5) = .61 of what one would give, in both at once .37. The threshold there is up to 1
-// / .37 = 2.7 times too high. Not lower than 1: parts of one grating never add up to more than the whole.
+// Between bands and between orientations a grating excites several channels in part. Half of it in each of two
+// channels gives (2 / 2^3.5)^(1/3.5) = .61 of the response of one channel; between both bands and orientations, .37.
+// So the threshold is up to 1 / .37 = 2.7 times too high there. It is never below 1: the parts of one grating never
+// sum to more than the whole.
 TEST(VisibleDifferenceTest, GratingsBetweenBandsAreSeenAtMostThreeTimesLater) {
   for (const double frequency : {0.25, 0.125, 0.0625})
     for (const double degrees : {0.0, 15.0}) {
@@ -171,9 +172,9 @@ TEST(VisibleDifferenceTest, SinglePixelsAndNarrowPicturesHaveAnAnswer) {
   }
 }
 
-// Local amplitude has no phase, and bands 1 and 2, which see most of a dot, are sampled at every pixel. What
-// is left comes from band 3, which is sampled at every second pixel: 1.2 %. With bands 1 and 2 at every
-// second pixel it was 19 %.
+// The local amplitude does not depend on the phase, and bands 1 and 2, which respond most to a dot, are sampled at
+// every pixel. The remaining difference, 1.2 %, comes from band 3, which is sampled at every second pixel. With bands
+// 1 and 2 at every second pixel it was 19 %.
 TEST(VisibleDifferenceTest, ADotIsSeenAlikeWhereverItLies) {
   double least = 1e9, most = 0;
   for (const auto& [x, y] : {std::pair{32, 32}, {33, 32}, {32, 33}, {33, 33}}) {

@@ -52,7 +52,7 @@ TEST(VisionModelTest, StaticSensitivityIsTheTable) {
   EXPECT_NEAR(at(4.705), 171.83, 1e-3 * 171.83);
   for (const double other : {0.5, 2.0, 4.0, 5.5, 12.0}) EXPECT_LT(at(other), at(4.705));
   EXPECT_EQ(at(0), 0);
-  // What a larger picture holds more periods of is seen better.
+  // A picture that holds more periods of a grating makes it more visible.
   EXPECT_GT(static_contrast_sensitivity(0.5, 100, 40, 0.6), 2 * static_contrast_sensitivity(0.5, 100, 1, 0.6));
 }
 

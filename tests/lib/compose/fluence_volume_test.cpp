@@ -1,4 +1,4 @@
-// Sums of photons in cells that can be undone exactly, and filters that keep the sum.
+// Sums of photons in cells, from which photons can be removed exactly, and filters that keep the sum.
 #include "lib/compose/fluence_volume.h"
 
 #include <gtest/gtest.h>

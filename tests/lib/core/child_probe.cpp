@@ -1,5 +1,5 @@
-// child-probe MODE -- a helper program that behaves as badly as child_process_test.cpp asks for. Without MODE, as the
-// helper of a tool (cli/guard_check.sh): the mode is in the environment, CHILD_PROBE.
+// child-probe MODE -- a child program that misbehaves as child_process_test.cpp asks. Without MODE it is the child
+// program of a tool (cli/guard_check.sh), and the environment variable CHILD_PROBE holds the mode.
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/mman.h>
@@ -42,7 +42,7 @@ std::string descriptors() {
   return list;
 }
 
-/// Does what a library would do that a hostile file has taken over. Prints "done" if nothing stops it.
+/// Acts like a library that a hostile file has taken over. Prints "done" if nothing stops it.
 void do_harm(const std::string& kind) {
   const char* const canary = std::getenv("CHILD_PROBE_CANARY");
   if (kind == "open") ::open("/etc/hostname", O_RDONLY);

@@ -104,7 +104,7 @@ TEST_F(ChildProcess, MayNotTakeMoreMemoryThanItsLimit) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers take more address space than any limit";
 #endif
-  // 256 MiB in pieces of 16: it gets some, libraries and heap take the rest; never all 16.
+  // 256 MiB are requested in pieces of 16. Some are granted; libraries and the heap take the rest, so never all 16.
   const ChildResult result = run("memory", "", {.memory_bytes = 256u << 20});
   int got = -1;
   ASSERT_EQ(std::sscanf(result.trouble.c_str(), "no memory after %d MiB", &got), 1) << result.trouble;

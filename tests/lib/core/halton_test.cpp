@@ -29,8 +29,8 @@ TEST(RadicalInverse, IsExactToOneRoundingForEveryIndexSize) {
     for (std::uint32_t n = 0; n < 20000; ++n) {
       const std::uint64_t index = random.bits(n, Purpose::test) >> (n % 63);
       const double got = inverse(index);
-      // Rounding of the numerator to double, of the scale (pow) and of their product: 2^-52 in all. Digits beyond the
-      // 64-bit numerator are cut: at most 2^-52 for these bases.
+      // Rounding of the numerator to double, of the scale (pow) and of their product: 2^-52 in all. Digits that do
+      // not fit into the 64-bit numerator are cut: at most 2^-52 for these bases.
       EXPECT_NEAR(got, double(exact_inverse(index, base)), 0x1p-51) << "base " << base << " index " << index;
       EXPECT_LT(got, 1.0);
     }
@@ -47,8 +47,8 @@ TEST(RadicalInverse, NeverReachesOneAtTheWorstIndices) {
   }
 }
 
-/// docs/methods/formulas.md, photon groups: indices equal modulo N_g fall into one box of volume 1/N_g, the N_g
-/// residues into N_g boxes.
+/// docs/methods/formulas.md, photon groups: indices that are equal modulo N_g fall into one box of volume 1/N_g, and
+/// the N_g residues into N_g different boxes.
 TEST(PhotonHalton, EachGroupHasABoxOfItsOwn) {
   const PhotonHalton halton(42);
   constexpr std::uint64_t kGroups = 630;  // 2 3^2 5 7

@@ -74,7 +74,8 @@ TEST(EstimateIrradiance, WithoutEnoughPhotonsAndWithoutALargestRadiusIsZeroAndSa
 }
 
 TEST(EstimateIrradiance, AllPhotonsInOnePointStayFiniteAndLoseNoFlux) {
-  // r_k = 0. At 3 m the index resolves 3 * 2^-22 m: all 1000 photons over that disc.
+  // All photons lie at one place, so r_k = 0. At 3 m the index resolves 3 * 2^-22 m, and all 1000 photons count over
+  // a disc of that radius.
   const std::vector<Photon> photons(1000, photon({3, 1, -2}, {0.5f, 1, 2}));
   const IrradianceEstimate e = estimate(photons, {3, 1, -2}, {});
   const double radius = 3 * 0x1p-22;
@@ -82,14 +83,14 @@ TEST(EstimateIrradiance, AllPhotonsInOnePointStayFiniteAndLoseNoFlux) {
   EXPECT_EQ(e.count, 1000u);
   const IrradianceEstimate wide = estimate(photons, {3, 1, -2}, {.min_radius = 0.1f});
   expect_rgb(wide.irradiance, Rgbd{500, 1000, 2000} / (kPiD * 0.01));
-  // In the origin nothing has a size: no estimate, unless the caller gives one.
+  // At the origin floats resolve any size, so there is no estimate unless the caller gives a radius.
   const std::vector<Photon> origin(1000, photon({}, {1, 1, 1}));
   EXPECT_EQ(estimate(origin, {}, {}).irradiance, Rgbd{});
   expect_rgb(estimate(origin, {}, {.min_radius = 0.1f}).irradiance, Rgbd{1000, 1000, 1000} / (kPiD * 0.01));
 }
 
 TEST(EstimateIrradiance, SumsInDouble) {
-  // 510 of 1e-8 after one of 1, at k = 512: a float sum would stay at 1 (half a step of 1 is 6e-8).
+  // 510 photons of 1e-8 after one of 1, at k = 512: a sum in float would stay at 1, because half a step of 1 is 6e-8.
   std::vector<Photon> photons{photon({}, {1, 1, 1})};
   for (int i = 0; i < 511; ++i) photons.push_back(photon({1, 0, 0}, {1e-8f, 1e-8f, 1e-8f}));
   const double expected = (1 + 510 * double(1e-8f)) / kPiD;
@@ -111,7 +112,7 @@ TEST(EstimateIrradiance, SeparatesTheSidesOfAThinWallAndLeavesOutTheWallBesideAF
   // 400 neighbours: relative sigma 5 %, 4 sigma = 20 %
   EXPECT_NEAR(estimate_irradiance(index, {0.5f, 0.5f, 0}, kUp, options, scratch).irradiance.r, 1e4, 2e3);
   EXPECT_NEAR(estimate_irradiance(index, {0.5f, 0.5f, 0}, -kUp, options, scratch).irradiance.r, 1e6, 2e5);
-  // In the corner half the disc lies outside: half the value, and nothing of the wall's.
+  // In the corner half of the disc lies outside: half of the value, and no light of the wall.
   EXPECT_NEAR(estimate_irradiance(index, {0, 0.5f, 0}, kUp, options, scratch).irradiance.r, 5e3, 1e3);
   // Flattened tenfold, photons one millimetre below count as 10 mm away, whatever their normal.
   const IrradianceOptions within{.max_radius = 0.0099f, .min_cos = kAnyNormal};

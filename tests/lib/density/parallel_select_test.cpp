@@ -14,7 +14,7 @@ std::vector<std::uint32_t> shuffled(std::size_t count) {
   return values;
 }
 
-/// Chunks from one value to all of them; borders at nothing, in the middle, at all.
+/// Chunks from one value to all values; the border at the start, in the middle and at the end.
 TEST(ParallelPartition, PutsInFrontWhatIsBelow) {
   for (const std::size_t count : {0, 1, 2, 7, 1000, 4099})
     for (const std::size_t chunk : {1, 3, 64, 5000})
@@ -28,8 +28,8 @@ TEST(ParallelPartition, PutsInFrontWhatIsBelow) {
       }
 }
 
-/// Large enough that samples are taken; shuffled, in order, backwards, and with a sample that tells lies: all it meets
-/// are the smallest values, so that what is sought lies far outside of it.
+/// Large enough that samples are taken: shuffled, ascending, descending, and with a misleading sample. The misleading
+/// sample holds the smallest values only, so the wanted value lies far outside of it.
 TEST(ParallelNthElement, IsTheNth) {
   constexpr std::size_t kCount = 400000;
   std::vector<std::uint32_t> up(kCount), down, lies(kCount);

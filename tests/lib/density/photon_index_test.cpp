@@ -31,7 +31,7 @@ Photon photon_at(Vec3 p, std::uint64_t i) {
   return photon;
 }
 
-/// The shapes of point set that break trees.
+/// Shapes of point sets for which search trees tend to fail.
 enum class Shape { cube, clusters, plane, coincident, line_of_copies, far_away, lattice };
 const std::vector<std::pair<Shape, std::string>> kShapes{{Shape::cube, "cube"},
                                                          {Shape::clusters, "clusters"},
@@ -96,7 +96,7 @@ Found contents(const NeighbourList& list) {
   return found;
 }
 
-/// Both searches for one query against brute force.
+/// Compares both searches for one query with brute force.
 void expect_exact(const PhotonIndex& index, const PhotonQuery& query, const std::vector<int>& ks, NeighbourList& list) {
   Found all = all_passing(index, query);
   index.find_within(query, list);
@@ -156,7 +156,7 @@ TEST(PhotonIndex, IsExactForEveryKFrom1To512) {
 }
 
 TEST(PhotonIndex, IsExactAlongAPathOfQueriesThroughManyPhotons) {
-  // 50 000 photons in sheets, queries step by step as a renderer makes them: deep trees, remembered radii.
+  // 50 000 photons in sheets, with queries along lines as a renderer makes them: deep trees, remembered radii.
   std::vector<Photon> photons;
   for (std::uint64_t i = 0; i < 50000; ++i) {
     const Vec2 u = random2(i, 1);
@@ -173,8 +173,9 @@ TEST(PhotonIndex, IsExactAlongAPathOfQueriesThroughManyPhotons) {
 }
 
 TEST(PhotonIndex, ManyCoincidentPhotonsDoNotMakeASearchLong) {
-  // 400 000 photons in one point against 400: the same search but for the tree's depth. A search that cannot
-  // leave out equal distances reads them all and takes hundreds of times as long. Best of five, for quiet.
+  // 400 000 photons at one point against 400: the same search except for the tree's depth. A search that cannot skip
+  // equal distances reads all photons and takes hundreds of times as long. The best of five runs, because the machine
+  // may be busy.
   const PhotonIndex few(photons_of(Shape::coincident, 400)), many(photons_of(Shape::coincident, 400000));
   NeighbourList list;
   const auto seconds = [&](const PhotonIndex& index) {

@@ -69,8 +69,8 @@ TEST(WindowSum, IsExactInAnyOrderFromDenormalToHuge) {
 }
 
 TEST(PlanarHull, AreaOfPointsInASquareAndATriangleIsRightInTheMean) {
-  // The mean of 2000 estimates from 50 points each; one deviates by less than 10 % (measured), so the mean by less than
-  // .1 / sqrt(2000) = .0023: 3 of these.
+  // The mean of 2000 areas, each estimated from 50 points. One estimate deviates by less than 10 % (measured), so the
+  // mean by less than .1 / sqrt(2000) = .0023. The band is 3 of these.
   for (const bool triangle : {false, true}) {
     double sum = 0;
     for (int run = 0; run < 2000; ++run) {
@@ -88,7 +88,8 @@ TEST(PlanarHull, AreaOfPointsInASquareAndATriangleIsRightInTheMean) {
 }
 
 TEST(PlanarHull, EightPointsTellTheAreaToAHalf) {
-  // What FluxCells leaves alone with fewer: the estimates' rms deviation from the square's area.
+  // Mean square of the relative deviation from the square's area, by 8 and by 4 points. FluxCells leaves cells with
+  // fewer than 8 points alone.
   double squares[2]{};
   for (const std::uint32_t count : {8u, 4u})
     for (int run = 0; run < 2000; ++run) {
@@ -197,7 +198,7 @@ TEST(FluxCells, SidesAndObjectsAreCellsOfTheirOwn) {
 }
 
 TEST(FluxCells, ASurfaceAtZeroIsNotDealtOutToTwoCells) {
-  // Heights of a floor at 0 come out as +-1e-8: without the grid's shift they alternate between two cubes.
+  // Heights of a floor at 0 are +-1e-8. Without the grid's shift photons would alternate between two cubes.
   FluxCells cells(1, 0);
   for (int i = 0; i < 400; ++i)
     cells.add({{float(i % 20) * 0.01f, float(i / 20) * 0.01f, i % 2 ? 1e-8f : -1e-8f}, kUp, 1}, {1, 1, 1});
@@ -244,8 +245,8 @@ TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
   EXPECT_FALSE(parts.high.photons.empty());
 }
 
-// Some photons are in one part alone: without flux in the low one, by a limit of 0 in the high one. Directions stay
-// with their photons.
+// Some photons are in one part only: photons without flux in the low part, all photons in the high part if the limit
+// is 0. Directions stay with their photons.
 TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   PhotonBlock block = floor_with_spot(3000, 6000, 6);
   for (std::size_t i = 0; i < block.photons.size(); ++i) block.directions.push_back({std::uint16_t(i), 7});
@@ -308,8 +309,8 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
 }
 
 TEST(CellEdge, SixteenMeanDistancesOnASurface) {
-  // Photons of a floor: squares of edge e hold 256 of n on 64 m^2 where e = 16 sqrt(64 / n). The scan goes in steps of
-  // a quarter of an octave, and cells at the border hold fewer.
+  // Photons of a floor of 64 m^2: squares of edge e hold 256 of n photons where e = 16 sqrt(64 / n). The search goes
+  // in steps of a quarter of an octave, and cells at the border hold fewer photons.
   for (const int count : {10000, 100000}) {
     CellEdge edge, shuffled;
     std::vector<Photon> photons = floor_with_spot(count, 0, 8).photons;

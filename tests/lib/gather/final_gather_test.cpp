@@ -237,13 +237,13 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   EXPECT_EQ(record.radius_unclamped, INFINITY);
 }
 
-/// A plate of half-width 0.5 at 0.25 above a wide floor, under a light so far away that it is a sun of irradiance 1.
-/// The plate's underside sees a floor in shadow, with a lit rim. Seen from the middle, a square floor of half-width w
-/// straight below fills the share 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)) of the hemisphere, X = w / h,
-/// so the lit rim has 0.998 - 0.831. Points of the floor are 0.25 apart and are lit from 0.01 outside the shadow. If
-/// hits read them without a test, they would bring light from up to 0.12 inside the shadow: too much by half or more. 4
-/// gathers of 4000 rays with one shadow ray each at the shadow's edge: 0.5 %. The light's height shifts the edge by
-/// 0.01 %.
+/// A plate of half-width 0.5 at 0.25 above a wide floor, under a lamp so far away that it acts as a sun of irradiance
+/// 1. The plate's underside sees a floor in shadow with a lit rim. From the middle of the underside, a square floor
+/// of half-width w fills the share 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)) of the hemisphere, X = w /
+/// h, so the lit rim has 0.998 - 0.831. Points of the floor are 0.25 apart and are lit from 0.01 outside the shadow.
+/// If hits read these points without a test, light would come from up to 0.12 inside the shadow: too much by half or
+/// more. 4 gathers of 4000 rays, with one shadow ray each at the shadow's edge, have a noise of 0.5 %. The lamp's
+/// height shifts the edge by 0.01 %.
 TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   constexpr float h = 0.25f, half = 0.5f, wide = 5, step = 0.25f, distance = 2000, rho = 0.5f;
   HandMadeScene scene;
@@ -288,11 +288,11 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
 }
 
 /// A black plate of half-width 0.5 at 0.01 above a wide floor. The points of the floor, 0.25 apart, hold an indirect
-/// light of 1 under the plate and 0 elsewhere, as below a lamp that hangs close to a ceiling. A place 1 above sees only
-/// dark floor: 0. If points were read where their light changes, light would come from 0.12 around the plate, from the
-/// share share(0.62) - share(0.5) = 0.10 of the hemisphere. A place between plate and floor sees only lit floor:
-/// exactly rho, except for 0.04 % of the rays, which leave the gap at 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or are traced on
-/// close to there.
+/// light of 1 under the plate and 0 elsewhere, as below a lamp that hangs close to a ceiling. A place 1 above sees
+/// only dark floor: 0. If points were read where their light changes, light would come from 0.12 around the plate,
+/// from the share share(0.62) - share(0.5) = 0.10 of the hemisphere. A place between plate and floor sees only lit
+/// floor and gets exactly rho, except by 0.04 % of the rays. These leave the gap at 0.5 (sin^2 > 1 - (0.01 / 0.5)^2),
+/// or hit the floor close to 0.5 and continue.
 TEST(FinalGather, LightInAGapStaysThere) {
   constexpr float gap = 0.01f, half = 0.5f, wide = 5, step = 0.25f, rho = 0.5f;
   HandMadeScene scene;

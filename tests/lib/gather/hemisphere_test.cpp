@@ -20,9 +20,9 @@ TEST(Hemisphere, UniformLight) {
   EXPECT_NEAR(record.irradiance.g, 0.7 * M_PI, 1e-5);
 }
 
-/// Cells whose light is 0 or 2 at random, independently: the irradiance has the variance (pi/(M N))^2 M N, and so has
-/// the noise by expectation. 4000 hemispheres: each mean square is within 3 sqrt(2/4000) = 7 %. The noise of even light
-/// is 0.
+/// Cells whose light is 0 or 2 at random, independently. The irradiance has the variance (pi/(M N))^2 M N, and the
+/// square of the noise has the same mean. With 4000 hemispheres each mean square is within 3 sqrt(2/4000) = 7 %. The
+/// noise of uniform light is 0.
 TEST(Hemisphere, NoiseHasTheVarianceOfTheIrradiance) {
   constexpr int kRings = 3, kSectors = 10, kMany = 4000;
   Hemisphere sky;
@@ -62,7 +62,7 @@ TEST(Hemisphere, FurtherRaysFallWhereLightIsUneven) {
   for (const int count : counts) EXPECT_EQ(count, 0);
 }
 
-/// The number of a cell's further rays does not depend on its own ray, but it depends on others' rays.
+/// The number of a cell's further rays does not depend on the cell's own ray, but on the rays of other cells.
 TEST(Hemisphere, ACellsOwnRayHasNoSayInItsFurtherOnes) {
   Hemisphere sky;
   sky.reset(5, 16);

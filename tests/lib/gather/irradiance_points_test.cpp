@@ -287,8 +287,8 @@ TEST_P(Curved, UniformLightStaysUniform) {
       }
       const bool outside = dot(p.normal, middle) > 0;
       (outside ? out : in).add(double(p.indirect.g));
-      // The triangle's plane is closest to the centre in the triangle's middle, so the height above it orders places
-      // from the middle to the edge.
+      // The plane of a triangle is closest to the centre in the middle of the triangle. So the distance from this
+      // place within the plane orders places from the middle to the edge.
       const float plane = std::abs(dot(p.position, p.normal)),
                   off = std::sqrt(std::max(0.0f, length2(p.position) - plane * plane));
       if (n > 0) bands[outside][std::min(4, int(off / (0.75f * 1.6f / float(n)) * 5))].add(double(p.indirect.g));

@@ -84,10 +84,10 @@ TEST(LampLight, PhotonsBesideALamp) {
 }
 
 /// A floor below the lamp, with 500 rays and 100 explicit samples: the mean of 60 gathers is within 1 % of the
-/// integral. One gather has an RMS error below 6 %, most of it from the some 20 rays that meet the spot closer than 6
-/// d. The spot of a lamp at 1 cm fills 1e-4 of the hemisphere: one ray of 500 would meet it in one gather of 20, and
-/// bring all of its light. Seen to fail: rays that contribute all of the light (2.05 and 2.03 at 1 cm), points in place
-/// of samples (.97 to .85).
+/// integral. One gather has an RMS error below 6 %, most of it from about 20 rays that meet the spot closer than 6 d.
+/// The spot of a lamp at 1 cm fills 1e-4 of the hemisphere: one ray of 500 would meet it in one gather of 20, and
+/// bring all of its light. Seen to fail: rays that contribute all of the light (2.05 and 2.03 at 1 cm), points in
+/// place of samples (.97 to .85).
 TEST(LampLight, FloorUnderALampBesideACeiling) {
   for (const double d : {0.01, 0.03, 0.1, 0.3})
     for (const double x : {0.0, 0.8}) {

@@ -51,8 +51,8 @@ TEST(SignedDensity, WhatComesAndGoesCancelsInIrradianceAndNotInInfluence) {
   floor.spread(4000, -1, 2);
   const auto change = floor.density().at(kMiddle, kUp, 0.5f, PathRandom(1, 1));
   ASSERT_TRUE(change);
-  // 250 photons per m^2 and sign; pi / 4 m^2 hold 196 of each, with a standard deviation of 14; their difference has
-  // sqrt(2) times that.
+  // 250 photons per m^2 and sign: pi / 4 m^2 hold 196 of each sign, with a standard deviation of 14. The difference
+  // of the two numbers has sqrt(2) times that.
   const double area = double(kPi) / 4;
   EXPECT_NEAR(change->irradiance.g, 0, 4 * std::sqrt(2 * 196.0) / area);
   EXPECT_NEAR(change->influence, 500, 4 * std::sqrt(2 * 196.0) / area);
@@ -71,13 +71,14 @@ TEST(SignedDensity, InfluenceDoesNotKnowSigns) {
 }
 
 TEST(SignedDensity, AtAnEdgeTheAreaThatIsThereCounts) {
-  // On the rim of the floor half of the disc is floor: the density must be that of the middle, not half of it.
+  // At the rim of the floor half of the disc is floor. The density must be that of the middle of the floor, not half
+  // of it.
   Floor floor;
   floor.spread(40000, 1, 1);
   const auto change = floor.density().at({2, 0, 0.001f}, kUp, 0.5f, PathRandom(1, 1));
   ASSERT_TRUE(change);
-  // 982 photons: 3.2 %; the area from 32 probes that arrive of about 64: 1 / sqrt(64) of the mean; 4 standard errors of
-  // both.
+  // 982 photons have a noise of 3.2 %. The area comes from 32 probes that arrive, of about 64: an error of 1 /
+  // sqrt(64). The band is 4 standard errors of both.
   EXPECT_NEAR(change->irradiance.g, 2500, 2500 * 0.55);
   EXPECT_GT(change->irradiance.g, 2500 * 0.6);
 }
@@ -141,8 +142,8 @@ TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
 }
 
 TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
-  // Records with influences on both sides of the thresholds, some alone, some in the dark; the look-up that ends early
-  // agrees with the mean at every place: none, a share and all of it all occur.
+  // Records with influences on both sides of the thresholds, some isolated, some in the dark. The look-up that ends
+  // early agrees with the mean at every place. Places with no share, a part and all of E_y all occur.
   const PathRandom random(1, 2);
   std::vector<IrradianceRecord> records;
   std::vector<float> influences;
@@ -150,7 +151,7 @@ TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
     const Vec2 u = random.get2(i, Purpose::test), v = random.get2(i, Purpose::place);
     records.push_back(record({20 * u.x, 0, 20 * u.y}, i % 4 == 0 ? 0 : 1 + v.x));
     influences.push_back(v.y < 0.7f ? 0.05f * v.y : 0.9f * (v.y - 0.7f));
-    if (i % 4 == 0) influences.back() *= 0.01f;  // as large as that of the least irradiance that is told from black
+    if (i % 4 == 0) influences.back() *= 0.01f;  // as large as the influence at the least irradiance
   }
   const InfluenceField field(records, influences, {});
   int none = 0, all = 0, some = 0;
@@ -166,8 +167,9 @@ TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
 }
 
 TEST(Influence, BesideADarkRecordTheMeanDecides) {
-  // Mean irradiance 100, so 1 is told from black. Both records are below the threshold, .0594 / 1 and .1188 / 2 of .06;
-  // between them the means are .0891 and 1: above it.
+  // The mean irradiance is 100, so least_ is 1. Both records have relative influences below the threshold of .06:
+  // .0594 / 1 and .1188 / 2. Halfway between them the means are .0891 and 1, and their quotient is above the
+  // threshold.
   const std::vector<IrradianceRecord> records{record(kMiddle, 0), record(kMiddle, 2), record({20, 0, 20}, 298)};
   const std::vector<float> influences{0.0594f, 0.1188f, 0};
   const InfluenceField field(records, influences, {});
@@ -176,8 +178,8 @@ TEST(Influence, BesideADarkRecordTheMeanDecides) {
 }
 
 TEST(Influence, ARecordThatNoPointStandsForHasTheDiscOfTheNearestPoint) {
-  // The point's clearance is nil, so it represents no place. Its disc is 7 x 0.05 m wide, the map's 0.5 m. Photons
-  // between the two do not count.
+  // The point has no clearance, so it represents no place, but its radius is used. The disc is 7 x 0.05 m wide; the
+  // map's own radius is 0.5 m. Photons between the two radii do not count.
   Floor floor;
   floor.spread(4000, 0.1f, 1);
   const auto near = [](const Photon& p) { return std::hypot(p.position[0] - 2, p.position[2] - 2) < 0.4f; };

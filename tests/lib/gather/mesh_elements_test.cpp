@@ -30,8 +30,8 @@ std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const M
   return elements;
 }
 
-/// A room of 2 m, and photons in it: one in the middle of each element of the inner sides, worth `irradiance(position)`
-/// over its area.
+/// A room of 2 m, and photons in it: one in the middle of each element of the inner sides, whose flux is
+/// `irradiance(position)` times the element's area.
 class LightTexture : public testing::Test {
  protected:
   static constexpr double kCell = 0.21;
@@ -52,7 +52,7 @@ class LightTexture : public testing::Test {
     }
     return photons;
   }
-  /// A photon on each side of each triangle, so that all elements are listed; only those of inner sides.
+  /// One photon on each inner side of each triangle, so that all these elements are listed.
   MeshSums full() {
     MeshSums sums(*tracer_, cuts_, 1e-9);
     std::vector<formats::Photon> some;
@@ -106,7 +106,7 @@ TEST_F(LightTexture, TheBilateralFilterKeepsFluxAndEdges) {
     for (const formats::MeshElement& e : texture(uneven, {kind, 0.3, 0.5f})) {
       flux += double(e.irradiance[0] * e.area);
       if (std::abs(e.position[1]) < 0.999f || e.position[0] > -0.2f || e.position[0] < -0.4f) continue;
-      sum += double(e.irradiance[0] * e.area);  // of floor and ceiling, a width beside the step
+      sum += double(e.irradiance[0] * e.area);  // of floor and ceiling, one filter width from the step
       area += double(e.area);
     }
     return sum / area;
@@ -114,7 +114,7 @@ TEST_F(LightTexture, TheBilateralFilterKeepsFluxAndEdges) {
   double flux = 0;
   EXPECT_LT(middle(MeshFilter::Kind::bilateral, flux), 1.25);
   EXPECT_NEAR(flux, wanted, 1e-4 * wanted);
-  EXPECT_GT(middle(MeshFilter::Kind::gaussian, flux), 1.35);  // 1 + 3 x share of a Gaussian beyond its deviation, .16
+  EXPECT_GT(middle(MeshFilter::Kind::gaussian, flux), 1.35);  // 1 + 3 x .16, a Gaussian's share above one deviation
 }
 
 TEST_F(LightTexture, SumsHaveNoOrder) {
@@ -135,9 +135,9 @@ TEST_F(LightTexture, SumsHaveNoOrder) {
     }
 }
 
-/// Light that is linear along the walls is read as it was put in: corners inside a wall have the mean of elements that
-/// lie symmetrically around them, and between them reading is linear, too. At the rim of a wall a corner has the mean
-/// of one side's elements alone.
+/// Light that is linear along the walls is read as it was stored. A corner inside a wall has the mean of elements
+/// that lie symmetrically around it, and values between corners are linear, too. A corner at the rim of a wall has
+/// the mean of one side's elements alone.
 TEST_F(LightTexture, IsReadWhereItWasMade) {
   formats::MeshirradFile file;
   file.header.cell = kCell;
@@ -159,7 +159,8 @@ TEST_F(LightTexture, IsReadWhereItWasMade) {
   EXPECT_GT(inside, 100);
 }
 
-/// Photons worth 1 each, as many per element as `mean` has for its position, with the scatter of a Poisson process.
+/// Photons of flux 1. Their number in an element has a Poisson distribution whose mean is `mean` of the element's
+/// position.
 MeshFlux scattered(const std::vector<formats::MeshElement>& elements, const std::function<double(float)>& mean) {
   std::mt19937_64 random(11);
   MeshFlux flux;
@@ -180,10 +181,11 @@ double rms(const std::vector<formats::MeshElement>& elements, const std::functio
   return std::sqrt(sum);
 }
 
-/// Even light, 57 photons under the narrow Gaussian, a noise of 13 %; under one four times as wide a quarter of it, c.
-/// The two bands between have 2.7 c and 1.3 c. Their mean squares are taken over some 16 and 4 independent places, so
-/// that the shares kept scatter: rms .17 and .39 of noise remain (integrals over chi squared), .46 c and .51 c, in all
-/// sqrt(1 + .46^2 + .51^2) c = 1.21 c, below sqrt(2) c. Seen to fail (3.3 c) if bands are kept.
+/// Uniform light with 57 photons under the narrow Gaussian has a noise of 13 %. Under a Gaussian four times as wide a
+/// quarter of this noise remains, c. The two bands between have the noises 2.7 c and 1.3 c. Their mean squares are
+/// estimated from about 16 and 4 independent places, so the kept shares scatter: shares of .17 and .39 (rms,
+/// integrals over chi squared) of the bands' noise remain, .46 c and .51 c. In all this is sqrt(1 + .46^2 + .51^2) c
+/// = 1.21 c, below sqrt(2) c. Seen to fail (3.3 c) if all of both bands is kept.
 TEST_F(LightTexture, ScalesRemoveNoise) {
   const auto even = [](float) { return 450.0; };
   std::vector<formats::MeshElement> elements = all_elements(room_.frame(), cuts_), coarse = elements;
@@ -199,8 +201,8 @@ TEST_F(LightTexture, ScalesRemoveNoise) {
   EXPECT_NEAR(kept, wanted, 1e-8 * wanted);
 }
 
-/// A step of a factor of four under 10^4 times the photons: noise is .1 %, so all bands that differ from 0 by the step
-/// are signal, and the light is that of the narrow Gaussian alone.
+/// A step of a factor of four with 10^4 times the photons: the noise is .1 %. All bands that the step changes are
+/// signal, so the result is that of the narrow Gaussian alone.
 TEST_F(LightTexture, ScalesKeepWhereLightVaries) {
   const auto step = [](float x) { return x < 0 ? 4.5e6 : 1.8e7; };
   std::vector<formats::MeshElement> elements = all_elements(room_.frame(), cuts_), narrow = elements;
@@ -212,7 +214,7 @@ TEST_F(LightTexture, ScalesKeepWhereLightVaries) {
 }
 
 TEST_F(LightTexture, WidthsFollowFromThePhotons) {
-  // 24 m^2, 256 photons in 4 pi s^2: of 1e6 photons s = sqrt(256 x 24 / (4 pi 1e6)).
+  // Area 24 m^2, 1e6 photons, 256 of them in 4 pi s^2: s = sqrt(256 x 24 / (4 pi 1e6)).
   const MeshOptions options = with_widths({}, room_.frame(), 1'000'000);
   EXPECT_NEAR(options.filter.width, std::sqrt(256 * 24 / (4 * 3.14159265 * 1e6)), 1e-6);
   EXPECT_EQ(options.cell, options.filter.width);

@@ -208,7 +208,7 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   EXPECT_EQ(drawn, 4 * 64);
 }
 
-/// Of the 625 points of the coarsest lattice, the first 256 are gathered in parallel before there is any record. Each
+/// The first 256 points of the coarsest lattice (625 points) are gathered in parallel, before any record exists. Each
 /// of their records covers all of this small patch, so later batches gather nothing.
 TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
   const Room room;

@@ -46,7 +46,7 @@ TEST(PointRegion, TheOutlineFollowsTheSphere) {
   EXPECT_TRUE(pieces_in(plain.scene.frame().surfaces[1], {&sphere, 1}).empty());
 }
 
-/// A triangle inside a sphere is not cut, and each piece knows all spheres that hold its middle.
+/// A triangle inside a sphere is not cut, and each piece lists all spheres that hold its middle.
 TEST(PointRegion, WhatASphereHoldsStaysWhole) {
   Plain plain;
   const AimSphere spheres[] = {{{0, 3, 0}, 1, 1}, {{50, 3, 0}, 1, 1}, {{0, 2, 0}, 4, 1}};

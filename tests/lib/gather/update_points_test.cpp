@@ -135,8 +135,8 @@ TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
     ASSERT_EQ(points[i].direct, fresh[i].direct);
     sum += double(points[i].indirect.g), fresh_sum += double(fresh[i].indirect.g);
   }
-  // All updated points have one radius and points estimated anew have their own: the former are blurrer, and at the
-  // edges of walls both are clipped alike.
+  // Updated points all have one radius, and points estimated anew have their own. So updated points are more blurred,
+  // but at the edges of walls the area of both is clipped in the same way.
   EXPECT_NEAR(sum / fresh_sum, 1, 0.02);
 }
 

@@ -1,5 +1,5 @@
-// Damaged and lying EXR files: an InputError of one line, or an image; never a crash, never memory by a
-// number unchecked.
+// Damaged and inconsistent EXR files lead to an InputError of one line, or to an image. They never cause a crash, or
+// an allocation by an unchecked number.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -129,7 +129,8 @@ TEST(ExrClaims, LyingHeadersAreRefusedBeforeMemoryIsTaken) {
        "chunks");
   says(exr::magic() + exr::attribute("comments", "string", "x").substr(0, 16) + raw(0x7fffffff),
        "claims 2147483647 bytes");
-  // What OpenEXR would not skip as far as the attribute says: it would find other attributes behind it than we.
+  // OpenEXR would not skip the number of bytes that the attribute states, so it would find other attributes behind it
+  // than our reader.
   says(exr::magic() + exr::header(rgb, one, one) + exr::attribute("gamma", "float", std::string(36, '\0')) + '\0',
        "claims 36 bytes, its type has 4");
   says(exr::magic() + exr::header(rgb, one, one) + exr::attribute("more", "chlist", rgb + std::string(9, '\0')) + '\0',

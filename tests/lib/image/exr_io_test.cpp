@@ -1,4 +1,4 @@
-// EXR: what is written comes back to the bit; what must not be written is refused with its place.
+// EXR: written files are read back to the bit; images that must not be written are refused with their place.
 #include "lib/image/exr_io.h"
 
 #include <xmmintrin.h>
@@ -177,7 +177,7 @@ TEST(Exr, NotANumberIsNeitherWrittenNorRead) {
   EXPECT_THROW(save_exr(folder / "a.exr", image), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.exr"));
 
-  // A stranger's file: one pixel of R whose four bytes say NaN.
+  // A file of another program: one pixel of R whose four bytes are NaN.
   const std::string head =
       exr::magic() + exr::header(exr::channel("R", 2), exr::box(0, 0, 0, 0), exr::box(0, 0, 0, 0)) + '\0';
   put_bytes(folder / "nan.exr", head + raw(std::uint64_t(head.size() + 8)) + raw(0) + raw(4) + raw(std::nanf("")));
@@ -209,14 +209,14 @@ TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   EXPECT_EQ(image.height, 2);
   EXPECT_EQ(image.find("Y")->values, (std::vector<float>{0, 0, 0, 2, 3, 0}));
   EXPECT_EQ(image.find("id")->ids, (std::vector<std::uint32_t>{0, 0, 0, 2, 3, 0}));
-  // Where nothing was written nothing is seen.
+  // Parts of the display window outside the data window show nothing.
   EXPECT_EQ(image.find("Z")->values, (std::vector<float>{INFINITY, INFINITY, INFINITY, 2, 3, INFINITY}));
   constexpr std::uint32_t none = 0xffffffff;
   EXPECT_EQ(image.find("id.object")->ids, (std::vector<std::uint32_t>{none, none, none, 2, 3, none}));
 }
 
-/// Lines without compression are copied, past channels of halves too. A file whose line says that it is another one, or
-/// whose halves are wanted, is OpenEXR's to read.
+/// Lines without compression are copied directly, also past channels of halves. OpenEXR reads the file if a line has
+/// another number than expected, or if channels of halves are wanted.
 TEST(Exr, LinesWithoutCompressionAreFoundByTheTable) {
   const Folder folder;
   const std::string head = exr::magic() +

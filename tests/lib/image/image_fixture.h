@@ -1,4 +1,5 @@
-// tests/lib/image/image_fixture.h -- files in a folder of their own, and an EXR writer that knows no library.
+// tests/lib/image/image_fixture.h -- files in a folder that is removed afterwards, and an EXR writer that uses no
+// library.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What comes through the module is what its decoders say: pixels, messages, kinds of errors.
+// The module returns what its decoders return: pixels, messages, kinds of errors.
 #include "lib/image/images_by_module.h"
 
 #include "formats/error.h"

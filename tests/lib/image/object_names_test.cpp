@@ -1,4 +1,5 @@
-// Names of objects in a frame: what is written is read, whatever the names hold; lines of others are left out.
+// Names of objects in a frame: all names are read as they were written, whatever they contain; lines of other
+// programs are skipped.
 #include "lib/image/object_names.h"
 
 #include <gtest/gtest.h>

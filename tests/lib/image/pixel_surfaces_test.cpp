@@ -24,8 +24,8 @@ Image picture(int width, int height, const Depth& z) {
   return image;
 }
 
-/// A floor that runs to the horizon, 1/Z linear in lines: depth doubles from line to line at its far end, and it is one
-/// surface.
+/// A floor that reaches to the horizon. 1/Z is linear in lines, so at its far end depth doubles from line to line;
+/// still it is one surface.
 TEST(PixelSurfaces, APlaneIsOneSurfaceHoweverGrazing) {
   const PixelSurfaces surfaces(picture(16, 64, [](int, int y) { return 10.0f / float(y + 1); }));
   for (const std::uint8_t edge : surfaces.edges()) EXPECT_EQ(edge, 0);
@@ -49,8 +49,8 @@ TEST(PixelSurfaces, ObjectsAndNormalsSeparate) {
   EXPECT_TRUE(surfaces.same(0, 1, 1));
 }
 
-/// Nothing but colour: all is one surface. Depth 0, infinite, negative, not a number: no number comes out of it that is
-/// not one.
+/// A picture that has only colour is one surface. Depths of 0, infinity, NaN or below 0 lead to no result that is not
+/// a finite number.
 TEST(PixelSurfaces, WhatIsNotKnownAgrees) {
   const PixelSurfaces none(Image{4, 4, {}, {}, {}, {}});
   for (const std::uint8_t edge : none.edges()) EXPECT_EQ(edge, 0);

@@ -57,7 +57,7 @@ TEST(Preview, AutoExposureMapsThe98thPercentileTo09) {
 }
 
 TEST(Preview, SignedLayersAreGreyRedAndBlue) {
-  // The largest component decides: red up and green down by less is still "above".
+  // The largest component decides: if red rises and green falls by less, the pixel counts as "above".
   const Picture picture =
       make_picture(row({{"d.R", {0, 1, 0, 0.5f}}, {"d.G", {0, 0, -1, -0.25f}}, {"d.B", {0, 0, 0, 0}}}), {"d", 0.0});
   EXPECT_EQ(pixel(picture, 0), (std::vector<int>{128, 128, 128}));
@@ -67,8 +67,8 @@ TEST(Preview, SignedLayersAreGreyRedAndBlue) {
   EXPECT_LT(pixel(picture, 3)[2], 60);
 }
 
-/// Light with a rounding error below 0, or a sharp filter's lobe that holds 1 % of it, is light: .5 is code 188 and
-/// what is below 0 is black. As a difference .5 would be red.
+/// Light with a rounding error below 0, or with the negative lobe of a sharp filter (1 % of it), is shown as light:
+/// .5 is code 188, and values below 0 are black. As a difference .5 would be red.
 TEST(Preview, LightWithALittleBelowZeroIsLight) {
   for (const float below : {-1e-11f, -0.015f}) {
     const Picture picture = make_picture(grey_row({0.5f, below, 1}), {"", 0.0});

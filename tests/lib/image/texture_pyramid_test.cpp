@@ -93,8 +93,8 @@ TEST(TexturePyramid, LevelsAreMeansOfLinearLight) {
   EXPECT_NEAR(at(row(), 0.25f, kClamp, false, 0.5f), 0.1f, 0.26f / 255);  // half way between levels
 }
 
-/// White where it is shown (alpha 1 and 1/3), green where it is hidden: means of a cutout are white, a third of it is
-/// shown.
+/// White where it is visible (alpha 1 and 1/3), green where it is hidden. The means of a cutout are white, and a
+/// third of it is visible.
 TEST(TexturePyramid, WhatACutoutHidesHasNoShareInItsMeans) {
   const std::vector<std::uint8_t> codes{255, 255, 255, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255, 85};
   const TexturePyramid cutout{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb_cutout, 1024};

@@ -12,7 +12,7 @@ namespace {
 
 const Vec3 kNormal = normalize(Vec3{0.2f, 0.9f, -0.4f});
 
-/// What is seen, reach 1, of walls beyond which `inside` is false; spokes rounded down as Clearance does.
+/// Clearance with reach 1 around a place. `inside` is false behind walls. Spokes are rounded down as in Clearance.
 template <class Inside>
 Clearance look(const Inside& inside) {
   const Frame frame(kNormal);
@@ -27,9 +27,9 @@ Clearance look(const Inside& inside) {
   return seen;
 }
 
-/// Straight walls at any distance and angle: nothing beyond is inside. Of what is in front rounding of the spokes takes
-/// up to 1/255 of the reach and the flat ends between them 3 % to 5 % of the area at the reach: more than .93 is
-/// inside.
+/// Straight walls at any distance and angle: no place behind a wall is inside. More than .93 of the places in front
+/// of it are inside: rounding of the spokes takes up to 1/255 of the reach, and the straight ends between spokes take
+/// 3 % to 5 % of the area at the reach.
 TEST(Clearance, EndsAtStraightWalls) {
   const Frame frame(kNormal);
   const PathRandom random(1, 1);
@@ -62,7 +62,7 @@ TEST(Clearance, AllAroundIsADiscAndNothingIsThePlaceItself) {
   EXPECT_FALSE(walled.contains(frame.bitangent * 1e-4f, kNormal));
 }
 
-/// A record 1 cm in front of a wall counts on its own side only, however large its radius.
+/// A record 1 cm in front of a wall is valid on its own side only, however large its radius.
 TEST(Clearance, NoRecordCountsBehindAWall) {
   IrradianceRecord record;
   record.normal = kNormal;

@@ -22,7 +22,7 @@ IrradiancePoint point_at(Vec3 position, Vec3 normal, std::uint32_t object, float
   return point;
 }
 
-/// `count` points at random places of the unit square y = 0, facing up; each says its own number.
+/// `count` points at random places of the unit square y = 0, facing up. The light of each is its own number.
 std::vector<IrradiancePoint> square(std::uint32_t count, std::uint32_t objects = 1) {
   std::vector<IrradiancePoint> points;
   const PathRandom random(1, 1);
@@ -45,17 +45,18 @@ TEST(PointLookup, ReadsAPointNotMuchFartherThanTheNearest) {
     for (const IrradiancePoint& p : points) nearest = std::min(nearest, length(p.position - hit));
     const PointLookup::Light* read = lookup.find(hit, {0, 1, 0});
     ASSERT_NE(read, nullptr);
-    // The nearest to the middle of the hit's cell (side spacing / 1.4) may be farther by the cell's diagonal.
+    // The point closest to the middle of the hit's cell (edge spacing / 1.4) may be farther from the hit by the
+    // cell's diagonal.
     EXPECT_LE(length(points[read->point].position - hit), nearest + 1.7321f * spacing / 1.4f + 1e-6f);
     EXPECT_EQ(read->all.g, points[read->point].indirect.g);
   }
 }
 
-/// Points known by a few shadow rays: of those in the light half say 0.1, half 1.9, drawn for each; all beside the
-/// shadow of a grid are dark, and so are those of a sheet 1 mm below, which faces the same way. Hits at marked points
-/// sample their light, 0 or 1: in the mean hits in the light must get 1. Of 10000 points at most all are read, 0.9 /
-/// sqrt(10000) = 0.9 % is their standard deviation. Were points marked by what they say themselves (brighter than the
-/// mean, with a dark one beside), those of 1.9 would be sampled and those of 0.1 read: 0.55.
+/// Points with few shadow rays: in the light, half of them (at random) have 0.1 and half 1.9. All points in the
+/// shadow of a grid are dark, and so are the points of a sheet 1 mm below that faces the same way. Hits at uneven
+/// points sample their light, 0 or 1, so hits in the light must get 1 in the mean. At most all of 10000 points are
+/// read: the standard error is 0.9 / sqrt(10000) = 0.9 %. If a point's own light decided (brighter than the mean,
+/// with a dark neighbour), points of 1.9 would be sampled and points of 0.1 read: 0.55.
 TEST(PointLookup, APointsOwnLightHasNoSayInWhetherItIsRead) {
   constexpr float kSpacing = 0.01f;
   const PathRandom random(7, 7);
@@ -78,7 +79,7 @@ TEST(PointLookup, APointsOwnLightHasNoSayInWhetherItIsRead) {
       if (!is_lit(p)) continue;
       const PointLookup::Light* read = lookup.find(p.position, {0, 1, 0});
       ASSERT_NE(read, nullptr);
-      if (!is_lit(points[read->point])) continue;  // another's cell
+      if (!is_lit(points[read->point])) continue;  // the point belongs to another cell
       ++lit;
       marked += !lookup.is_uniform(*read);
       mean += !lookup.is_uniform(*read) ? 1.0 : double(read->all.g);
@@ -103,7 +104,7 @@ TEST(PointLookup, SidesAreNeverMixedUp) {
   EXPECT_EQ(PointLookup(std::span(points).first(400), 0.05f).find({0.5f, 0, 0.5f}, {0, -1, 0}), nullptr);
 }
 
-/// Normals all around a sphere: a direction's bin and its middle are less than 60 degrees apart, so that a
+/// Normals all around a sphere: the middle of a direction's bin is less than 60 degrees from the direction, so a
 /// point with the hit's own normal is always found.
 TEST(PointLookup, EveryDirectionFindsAPointThatFacesIt) {
   const PathRandom random(4, 4);
@@ -116,8 +117,8 @@ TEST(PointLookup, EveryDirectionFindsAPointThatFacesIt) {
   }
 }
 
-/// A wall at x = 0.5 between a bright and a dark room on one floor, and a patch of floor under a box: hits near it read
-/// points of their own side or none, and most read one.
+/// A wall at x = 0.5 stands between a bright and a dark room on one floor, and a box stands on a patch of the floor.
+/// Hits close to the wall read points of their own side or none, and most read one.
 TEST(PointLookup, NoHitReadsThroughAWall) {
   std::vector<IrradiancePoint> points = square(2000);
   const auto room = [](Vec3 p) { return p.x < 0.5f ? 0.0f : p.x > 0.8f && p.z > 0.8f ? 2.0f : 1.0f; };
@@ -152,9 +153,9 @@ TEST(PointLookup, NoHitReadsThroughAWall) {
   EXPECT_LT(none, 400);        // of 20000: a strip of a tenth of the spacing on either side of the wall at most
 }
 
-/// Two floors 3 mm apart that face alike, the lower one dark, points 1 cm apart: with nothing else known of what is
-/// between, only what lies within the angle of the spokes is read, so a hit on one never reads the other nearer than 3
-/// mm / 0.05.
+/// Two floors 3 mm apart that face the same way, the lower one dark, with points 1 cm apart and unobstructed
+/// clearance. Only points within the angle of the spokes are read. So a hit on one floor reads a point of the other
+/// only if the point is farther away than 3 mm / 0.05.
 TEST(PointLookup, SheetsThatFaceAlikeAreNotMixedUp) {
   std::vector<IrradiancePoint> points = square(10000);
   for (IrradiancePoint& p : points) p.indirect = Rgb(1.0f);
@@ -194,7 +195,7 @@ TEST(PointLookup, AnswersDoNotDependOnThreadsOrOrder) {
   EXPECT_EQ(answers, expected);
 }
 
-/// Places outside the bounds, empty bounds, no points, a spacing far below what coordinates can tell.
+/// Places outside the bounds, empty bounds, no points, and a spacing far below the resolution of coordinates.
 TEST(PointLookup, OddInputsAreAnswered) {
   const std::vector<IrradiancePoint> points{point_at({0, 0, 0}, {0, 1, 0}, 5, 1)};
   for (float spacing : {1e-20f, 1.0f, 1e20f}) {
@@ -206,8 +207,8 @@ TEST(PointLookup, OddInputsAreAnswered) {
   EXPECT_EQ(PointLookup({}, 1).find({0, 0, 0}, {0, 1, 0}), nullptr);
 }
 
-/// Estimates of 50 photons err by 14 %. With E_bright = 1, in e = (r_bright / r_dark)^2 / 50 of one photon at the dark
-/// place, beside it 1 - 32 E_dark: three standard errors are 3 sqrt(0.02 + 1024 (E_dark e + e^2)).
+/// Estimates of 50 photons have an error of 14 %. With E_bright = 1, a photon at the dark place has e = (r_bright /
+/// r_dark)^2 / 50. The lines compare three standard errors, 3 sqrt(0.02 + 1024 (E_dark e + e^2)), with 1 - 32 E_dark.
 TEST(Points, ContrastCountsWhereItIsMoreThanNoiseOfPhotons) {
   const auto apart = [](float bright_radius, float dark, float dark_radius, float widest = 10) {
     std::vector<IrradiancePoint> points(3);
@@ -225,11 +226,11 @@ TEST(Points, ContrastCountsWhereItIsMoreThanNoiseOfPhotons) {
   EXPECT_FALSE(apart(1, 0.0125f, 2));   // 0.99 > 0.6
   EXPECT_TRUE(apart(1, 0.0125f, 8));    // e = 0.0003: 0.47 < 0.6
   EXPECT_FALSE(apart(1, 0.03125f, 9));  // 32 times, not more
-  EXPECT_FALSE(apart(10, 0, 10));       // of nobody knows how few photons
+  EXPECT_FALSE(apart(10, 0, 10));       // the bright estimate has an unknown number of photons
 }
 
-/// Every second point of a grid has no light, the others 50 photons' worth: 1 against 0 is more than 32 times, surely.
-/// A look-up that takes light as even does not say so, though it was asked before.
+/// Every second point of a grid has no light, the others the light of 50 photons: 1 against 0 is certainly more than
+/// 32 times. A look-up that takes light as uniform does not report it, although it was asked before.
 TEST(Points, TakenAsEvenAreNotCompared) {
   std::vector<IrradiancePoint> points;
   for (int i = 0; i < 100; ++i) {
@@ -243,8 +244,8 @@ TEST(Points, TakenAsEvenAreNotCompared) {
   EXPECT_TRUE(lookup.is_uniform_indirect(lookup.light(44)) && lookup.is_uniform(lookup.light(44)));
 }
 
-/// Bright points, and dark ones close behind them that face the same way: of another object they are the outer leaf of
-/// a double wall, of the same one they are where its light ends.
+/// Bright points, and close behind them dark points that face the same way. Dark points of another object are the
+/// outer leaf of a double wall. Dark points of the same object mark where its light ends.
 TEST(Points, TheOtherLeafOfADoubleWallIsNoContrast) {
   for (const bool other : {true, false}) {
     std::vector<IrradiancePoint> points;
@@ -263,9 +264,9 @@ TEST(Points, TheOtherLeafOfADoubleWallIsNoContrast) {
   }
 }
 
-/// A wide surface has 7 points beside each. One alone, or with one beside it, may be the only one of a wall that is
-/// half in the shadow: its direct light is sampled by who meets the wall. Seen to fail without: a hut's wall of one
-/// point in shadow, the ground before it 80 % dark.
+/// On a wide surface each point has 7 neighbours. A point with no neighbour or one may be the only point of a wall
+/// that is half in shadow, so hits on the wall sample its direct light. Seen to fail without this rule: a hut's wall
+/// had one point, which was in shadow, and the ground in front of it was 80 % too dark.
 TEST(Points, APointAloneShowsNothing) {
   for (const int count : {1, 2, 3, 4}) {
     std::vector<IrradiancePoint> points;

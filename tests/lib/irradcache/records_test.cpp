@@ -44,9 +44,10 @@ RecordStore::Interpolated by_brute_force(const RecordStore& store, Vec3 position
   return result;
 }
 
-/// Records of radii from 1e-4 to 1e2 of the scene's size, scattered, looked up near them. float cancels the
-/// difference of positions: with `far` of the scene's sizes from the origin 6e-8 far is lost. Where a point lies
-/// that close to a border, one side may count it and the other not, with a weight as small.
+/// Records with radii from 1e-4 to 1e2 of the scene's size at random places, with look-ups close to them. In float a
+/// difference of positions has an error of 6e-8 `far` at a distance of `far` scene sizes from the origin. A point
+/// that lies closer than this to a border may be valid for one of the two sums only; its weight is as small as the
+/// error.
 void expect_brute_force(Vec3 centre, float far) {
   const PathRandom random(7, 0);
   std::uint32_t drawn = 0;
@@ -74,17 +75,17 @@ void expect_brute_force(Vec3 centre, float far) {
     const Vec3 normal = normalize(r.normal + test::sample_sphere({uniform(), uniform()}) * (0.4f * uniform()));
     const auto found = store.interpolate(position, normal), wanted = by_brute_force(store, position, normal);
     covered += wanted.weight > 0;
-    // A store that is only read lists the same records in the same order: not a bit differs.
+    // A store with only_read lists the same records in the same order, so results are equal to the last bit.
     const auto again = read.interpolate(position, normal);
     ASSERT_EQ(again.count, found.count) << i;
     ASSERT_EQ(again.weight, found.weight) << i;
     ASSERT_EQ(again.irradiance, found.irradiance) << i;
-    // The same sum in the same order, stopped early.
+    // covers() adds the same weights in the same order and stops early.
     for (const float weight : {0.3f, 0.9f})
       ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
     const float tolerance = lost / std::max(1e-4f, r.radius);
     if (tolerance > 0.1f || std::min(found.weight, wanted.weight) < 10 * tolerance) continue;
-    // 1 - cosine is exact to 6e-8 only: sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
+    // 1 - cosine has an error of 6e-8, which is sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
     const float angle = 1e-3f * float(wanted.count);
     ASSERT_NEAR(found.weight, wanted.weight, 4 * tolerance + angle) << i;
     for (int c = 0; c < 3; ++c)
@@ -96,7 +97,7 @@ void expect_brute_force(Vec3 centre, float far) {
 TEST(RecordStore, FindsWhatBruteForceFinds) { expect_brute_force({0, 0, 0}, 1); }
 TEST(RecordStore, FindsWhatBruteForceFindsFarFromTheOrigin) { expect_brute_force({1000, -2000, 500}, 2000); }
 
-/// Every record counts wherever its weight in float is positive: nothing is lost at the cells' borders.
+/// Every record is found wherever its weight in float is positive, also at the borders of cells.
 TEST(RecordStore, NoCellIsForgotten) {
   const PathRandom random(11, 0);
   for (int i = 0; i < 2000; ++i) {
@@ -130,7 +131,7 @@ TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
       ASSERT_EQ(read.interpolate({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}).irradiance.r, float(100 * i + j));
 }
 
-/// E(x) = a + b . x on a plane: with exact gradients every mix of records gives it back.
+/// E(x) = a + b . x on a plane: records with exact gradients reproduce it for any weights.
 TEST(RecordStore, LinearFieldIsExact) {
   const Vec3 slope{0.3f, 0, -0.2f};
   RecordStore store;
@@ -172,7 +173,8 @@ TEST(RecordStore, NeverNegative) {
   EXPECT_NEAR(found.irradiance.g, 0.5f, 1e-6f);
 }
 
-/// A hat: 1 in the middle, half at half the radius, nothing at the border; the same over the angle's root.
+/// The weight falls linearly with the distance: 1 at the record, 1/2 at half the radius, 0 at the radius. The factor
+/// for the angle falls linearly with sqrt(1 - cosine).
 TEST(RecordStore, WeightIsAHat) {
   RecordStore store;
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
@@ -184,7 +186,7 @@ TEST(RecordStore, WeightIsAHat) {
   EXPECT_EQ(store.interpolate({}, {0.7f, 0.7f, 0}).count, 0);
 }
 
-/// 50 degrees times the bound, 1 - cos = angle^2 / 2, from 5 to 20 degrees.
+/// The angle is 50 degrees times the error bound, within 5 to 20 degrees; 1 - cos = angle^2 / 2.
 TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
   EXPECT_NEAR(least_cosine_of(0.2f), std::cos(0.2 * 50 * kPi / 180), 3e-4);
   EXPECT_FLOAT_EQ(least_cosine_of(0.2f), 0.985f);
@@ -193,8 +195,9 @@ TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
   EXPECT_FLOAT_EQ(least_cosine_of(1e-3f), 0.99625f);
 }
 
-/// A normal 16 degrees off is beyond 10: covered only as far as a record that close is as fine as they may be, by the
-/// weight it has in 20 degrees with that radius, and interpolated there with its own.
+/// A normal that differs by 16 degrees lies outside the store's 10 degrees but inside 20. covers() then uses the
+/// weight for 20 degrees with the radius limited to least_reach. interpolate() uses the weight for 20 degrees with
+/// the record's own radius.
 TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
   RecordStore store({.least_cosine = 0.985f});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
@@ -208,7 +211,7 @@ TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
   EXPECT_NEAR(store.interpolate(beside, normal).weight, 0.9f * turn, 1e-4f);
 }
 
-/// The narrower angle of all that were asked for, but where nothing is in it.
+/// The narrowest of the requested angles applies. If no record lies within it, wider angles are used.
 TEST(RecordStore, CanBeNarrowed) {
   RecordStore store({.least_cosine = 0});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
@@ -255,7 +258,7 @@ TEST(RecordStore, OneRecordAndNone) {
   EXPECT_EQ(store.interpolate({0.7f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
 }
 
-/// Five records in one place, and two one float apart: all count, the mean is theirs.
+/// Five records at one place, and two that are one float apart: all are valid, and the result is their mean.
 TEST(RecordStore, RecordsCloserThanFloatSpacing) {
   RecordStore store;
   const float x = 777.7f;
@@ -267,7 +270,7 @@ TEST(RecordStore, RecordsCloserThanFloatSpacing) {
   EXPECT_EQ(store.interpolate({x, 5, 5}, {0, 1, 0}).count, 6);
 }
 
-/// Radii beyond the scene and below what a float can tell apart there; a scene of no size.
+/// Radii larger than the scene and smaller than the resolution of floats there; a scene of size 0.
 TEST(RecordStore, RadiiAtBothEnds) {
   RecordStore store;
   store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e30f, Rgb(1.0f)));
@@ -279,9 +282,9 @@ TEST(RecordStore, RadiiAtBothEnds) {
   EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);
 }
 
-/// The ground below the rim of a plate and the top of the plate, 2 cm above: neither's records of 10 cm count on the
-/// other. Along a bowl's and a ball's great circle of 1 m records of 20 cm count 10 cm away, where the normal is 5.7
-/// degrees off.
+/// The ground below the rim of a plate, and the top of the plate 2 cm above it: records of 10 cm on one are not valid
+/// on the other. Along a great circle of a bowl or a ball of 1 m, records of 20 cm are valid 10 cm away, where the
+/// normal differs by 5.7 degrees.
 TEST(RecordStore, ParallelPlanesKeepTheirLight) {
   RecordStore store;
   store.add(record_at({0, 0, 0}, {0, 1, 0}, 0.1f, Rgb(9.0f)));
@@ -296,7 +299,7 @@ TEST(RecordStore, ParallelPlanesKeepTheirLight) {
   }
 }
 
-/// What look-ups see follows a radius that shrinks, also after the table has grown.
+/// Look-ups use a radius that has shrunk, also after the table has grown.
 TEST(RecordStore, ShrunkRecordsHoldLessFar) {
   RecordStore store;
   store.add(record_at({0, 0, 0}, {0, 1, 0}, 1, Rgb(1.0f)));

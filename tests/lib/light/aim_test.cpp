@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPiD = std::numbers::pi;
 
-/// Mean and standard error of what `value` says of n photons.
+/// Mean of `value` over n photons, and its standard error.
 struct Estimate {
   double mean = 0, error = 0, most = 0;
   int hits = 0;
@@ -38,11 +38,11 @@ Estimate estimate(int n, Value value) {
   return e;
 }
 
-/// Two that overlap, one apart, of unlike weights, in a scene of radius 100.
+/// Two spheres that overlap and one apart, with different weights, in a scene of radius 100.
 const std::vector<AimSphere> kSpheres = {{{10, 0, 5}, 3, 1}, {{11, 1, 6}, 2, 5}, {{-60, 20, 0}, 0.5, 0.1}};
 const Vec3 kTravel = normalize(Vec3{0.3f, -0.2f, -0.9f});
 
-/// Mean flux is what the uniform disc carries, 1; no photon has more than 1 / kUniform of it.
+/// The mean flux is that of the uniform disc, 1. No photon has more than 1 / kUniform of it.
 TEST(Aim, TheTotalIsThatOfTheUniformDisc) {
   const Aim aim(kSpheres, {1, 2, 3}, 100);
   const Estimate total = estimate(1 << 18, [&](const auto& u) { return aim.start(kTravel, u[0], u[1]).flux; });
@@ -50,15 +50,15 @@ TEST(Aim, TheTotalIsThatOfTheUniformDisc) {
   EXPECT_LE(total.most, 1 / Aim::kUniform);
 }
 
-/// A sphere half outside of the scene sphere adds nothing: what starts beside the scene's disc is black.
+/// A sphere half outside of the scene's sphere adds no light: photons that start outside the scene's disc are black.
 TEST(Aim, SpheresBeyondTheSceneAddNothing) {
   const Aim aim(std::vector<AimSphere>{{{100, 0, 0}, 20, 1}}, {}, 100);
   const Estimate total = estimate(1 << 18, [&](const auto& u) { return aim.start({0, 0, -1}, u[0], u[1]).flux; });
   EXPECT_NEAR(total.mean, 1, 3 * total.error);
 }
 
-/// Through a window of radius a that faces the light goes a^2 / R^2 of it, wherever the window is: in one sphere, in
-/// two, at the rim of one, in none. In a sphere half a million photons say so to 2 %, where uniform ones would need a
+/// A window of radius a that faces the light receives a^2 / R^2 of it, wherever the window is: in one sphere, in two,
+/// at the rim of one, in none. Half a million photons measure it to 2 % in a sphere; uniform photons would need a
 /// hundred million.
 TEST(Aim, ThroughAnyWindowGoesItsShare) {
   const Vec3 centre{1, 2, 3};
@@ -90,8 +90,8 @@ TEST(Aim, HoldsWhatLiesInASphere) {
   EXPECT_FALSE(aim.holds({-60, 20.6f, 0}));
 }
 
-/// A hut of 4 m with a hole of 1 m x 1 m in its roof, z = 3, in a scene of 1000 m: what sun and sky send through the
-/// hole, E cos A and pi L A (of the half sphere above). The aim's directions are those of the light, all of them.
+/// A hut of 4 m with a hole of 1 m x 1 m in its roof, z = 3, in a scene of 1000 m. Sun and sky send E cos A and pi L
+/// A (from the upper hemisphere) through the hole. Aimed photons have all directions of the light.
 class ThroughTheRoof : public testing::Test {
  protected:
   LightScene scene_{500};
@@ -133,8 +133,9 @@ TEST_F(ThroughTheRoof, OfTheSky) {
   EXPECT_LT(aimed.error, 0.05 * aimed.mean);
 }
 
-/// Ways into spheres: of one the density is 1 / (2 pi (1 - sqrt(1 - r^2 / d^2))) everywhere in its cone; of several the
-/// mean of 1 / density over the ways is the solid angle of all cones together, here of the wider of two about one axis.
+/// Directions towards spheres. For one sphere the pdf is 1 / (2 pi (1 - sqrt(1 - r^2 / d^2))) everywhere in its cone.
+/// For several spheres the mean of 1 / pdf is the solid angle of all cones together, here of the wider of two cones
+/// about one axis.
 TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
   const Vec3 place{40, -30, 20};
   const auto solid_angle = [](double r, double d) { return 2 * kPiD * (1 - std::sqrt(1 - r * r / (d * d))); };
@@ -148,7 +149,7 @@ TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
     EXPECT_LE(length(cross(to, way.direction)), 4 * (1 + 1e-5f));
   }
   const Aim two(std::vector<AimSphere>{{{40, -30, 0}, 3, 1}, {{40, -30, -20}, 2, 4}}, {1, 2, 3}, 100);
-  int other = 0;  // ways at a rim, where rounding decides
+  int other = 0;  // directions at a rim, where rounding decides
   const Estimate angle = estimate(1 << 16, [&](const auto& u) {
     const Aim::Way way = two.towards(place, {float(u[0]), float(u[1])});
     other += std::abs(two.pdf_solid_angle(place, way.direction) / way.pdf_solid_angle - 1) > 1e-4;

@@ -78,7 +78,8 @@ TEST(Emission, MeanFluxIsTheTotal) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kCount, total[c], 1e-3 * total[c]);
 }
 
-// A blue lamp of luminance 7 % gets at least 5 % of its largest channel; probabilities sum to one.
+// The probability of a lamp is proportional to the luminance of its flux, but at least to 5 % of its largest channel.
+// A blue lamp has 7 % of the luminance of a white one. Probabilities sum to one.
 TEST(Emission, ProbabilitiesFollowTheLuminanceOfTheFlux) {
   LightScene scene;
   scene.add(PunctualLight::Kind::point, Rgb(1.0f), {}, {0, 0, -1});
@@ -88,7 +89,8 @@ TEST(Emission, ProbabilitiesFollowTheLuminanceOfTheFlux) {
   EXPECT_NEAR(table.probability[0] + table.probability[1], 1, 1e-15);
 }
 
-// One by one or many at once, of a lamp with two sides, one with one and a point light; dark lights never.
+// Slots drawn one by one or many at once, for a lamp with two sides, a lamp with one side and a point light. Dark
+// lights are never drawn.
 TEST(Emission, SlotsAreChosenByTheirPartOfTheUnitInterval) {
   LightScene scene;
   scene.add(square_facing_down({0, 0, 1}, 1), Rgb(0.0f));
@@ -124,7 +126,8 @@ TEST(Emission, SlotsAreChosenByTheirPartOfTheUnitInterval) {
   }
 }
 
-// Triangle: centroid of the square, mean cosine 2/3 of a Lambert emitter, both sides by halves.
+// Photons of the square start in the mean at its centroid and have the mean cosine 2/3 of a Lambert emitter. If the
+// square has two sides, each emits half of them.
 TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
   for (const bool two_sided : {false, true}) {
     LightScene scene;
@@ -153,8 +156,8 @@ TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
   }
 }
 
-// With a = 1 - cos i and w = cos i - cos o: the share within the inner cone is a / (a + w / 3), and within
-// the angle where s = 1/2, of a quarter of the intensity, (a + w (1 - 1/8) / 3) / (a + w / 3).
+// Let a = 1 - cos i and w = cos i - cos o. The share of photons within the inner cone is a / (a + w / 3). The share
+// within the angle at which s = 1/2 (a quarter of the intensity) is (a + w (1 - 1/8) / 3) / (a + w / 3).
 TEST(Emission, SpotsEmitByTheirFalloff) {
   LightScene scene;
   const Vec3 axis = normalize(Vec3{1, -2, 0.5f});
@@ -203,7 +206,7 @@ TEST(Emission, DirectionalLightsStartOnADiscOutsideTheScene) {
   EXPECT_NEAR(square, 24, 0.05);
 }
 
-// Three frames: a lamp dims to nothing, another shrinks to nothing. Slots and probabilities stay, weights
+// In three frames one lamp dims to nothing and another shrinks to nothing. Slots and probabilities stay, and weights
 // change.
 TEST(Emission, TableIsFrozenOverTheSegment) {
   std::vector<LightScene> scenes(3);

@@ -31,14 +31,14 @@ Paint one_bright(int bx, int by) {
   return [=](int x, int y) { return Rgb(x == bx && y == by ? 1.0f : 0.0f); };
 }
 
-/// Blobs, black parts and a sun of 10^4.
+/// A sky with blobs, black parts and a sun of 10^4.
 Rgb sky(int x, int y) {
   if (y > 9) return Rgb(0.0f);
   if (x == 5 && y == 3) return Rgb(1e4f, 8e3f, 6e3f);
   return Rgb(0.2f + 0.1f * float(x % 3), 0.3f, 0.1f * float(y));
 }
 
-/// Irradiance at a point that nothing shadows, by light sampling, mean of n samples of the joint kind.
+/// Irradiance at a point without occlusion, by light sampling: the mean of n samples.
 double sampled_irradiance(const Lights& lights, Vec3 normal, int n, std::uint64_t seed) {
   double sum = 0;
   for (int i = 0; i < n; ++i) {
@@ -63,7 +63,7 @@ TEST(EnvironmentAxes, TheMiddleIsPlusZItsLeftIsPlusXTheTopIsPlusY) {
     const Environment map = painted(64, 32, one_bright(x, y));
     EXPECT_NEAR(EnvironmentLight(map).radiance(axis).g, 0.25, 1e-5) << x << ' ' << y;  // of four pixels around it
   }
-  // Which side is left: column 30 is at longitude +1.5 pixels, towards +X.
+  // Column 30 lies at longitude +1.5 pixels, towards +X: this decides which side is left.
   const double off = 1.5 * 2 * kPiD / 64, low = 0.5 * kPiD / 32;
   const Environment left = painted(64, 32, one_bright(30, 15));
   const Vec3 towards(Vec3d{std::sin(off) * std::cos(low), std::sin(low), std::cos(off) * std::cos(low)});
@@ -73,8 +73,8 @@ TEST(EnvironmentAxes, TheMiddleIsPlusZItsLeftIsPlusXTheTopIsPlusY) {
   EXPECT_EQ(EnvironmentLight(top).radiance({0, -1, 0}).g, 0);
 }
 
-// The worked example of formats/conventions.md: the irradiance is 2 x 2 pi / w x int hat(t) sin t cos t dt, which the
-// sine at the pixel's centre stands for to 0.3 %.
+// The worked example of formats/conventions.md: the irradiance is 2 x 2 pi / w x int hat(t) sin t cos t dt. Taking
+// the sine at the pixel's centre has an error of 0.3 %.
 TEST(EnvironmentAxes, TheWorkedExample) {
   const Environment map = painted(64, 32, [](int x, int y) { return Rgb(x == 16 && y == 8 ? 2.0f : 0.0f); });
   EXPECT_NEAR(EnvironmentLight(map).radiance({0.7401f, 0.6716f, 0.0364f}).g, 2, 0.01);
@@ -98,14 +98,15 @@ TEST(EnvironmentIntegral, IsFourPiForOneEverywhereAndTheHatOfAPixel) {
     const Environment white = painted(w, h, [](int, int) { return Rgb(1.0f); });
     EXPECT_NEAR(EnvironmentLight(white).integral().g, 4 * kPiD, 1e-12) << w << 'x' << h;
   }
-  // One pixel at polar angle t away from the poles: 2 pi / w times int hat sin = sin t (2 - 2 cos D) / D, D = pi / h.
+  // One pixel at polar angle t, not at a pole: 2 pi / w times int hat sin = sin t (2 - 2 cos D) / D, D = pi / h.
   const Environment map = painted(64, 32, one_bright(9, 12));
   const double d = kPiD / 32, t = 12.5 * d;
   EXPECT_NEAR(EnvironmentLight(map).integral().g, 2 * kPiD / 64 * std::sin(t) * (2 - 2 * std::cos(d)) / d, 1e-12);
 }
 
-// For any f: mean of f L / pdf = integral of f L. f = 1 gives the closed form, f = 1 / L the solid angle in which L
-// is not 0. And the density that sample() says is the one that pdf_solid_angle says, up to the direction's float32.
+// For any f, the mean of f L / pdf is the integral of f L. f = 1 has a closed form; f = 1 / L gives the solid angle
+// in which L is not 0. The pdf that sample() returns equals pdf_solid_angle(), up to the rounding of the direction to
+// float32.
 TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
   const std::vector<std::pair<Environment, double>> maps{
       {painted(1, 1, [](int, int) { return Rgb(2.0f); }), 4 * kPiD},
@@ -122,7 +123,8 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
       EnvironmentLight::Sample s;
       ASSERT_TRUE(light.sample(u[0], u[1], s));
       sum += luminance(Rgbd(s.radiance)) / s.pdf_solid_angle;
-      // A direction of float32 is off by 6e-8 rad, 4e-7 of a cell, over which radiance changes by all there is.
+      // A direction in float32 has an error of 6e-8 rad, 4e-7 of a cell, across which the radiance may change
+      // completely.
       const float near = 1e-4f * s.radiance.g + 1e-6f * (m == 1 ? 1e4f : 1.0f);
       EXPECT_NEAR(light.radiance(s.direction).g, s.radiance.g, near);
       if (s.radiance.g > 0.01f) {
@@ -130,9 +132,10 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
       }
       area += 1 / s.pdf_solid_angle;
     }
-    // L / pdf is constant but for the sine within a cell (12 rows: +-2 %), so Halton points leave 1e-4 of the sum.
+    // L / pdf is constant except for the sine within a cell (12 rows: +-2 %), so Halton points leave 1e-4 of the sum.
     EXPECT_NEAR(sum / kCount, luminance(light.integral()), 3e-4 * luminance(light.integral())) << m;
-    // The area rests on the samples where L is small: with a sun that takes nearly all of them, on too few.
+    // The estimate of the area depends on samples where L is small. With a sun, which takes nearly all samples, too
+    // few remain.
     if (m != 1) { EXPECT_NEAR(area / kCount, maps[m].second, 0.03 * maps[m].second) << m; }
   }
 }
@@ -163,10 +166,10 @@ TEST(EnvironmentSampling, NothingFromBlack) {
   EXPECT_EQ(light.pdf_solid_angle({0, 1, 0}), 0);
 }
 
-// A sun of 10^4 times the sky in four pixels at 45 degrees: the error of independent samples falls as 1/sqrt(n), over
-// 4..256 samples, 4096 trials of each: the log of a standard deviation is known to 1/sqrt(2 * 4096) = 1.1 %, more for
-// heavy tails, the slope over log 64 to 0.01. A sky that came in through few bright samples would show a slope that
-// is not there yet, and a largest sample far from the mean.
+// A sun of 10^4 times the sky fills four pixels at 45 degrees. The error of independent samples falls as 1/sqrt(n)
+// from 4 to 256 samples. With 4096 trials each, the log of a standard deviation has an error of 1/sqrt(2 * 4096) =
+// 1.1 %, more for heavy tails, and the slope over log 64 one of 0.01. If few bright samples carried the sky's light,
+// the slope would differ, and the largest sample would be far from the mean.
 TEST(EnvironmentSampling, ASunOfTenThousandGivesNoFireflies) {
   const Environment map = painted(64, 32, [](int x, int y) {
     return Rgb((x == 20 || x == 21) && (y == 7 || y == 8) ? 1e4f : y < 16 ? 1.0f : 0.0f);
@@ -198,8 +201,8 @@ TEST(EnvironmentSampling, ASunOfTenThousandGivesNoFireflies) {
   EXPECT_LT(greatest, 2);
 }
 
-// Irradiance of a uniform sky is pi L on any plane; of lamp and sky together their sum, whatever chooses; and the
-// densities of what can be met agree with the samples' own.
+// The irradiance of a uniform sky is pi L on any plane, and that of lamp and sky the sum of both, for any choice
+// probabilities. The pdfs of lights that a ray meets agree with those of the samples.
 TEST(EnvironmentAmongLights, SumsAndDensitiesAgree) {
   const Environment white = painted(8, 4, [](int, int) { return Rgb(0.5f); });
   LightScene scene;
@@ -243,12 +246,12 @@ TEST(EnvironmentEmission, MeanFluxAndDisc) {
     EXPECT_LT(length(e.origin + e.travel * float(radius)), radius * 1.001);
     EXPECT_EQ(e.normal, Vec3{});
   }
-  // The sky's colours vary around the sun's by a factor of 3, in the 2 % of the luminance that is not the sun's.
+  // The sky's colours differ from the sun's by a factor of up to 3, but the sky has 2 % of the luminance.
   EXPECT_NEAR(sum, expected, 5e-3 * expected);
 }
 
-// Frozen over a segment: a lamp that grows to four times its size from one frame to the next changes no
-// probability between them, and the table knows the larger.
+// Probabilities are fixed over a segment: a lamp that grows to four times its size from one frame to the next changes
+// none of them, and the table uses the larger size.
 TEST(EnvironmentEmission, IsFrozenOverASegment) {
   const Environment white = painted(1, 1, [](int, int) { return Rgb(1e-3f); });
   LightScene small, large;

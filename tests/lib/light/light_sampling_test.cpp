@@ -18,8 +18,8 @@ namespace {
 
 constexpr Vec3 kUp{0, 0, 1};
 
-/// Irradiance at the point by `count` samples. In `relative_error`, sigma of the mean for random numbers; the
-/// Sobol points do better.
+/// Irradiance at the point by `count` samples. `relative_error` receives sigma of the mean for random numbers; Sobol
+/// points have less.
 Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double* sigma = nullptr) {
   Rgbd sum;
   double squares = 0;
@@ -37,8 +37,8 @@ Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double
   return mean;
 }
 
-// Height and side from a lamp far above to one that fills half the sky; the tolerance is 4 sigma plus the
-// single precision of the positions.
+// Heights and sizes from a lamp far above to a lamp that fills half the sky. The tolerance is 4 sigma plus the single
+// precision of the positions.
 TEST(AreaLight, GivesLambertsIrradianceAtAnyDistance) {
   for (const auto& [height, half] :
        {std::pair{100.0f, 0.5f}, {5.0f, 0.5f}, {1.0f, 0.5f}, {0.2f, 0.5f}, {0.01f, 0.5f}, {2.0f, 30.0f}}) {
@@ -92,7 +92,7 @@ TEST(AreaLight, MirroredSurfacesShineFromTheOtherWinding) {
   EXPECT_GT(irradiance(lights, {0, 0, 2}, -kUp, 64).r, 0.1);
 }
 
-// A needle that fills 0.1 sr: where single precision would lose the sampled direction.
+// A needle that fills 0.1 sr, for which single precision could lose the sampled direction.
 TEST(AreaLight, NeedlesAreSampledUniformly) {
   const std::vector<Vec3> corners{{-20, -0.05f, 1}, {-20, 0.05f, 1}, {20, 0, 1}};
   LightScene scene;
@@ -182,8 +182,8 @@ LightScene crowd(int count, bool suns) {
   return scene;
 }
 
-// What sample() returned is what pdf_solid_angle() says of the place it returned: the same decisions from the
-// same numbers. 1e-4 for the rounding of the position.
+// sample() returns the pdf that pdf_solid_angle() has for the returned place: the same decisions from the same
+// numbers. The tolerance of 1e-4 is for the rounding of the position.
 TEST(Lights, PdfIsThatOfTheSample) {
   const LightScene scene = crowd(200, true);
   const Lights lights = scene.lights();
@@ -215,7 +215,8 @@ TEST(Lights, PdfIsThatOfTheSample) {
   EXPECT_GT(found, 2000);
 }
 
-// E = integral over all lights, computed light by light; importance must not lose or double any of them.
+// E is the integral over all lights, computed light by light. Choosing lights by importance must not lose or double
+// any.
 TEST(Lights, ManyTogetherGiveTheSumOfEach) {
   const LightScene scene = crowd(60, true);
   const Lights all = scene.lights();
@@ -236,8 +237,9 @@ TEST(Lights, ManyTogetherGiveTheSumOfEach) {
   }
 }
 
-// Choice probabilities of all lights sum to 1 less the walks that end where nothing reaches the point; and
-// each is how often choose() takes the light: u in equal steps of 2^-16 hits each within 1 step per level.
+// The choice probabilities of all lights sum to 1, minus the probability of walks that end at lights which do not
+// reach the point. Each is the frequency with which choose() takes the light: u in equal steps of 2^-16 hits each
+// light within 1 step per level.
 TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
   std::vector<LightBounds> bounds;
   const PathRandom random(4, 4);
@@ -311,9 +313,9 @@ TEST(Lights, SurviveExtremeNumbers) {
   }
 }
 
-/// The map takes a share of the square to where its density has it: of the quarter u.x, u.y < 1/2 the integral of the
-/// bilinear density is known (its corner values 1, 2, 3, 6 have the means 1, 1.5, 2, 3 at the quarter's corners: 7.5 /
-/// 4 / 3 of a fourth).
+/// The map takes to each part of the square a share equal to the integral of the bilinear density there. With corner
+/// values 1, 2, 3 and 6, the quarter u.x, u.y < 1/2 has the values 1, 1.5, 2 and 3 at its corners: their mean, 7.5 /
+/// 4, over the density's mean 3, times a fourth.
 TEST(BilinearWarp, FollowsItsDensity) {
   const BilinearWarp warp({1, 2, 3, 6});
   int inside = 0;

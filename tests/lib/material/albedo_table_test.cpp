@@ -1,4 +1,4 @@
-// The table of GGX's albedo against the integrals it stands for; and the generator of the table.
+// The table of GGX's albedo against the integrals that it stores, and the generator of the table.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +23,9 @@ Albedo entry(int row, double position, const GaussLegendre& rule) {
   return {e.total, (1 - std::pow(e.b / e.total, 0.2)) / (mu + alpha)};
 }
 
-/// What the table holds. The fifth root bends sharply next to normal incidence, where b is below 1e-5 and m
-/// of no weight: m of the last column is such that the cubic is exact at cos = 0.5, or in the middle of the
-/// last interval if that is nearer to the end.
+/// The value of a table node. The fifth power bends sharply close to normal incidence, where b is below 1e-5 and m
+/// has no weight: the m of the last column is chosen so that the cubic is exact at cos = 0.5, or in the middle of the
+/// last interval if that is closer to the end.
 Albedo node(int row, int column, const GaussLegendre& rule) {
   Albedo e = entry(row, double(column) / (kColumns - 1), rule);
   if (column < kColumns - 1) return e;
@@ -62,8 +62,8 @@ TEST(GgxAlbedoTable, HoldsTheIntegrals) {
   }
 }
 
-// Off the nodes, over the whole domain and closer to grazing than any node. The bounds are the
-// header's; measured 3.7e-5 and 6.6e-5.
+// Between the nodes, over the whole domain and closer to grazing than any node. The bounds are those of the header;
+// measured 3.7e-5 and 6.6e-5.
 TEST(GgxAlbedoTable, InterpolatesWithinItsBound) {
   const GaussLegendre rule(96);
   double worst_total = 0, worst_b = 0;
@@ -81,8 +81,8 @@ TEST(GgxAlbedoTable, InterpolatesWithinItsBound) {
   EXPECT_LT(worst_b, 8e-5);
 }
 
-// The mean is its own column of the table: it must be the mean of what at() returns, or the Lambert lobe's
-// coupling would not conserve energy. 3e-5: both are interpolated.
+// The table has a column for the mean. It must be the mean of the values of at(), or the coupling of the Lambert lobe
+// would not conserve energy. Tolerance 3e-5: both are interpolated.
 TEST(GgxAlbedoTable, MeanIsTheMeanOfTheValues) {
   const GaussLegendre rule(200);
   for (double alpha : {4e-4, 1e-3, 7e-3, 0.03, 0.1, 0.27, 0.5, 0.77, 1.0}) {

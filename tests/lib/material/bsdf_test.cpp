@@ -34,7 +34,7 @@ Material metal(Rgb base, float roughness) {
   return m;
 }
 
-/// Mean of the weights of one event over `count` samples: its albedo towards wo.
+/// Albedo towards wo: the mean of the weights of one event over `count` samples.
 Rgbd sampled_albedo(const Bsdf& bsdf, Vec3 wo, bool diffuse, int count, double* square = nullptr) {
   Rgbd sum;
   double squares = 0;
@@ -48,8 +48,8 @@ Rgbd sampled_albedo(const Bsdf& bsdf, Vec3 wo, bool diffuse, int count, double* 
   return sum / double(count);
 }
 
-// integral of f cos over the hemisphere in cells of equal cos^2 and phi: error O(1/n^2) for the smooth f of a
-// roughness of 0.5 and more.
+// The integral of f cos over the hemisphere, in cells of equal cos^2 and phi. The error is O(1/n^2) for the smooth f
+// of a roughness of 0.5 and more.
 Rgbd integrate(const std::function<Rgb(Vec3)>& f) {
   Rgbd sum;
   const int n = 400;
@@ -105,9 +105,9 @@ TEST(Mirror, ReflectsTheWholeDirectionAndOnlyThat) {
   EXPECT_EQ(bsdf.pdf_specular(s.wi, wo), 0);
 }
 
-// D: rho (1 - A), to the table's 1e-4. S: quadrature of f against the mean of the weights. Lobe and direction are
-// independent sequences of 2^16 points, so at worst as noisy as random numbers: sigma 0.5 / 256 for weights up to 1; 2
-// sigma.
+// The Lambert lobe reflects rho (1 - A), to the 1e-4 of the table. For the other lobes the mean of the sample weights
+// must equal the integral of f by quadrature. Lobe and direction are independent sequences of 2^16 points, at worst
+// as noisy as random numbers: sigma is 0.5 / 256 for weights up to 1, and the band 2 sigma.
 TEST(Bsdf, SamplesWeighWhatTheFormulasIntegrateTo) {
   for (const Material& m :
        {dielectric({0.8f, 0.5f, 0.2f}, 0.6f), metal({0.9f, 0.6f, 0.2f}, 0.8f), dielectric(Rgb(1.0f), 1.0f)}) {
@@ -139,9 +139,10 @@ TEST(Bsdf, CouplingAveragesToWhatItsNormalisationSays) {
   }
 }
 
-// Of uniform light 1 at most 1 is reflected: rho = 1 and any F0, all angles. S: the albedo from the table, corrected by
-// the table's error against the integrals (other tests show that sample() and eval agree). D: from the table itself.
-// With the term of Kulla and Conty a rough white metal reflects exactly all light.
+// In uniform light 1 at most 1 is reflected, for rho = 1, any F0 and all angles. For the S lobes the test uses the
+// albedo from the table, corrected by the table's error against the integrals (other tests show that sample() and
+// eval agree); for the Lambert lobe the table itself. With the term of Kulla and Conty a rough white metal reflects
+// exactly all light.
 TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
   const reference::GaussLegendre rule(96);
   for (float roughness : {0.021f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f}) {

@@ -20,7 +20,7 @@ TEST(Fresnel, KnownAngles) {
   const float n = 1.52f, cos_b = std::cos(std::atan(n)), r = (n * n - 1) / (n * n + 1);
   EXPECT_NEAR(fresnel_dielectric(cos_b, 1 / n, cos_t), 0.5f * r * r, 1e-6f);
   EXPECT_NEAR(std::sqrt(1 - cos_t * cos_t) * n, std::sin(std::atan(n)), 1e-6f);  // Snell
-  // Inside, beyond asin(1/n): everything.
+  // Inside glass, at angles above asin(1/n), all light is reflected.
   EXPECT_EQ(fresnel_dielectric(std::cos(std::asin(1 / n) + 0.01f), n, cos_t), 1.0f);
   EXPECT_NEAR(fresnel_dielectric(1e-6f, 1 / n, cos_t), 1.0f, 1e-4f);
 }
@@ -75,7 +75,7 @@ TEST(Glass, AThinWallLetsLightStraightThrough) {
   EXPECT_EQ(s.wi, -wo);
 }
 
-/// Half glass, half matte: the two halves share the samples, and what each reflects is halved.
+/// A material that is half glass and half matte: the two halves share the samples, and each reflects half as much.
 TEST(Glass, ShareOfTransmissionLeavesTheRestToTheMatteLobe) {
   Material material = glass(false, 0.5f);
   material.specular = 0;

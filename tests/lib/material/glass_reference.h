@@ -7,7 +7,7 @@
 
 namespace tempolux::reference {
 
-/// Exact Fresnel reflectance in double; eta = index on the side seen from / index beyond.
+/// Exact Fresnel reflectance in double; eta = index on the side of the incident direction / index on the other side.
 inline double fresnel(double cos_o, double eta, double& cos_t) {
   const double sin2 = eta * eta * (1 - cos_o * cos_o);
   cos_t = sin2 >= 1 ? 0 : std::sqrt(1 - sin2);

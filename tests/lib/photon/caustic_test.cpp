@@ -75,7 +75,8 @@ TEST(Caustics, SlabPassesWhatFresnelSays) {
       expected += 2 * M_PI * (1 - f) * (1 - f) * a / (1 - f * f * a * a) * 0.975 / kSteps;
     }
     const Stored stored = trace(scene, 400000, floor);
-    // 200000 photons that arrive or not: 0.2 %; what goes around the rim (direct) is not counted. 1 %.
+    // 200000 photons either arrive or not: .2 % of noise. Light that passes the rim (direct) is not counted. The band
+    // is 1 %.
     EXPECT_NEAR(stored.caustic / expected, 1, 0.01) << color;
     EXPECT_EQ(stored.indirect, 0);
     EXPECT_NEAR(stored.gone, stored.emitted, 1e-6 * stored.emitted);
@@ -111,10 +112,10 @@ double ball_onto_screen(double d) {
     const double ci = std::cos(i), cr = std::cos(r);
     const double rs = (ci - 1.5 * cr) / (ci + 1.5 * cr), rp = (1.5 * ci - cr) / (1.5 * ci + cr),
                  f = (rs * rs + rp * rp) / 2;
-    // Of the place: the angle from +y where the ray meets the ball; it steps by pi - 2 r along each chord.
+    // at: angle from +y of the place where the ray meets the ball; each chord advances it by pi - 2 r.
     for (int p = 0; p < 12; ++p) {
       const double at = (i - theta) + p * (M_PI - 2 * r), x = std::sin(at), y = std::cos(at);
-      // The way out makes the angle i with the normal there, on the side it came along.
+      // The ray leaves at the angle i to the normal, on the side from which it came.
       const double out = at + i, dx = std::sin(out), dy = std::cos(out);
       if (!(dy < 0)) continue;
       const double t = (-3 - y) / dy, where = x + t * dx;

@@ -28,8 +28,7 @@ struct Room {
   SceneFrame frame, standing;
   EmissionTable table;
 
-  /// lamp_moves: the lamp is among what moves.
-  /// sunny: no ceiling and no lamp but a sun, and ground of 40 m around.
+  /// lamp_moves: the lamp is a mover, too. sunny: a sun, and ground of 40 m around, in place of ceiling and lamp.
   explicit Room(Material box, bool lamp_moves = false, Vec3 at = {0.3f, 0.2f, 0.3f}, bool sunny = false) {
     const Material grey = test::matte({0.6f, 0.5f, 0.4f});
     if (sunny) {
@@ -63,7 +62,8 @@ PhotonOptions options_of(std::uint64_t count) {
   return options;
 }
 
-/// A photon as bytes, so that it can be a key; flux made positive, so that one with negative flux cancels its like.
+/// The bytes of a photon, as a key. The flux is made positive, so that a photon of negative flux has the key of the
+/// photon that it cancels.
 using Key = std::array<unsigned char, sizeof(Photon)>;
 Key key_of(Photon photon) {
   for (float& f : photon.flux) f = std::abs(f);
@@ -72,7 +72,7 @@ Key key_of(Photon photon) {
   return key;
 }
 
-/// Adds photons, +1 each and -1 for those of negative flux.
+/// Counts photons: +1 for each, or -1 for each of negative flux.
 void add(std::map<Key, int>& counts, const std::vector<Photon>& photons, int sign = 1) {
   for (const Photon& photon : photons) {
     const bool negative = photon.flux[0] < 0 || photon.flux[1] < 0 || photon.flux[2] < 0;
@@ -87,7 +87,7 @@ struct Maps {
   PhotonMapResult difference;
 };
 
-/// Bytes of a map read back through a file in memory are the writer's business; here the photons count.
+/// The photons of a map that was written to memory.
 std::vector<Photon> photons_in(const std::string& bytes) {
   std::vector<Photon> photons;
   for (std::size_t at = bytes.find("PHOT", 16); at != std::string::npos && bytes.compare(at, 4, "PHOT") == 0;) {
@@ -176,8 +176,8 @@ TEST(DynamicMap, AMovingLampsPhotonsAreAllDynamic) {
 }
 
 TEST(DynamicMap, AimedPhotonsOfASunAreTheSamePhotonsInBothScenes) {
-  // Two walls and a box that moves stand in the sun on wide ground; photons are aimed at them. Were they aimed in one
-  // scene only, starts and fluxes would differ.
+  // Two walls and a moving box stand in the sun on wide ground, and photons are aimed at them. If they were aimed in
+  // one of the two scenes only, starts and fluxes would differ.
   Room room(test::matte(Rgb(0.5f)), false, {0.3f, 0.2f, 0.3f}, true);
   room.table.aim = {{{0.5, 0.5, 0.5}, 0.875, 0.75}, {{0.4, 0.3, 0.4}, 0.25, 0.25}};
   const Maps maps = maps_of(room, 20000);
@@ -199,7 +199,7 @@ TEST(DynamicMap, WhereNothingIsMetThereIsNothing) {
 }
 
 TEST(DynamicMap, FluxThatIsGoneIsFluxThatIsElsewhere) {
-  // emitted = escaped + absorbed in both scenes, so in the difference: and a standing lamp emits the same in both.
+  // emitted = escaped + absorbed in both scenes, so also in the difference; a static lamp emits the same in both.
   const Room room(test::matte(Rgb(0.5f)));
   const PhotonMapResult r = maps_of(room, 5000).difference;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -224,9 +224,9 @@ TEST(MoverWatch, BitsAreTheIntervalsWhoseBoxesAreMet) {
   EXPECT_NE(watch.touching(up, 5.1f), 0u);
 }
 
-/// Rays from all sides, from a metre to 10 km away, past a ball of 512 triangles. Of random lines that meet its box, by
-/// the mean areas of the shadows of convex bodies (Cauchy: a quarter of their surface), pi r^2 : 6 r^2 meet the ball,
-/// so its box is met 1.91 times as often.
+/// Rays from all sides, from a metre to 10 km away, past a ball of 512 triangles. A convex body is met by random
+/// lines in proportion to its surface (Cauchy: the mean shadow is a quarter of the surface). The ball has 4 pi r^2
+/// and its box 24 r^2, so the box is met 1.91 times as often.
 TEST(MoverWatch, PiecesOfABallAreMetWhereItIsAndHardlyElsewhere) {
   test::HandMadeScene scene;
   const Vec3 centre{0.3f, 1.2f, -0.7f};

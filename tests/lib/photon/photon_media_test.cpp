@@ -57,8 +57,8 @@ TEST(PhotonMedia, RecordsTimesExtinctionAreWhatCollides) {
     options.store_volume = true;
     const Sums sums = trace_all(box.scene.frame(), box.table, options);
     const double lost = sums.emitted.g - sums.surfaces;
-    // The share that is lost: .0036, .31, 1. Each of 10^5 paths is lost or not, and leaves some four records of
-    // exponential worth.
+    // The lost shares are .0036, .31 and 1. Each of 10^5 paths is lost or not, and leaves about four records with
+    // exponentially distributed flux.
     const double share = lost / sums.emitted.g, sigma_of_share = std::sqrt(share * (1 - share + 0.5 * share) / 1e5);
     EXPECT_NEAR(sums.collided / sums.emitted.g, share, 5 * sigma_of_share) << sigma;
     EXPECT_NEAR(sums.absorbed.g, sums.emitted.g, 1e-9 * sums.emitted.g);
@@ -74,7 +74,8 @@ TEST(PhotonMedia, WhatScattersOnlyArrives) {
   options.photon_count = 50000;
   options.store_volume = true;
   const Sums sums = trace_all(box.scene.frame(), box.table, options);
-  // Roulette at 0.9995 a scattering, some 15 of them: share of paths that ends .0075, made up for by the others.
+  // Russian roulette with 0.9995 per scattering, about 15 scatterings: .0075 of the paths end, and the others make up
+  // for them.
   EXPECT_NEAR(sums.surfaces, sums.emitted.g, 0.002 * sums.emitted.g);
   options.store_direct = false;
   const Sums without = trace_all(box.scene.frame(), box.table, options);

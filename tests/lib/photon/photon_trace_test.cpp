@@ -79,7 +79,7 @@ TEST(PhotonTracer, AFloorGetsNothingFromALightInItsPlane) {
       options.photon_count = 10000;
       const Sums sums = trace_all(PhotonTracer(tracer, lights, options));
       EXPECT_NEAR(sums.emitted.g, 4 * M_PI, 1e-4);
-      // Half of 10000 of Halton's points: 2 % of all is four standard deviations of independent ones.
+      // Half of 10000 points of Halton's sequence: 2 % of all is four standard deviations of independent points.
       const double share = sums.stored.g / sums.emitted.g;
       if (before == 0) EXPECT_EQ(share, 0) << a.y;
       else EXPECT_NEAR(share, 0.5, 0.02) << a.y;
@@ -141,8 +141,8 @@ TEST(PhotonMap, BytesAreEqualForAnyNumberOfThreads) {
 }
 
 TEST(PhotonMap, WhereNothingIsAbsorbedTheTotalIsNotNegative) {
-  // A convex white thing under a sun: all light escapes; roulette kills some photons and makes up for it with the
-  // others, so the difference has either sign.
+  // A convex white body under a sun: all light escapes. Russian roulette ends some photons and increases the flux of
+  // the others, so the difference has either sign.
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     test::HandMadeScene scene;
     scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, test::matte(Rgb(1.0f)));

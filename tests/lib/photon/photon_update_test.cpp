@@ -125,7 +125,7 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   const std::string two = updated("2.photons", "1.photons", thick, 2, few);
   ASSERT_TRUE(is_overlay("2.photons"));
   EXPECT_EQ(formats::PhotonReader(path("2.photons")).header().base_name, "0.photons");
-  // The same written whole, which is not possible in another folder's name.
+  // The same map, written as a whole file.
   PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::string whole = written("whole.photons", [&](const auto& sink) {
     write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false}, sink);
@@ -174,7 +174,8 @@ TEST_F(PhotonUpdate, CensusSeesChangeAndOnlyThat) {
   const PreviousMap much = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::census, {});
   const double still = std::accumulate(none.change.begin(), none.change.end(), 0.0);
   const double sum = std::accumulate(much.change.begin(), much.change.end(), 0.0);
-  // Extinction is kept to 1/65534 of the majorant: the rest of what did not change is below 1e-4 of what did.
+  // Extinction is stored to 1/65534 of the majorant, so unchanged places differ by less than 1e-4 of the changed
+  // ones.
   EXPECT_LT(still, 1e-4 * sum);
   // Four times the extinction: the change is three times what collided.
   double collided = 0;
@@ -236,7 +237,7 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
     for (std::size_t q = 0; q < 100; ++q)
       if (a.pilots[q].collisions == b.pilots[q].collisions && a.pilots[q].vertices == b.pilots[q].vertices)
         difference += std::pow(a.pilots[q].sketch - b.pilots[q].sketch, 2);
-    for (const PhotonBatch* batch : {&a, &b})  // places of paths that differ are few: 1 in 2000 places
+    for (const PhotonBatch* batch : {&a, &b})  // few places are of paths that differ: 1 in 2000
       for (const formats::Photon& p : batch->block.photons) {
         if (p.kind != formats::PathKind::tentative) continue;
         const Vec3 at{p.position[0], p.position[1], p.position[2]};
@@ -255,7 +256,7 @@ TEST(SpreadPaths, AddsUpAndGoesWhereVarianceFallsMost) {
   // On paper: moments 4 and 1, ten paths each; 10 more: 20 and 10 are in proportion to 2 and 1.
   EXPECT_EQ(spread_paths(std::vector<double>{4, 1}, std::vector<std::uint64_t>{10, 10}, 10),
             (std::vector<std::uint64_t>{20, 10}));
-  // 14 in proportion to 2 and 1 would take some of the second away: the first gets all that are new.
+  // 14 paths in proportion to 2 and 1 would remove paths from the second group, so the first gets all new paths.
   EXPECT_EQ(spread_paths(std::vector<double>{4, 1, 0}, std::vector<std::uint64_t>{2, 10, 2}, 2),
             (std::vector<std::uint64_t>{4, 10, 2}));
   EXPECT_EQ(spread_paths(std::vector<double>{0, 0}, std::vector<std::uint64_t>{3, 4}, 3),
@@ -288,8 +289,8 @@ TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
   };
   const auto before = totals("0.photons"), after = totals("1.photons");
   EXPECT_NEAR(after.first, before.first, 1e-6 * before.first);
-  // 6300 paths: 2 % of what they are worth in the smoke. Equal flux of all paths would show the groups that have eleven
-  // times as many.
+  // 6300 paths have a noise of 2 % in the light of the smoke. If all paths had equal flux, the groups that have
+  // eleven times as many paths would be too bright.
   EXPECT_NEAR(after.second, before.second, 0.06 * before.second);
 }
 

@@ -1,4 +1,4 @@
-// Files of others: what counts as a change.
+// Stamps of input files: which differences count as a change.
 #include "lib/plan/inputs.h"
 
 #include <gtest/gtest.h>

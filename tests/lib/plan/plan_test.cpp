@@ -1,4 +1,4 @@
-// Plans of a small room with a box that moves, made by hand; what is equal is known from how it was made.
+// Plans of a small handmade room with a box that moves. The test's own scene decides which frames are equal.
 #include "lib/plan/plan.h"
 
 #include <gtest/gtest.h>
@@ -200,7 +200,7 @@ TEST(LookedFrames, AreEndsMiddleAndWhereSomethingComesOrGoes) {
   std::fill(places.begin() + 17, places.end(), 5.0);  // stands, jumps, stands
   places.back() = 5.5;
   slide(scene, kBox, places);
-  // 0 and 11 show the same; 17 is where it jumps; 23 moves on.
+  // Frames 0 and 11 show the same picture. The box jumps at frame 17 and moves again at 23.
   EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0]), (std::vector<int>{0, 17, 23}));
 }
 

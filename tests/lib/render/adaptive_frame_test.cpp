@@ -112,10 +112,10 @@ TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
     }
 }
 
-/// A bright and a black sheet meet in the middle of a column of pixels: two of four stratified samples lie on either.
-/// If a pixel asks for more than the limit, a pixel that has an edge or lies next to one takes all: this column and one
-/// on either side. If the sheets meet between two columns, no pixel's samples differ, but its neighbours' do: both
-/// columns take all.
+/// A bright and a black sheet meet in the middle of a column of pixels: two of four stratified samples lie on each.
+/// If the wanted number exceeds the limit, each pixel at the edge or next to one takes as many samples as the limit
+/// allows: this column and one on either side. If the sheets meet between two columns, no pixel's samples differ, but
+/// its neighbours' do: both columns take as many as the limit allows.
 TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   for (const auto& [column, taken] : {std::pair{20.5f, 3.0}, std::pair{20.0f, 2.0}}) {
     const float edge = column / 32;

@@ -116,10 +116,10 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
   EXPECT_NEAR(sum / all, 1, 0.02);
 }
 
-/// Irradiance 1 straight down on a floor, by independent photons and by photons as stratified as a plane mirror leaves
-/// Halton's sequence. A density of the k nearest would be too dark by 1 / (2 k) in the second case. 5000 places: some
-/// 20000 x 3/4 / 30 independent values with 21 % noise in the first case, 0.5 % in the mean of four maps; the limit is
-/// 3.5 of these. Stratified photons have a third of the noise.
+/// Irradiance 1 straight down on a floor, by independent photons, and by photons that are as stratified as Halton's
+/// sequence after a plane mirror. A density of the k nearest would be too dark by 1 / (2 k) in the second case. 5000
+/// places have about 20000 x 3/4 / 30 independent values with 21 % noise in the first case, 0.5 % in the mean of four
+/// maps; the limit is 3.5 of these. Stratified photons have a third of the noise.
 TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
   HandMadeScene scene;
   scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));
@@ -149,7 +149,7 @@ TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
   }
 }
 
-/// 1000 photons on a disc about the origin, from above.
+/// Adds 1000 photons on a disc around the origin, which arrive from above.
 void add_spot(float radius, float flux, std::vector<formats::Photon>& photons) {
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const Vec2 d = sample_disc_concentric(PathRandom(1, 7).get2(i, Purpose::test));
@@ -162,11 +162,11 @@ void add_spot(float radius, float flux, std::vector<formats::Photon>& photons) {
   }
 }
 
-/// Spots keep their light: 1000 photons with 1 W in all on a disc of radius 1 m on a floor, once free and once with a
-/// thin wall through its middle. The sum of E over a grid of 0.02 m, a fraction of the least radius (0.16 m; the sum of
-/// a paraboloid of this width is right to 1e-3), is 1 W, and with the wall the flux of the photons on either side,
-/// because the wall only separates. Areas of footprints at the wall are estimated: a noise of 20 % for some 400
-/// photons, 1 %; the limit is 2.5 of these. The 25 nearest photons of each place would give 1.08 to 1.12 (see
+/// Spots keep their light: 1000 photons with 1 W in all lie on a disc of radius 1 m on a floor, once without and once
+/// with a thin wall through the middle. E is summed over a grid of 0.02 m. This is a fraction of the least radius,
+/// 0.16 m; the sum of a paraboloid of this width has an error of 1e-3. The sum is 1 W, and with the wall the flux of
+/// the photons on either side. Areas of footprints at the wall are estimated: 20 % of noise for about 400 photons, 1
+/// % of the sum; the limit is 2.5 of these. The 25 nearest photons of each place would give 1.08 to 1.12 (see
 /// FootprintDensity).
 TEST(CausticLight, SpotsKeepTheirLight) {
   for (const bool wall : {false, true}) {
@@ -196,9 +196,9 @@ TEST(CausticLight, SpotsKeepTheirLight) {
   }
 }
 
-/// Stray photons around a spot of 1000 photons, 0.01 m across. Light is smooth over the largest radius, 1 m, where no
-/// place of the spot lies within the margin of 0.1 m, but not where no light arrives. So no estimate next to the spot
-/// counts for the spot.
+/// Stray photons around a spot of 1000 photons, 0.01 m across. A place is smooth (its light is that of footprints
+/// with the largest radius, 1 m) if no photon of the spot lies within the margin of 0.1 m. A place without light is
+/// not smooth. So no estimate next to the spot represents the spot.
 TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   HandMadeScene scene;
   scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
@@ -218,8 +218,8 @@ TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   EXPECT_EQ(smooth, 0) << "nothing is there";
 }
 
-/// Photons closer together than float positions resolve heights, in a scene of kilometres: each is a whole disc, no
-/// wider than its neighbours are far. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
+/// In a scene of kilometres, photons are closer together than float positions resolve heights. Each photon counts as
+/// a whole disc, as wide as the distance of its neighbours. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
 TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   HandMadeScene scene;
   scene.add_quad({-4000, 0, 4000}, {4000, 0, 4000}, {4000, 0, -4000}, {-4000, 0, -4000}, matte(Rgb(0.0f)));
@@ -236,7 +236,7 @@ TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   EXPECT_NEAR(sum, 1, 0.02);
 }
 
-/// No caustic photon: nothing is built, nothing is found.
+/// Without a caustic photon nothing is built and no light is found.
 TEST(CausticLight, IsNothingWithoutItsPhotons) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.5f)));
@@ -250,8 +250,8 @@ TEST(CausticLight, IsNothingWithoutItsPhotons) {
   EXPECT_EQ(light.caustic({0, 0, 0}, LitSurface(Vec3{0, 1, 0})).g, 0);
 }
 
-/// 4000 photons of three colours on a floor of 2 m, a wall across it: footprints at the wall are cut, and those from
-/// behind reach no place before it.
+/// 4000 photons of three colours on a floor of 2 m with a wall across it. Footprints at the wall are cut, and photons
+/// behind the wall reach no place in front of it.
 struct CutFootprints {
   HandMadeScene scene;
   std::vector<formats::Photon> photons;

@@ -126,8 +126,8 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
 }
 
-/// If only photons find some light, paths miss it and records win, although the light that paths found does not ask for
-/// records.
+/// If only photons find a part of the light, paths miss it and records win, although the light that paths found does
+/// not require records.
 TEST(WaysToLight, RecordsFindWhatPathsMiss) {
   RoughFrame rough = example();
   rough.path = {10, 1, 1, 1, 1};

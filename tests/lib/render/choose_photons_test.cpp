@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// One in 70 or more leaves a photon: the usual number. Fewer: as many more, but 16 times at most; none at all is as
-/// one.
+/// If at least one path in 70 leaves a photon, the usual number. If fewer do, as many times more paths, but at most
+/// 16 times; also if no path leaves a photon.
 TEST(PhotonPaths, AreMoreWhereFewArrive) {
   EXPECT_EQ(photon_paths(1.0 / 70, 700'000), 700'000u);
   EXPECT_EQ(photon_paths(5.0 / 7, 700'000), 700'000u);

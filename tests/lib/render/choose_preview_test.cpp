@@ -47,20 +47,22 @@ double kernel_at(float height) {
   return best_kernel(tracer, photons_of(height, 1), photons_of(height, 2));
 }
 
-/// Near the floor E = E0 (1 + q^2)^(-3/2) with q = r / h. A Gaussian of deviation s errs by s^2 / 2 times the
-/// Laplacian, whose square over E has the integral 5.257 pi E0 / h^2 = J E0 / h^2 over the floor; its noise over E has
-/// the integral phi A / (4 pi s^2) over the room's area A, each of N photons worth phi = 4 pi h^2 E0 / N. The sum is
-/// least at s^6 = 2 A h^4 / (N J): .149 m for h = .5 m, which is 190 photons. At s = .3 h the error grows less than the
-/// law says, elements are as wide as s, and other walls are nearly even; all three are below a factor of two in
-/// photons. Seen to fail where each map is judged by itself (64) and without the cross term (642).
+/// On the floor close to a lamp at height h, E = E0 (1 + q^2)^(-3/2) with q = r / h. A Gaussian of deviation s has
+/// the bias s^2 / 2 times the Laplacian of E. The integral of the squared Laplacian over E is 5.257 pi E0 / h^2 = J
+/// E0 / h^2 over the floor. The integral of the noise's variance over E is phi A / (4 pi s^2) over the room's area A,
+/// where each of N photons has the flux phi = 4 pi h^2 E0 / N. The sum of both is least at s^6 = 2 A h^4 / (N J):
+/// .149 m for h = .5 m, which is 190 photons. At s = .3 h the bias grows less than the law says, elements are as wide
+/// as s, and other walls are nearly uniform; together these change the number of photons by less than a factor of
+/// two. Seen to fail where each map is judged by itself (64) and without the cross term (642).
 TEST(BestKernel, IsThatOfTheLeastErrorUnderALamp) {
   const double kernel = kernel_at(0.5f);
   EXPECT_GT(kernel, 190 / 2.0);
   EXPECT_LT(kernel, 190 * 2.0);
 }
 
-/// In the middle h = 2 m, and all six walls count, each as far as q = 1 or so: J = 6 x 13 and s = .29 m, 720 photons.
-/// At the walls' edges Gaussians are cut off and err by their first order, so that the best one is smaller.
+/// With the lamp in the middle, h = 2 m, all six walls contribute up to about q = 1: J = 6 x 13 and s = .29 m, 720
+/// photons. At the walls' edges Gaussians are cut off and have a bias of first order, so the best Gaussian is
+/// narrower.
 TEST(BestKernel, IsWiderWhereLightIsEven) {
   const double kernel = kernel_at(2);
   EXPECT_GT(kernel, 720 / 2.0);
@@ -74,7 +76,7 @@ TEST(BestKernel, WithoutPhotons) {
   EXPECT_EQ(best_kernel(tracer, {}, {}), 256);
 }
 
-/// 16 times the photons: half the width, four times the photons under it.
+/// With 16 times the photons the width is half as large, and four times the photons lie under the Gaussian.
 TEST(ChoosePreview, ShrinksWithTheFourthRootOfThePhotons) {
   const PreviewPilot pilot{1, 24};
   const PreviewChoice few = choose_preview({&pilot, 1}, 200, 10'000, 33),

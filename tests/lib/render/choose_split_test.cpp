@@ -34,7 +34,7 @@ TEST(SplitPilot, NoBrightSpotUnderAWideLamp) {
   EXPECT_FALSE(choose_split(pilot).split);
 }
 
-/// At 0.1 m above the floor, a lamp of 0.3 m lights some 0.2 of 96 m^2: half of the reflected light comes from there.
+/// A lamp of 0.3 m at 0.1 m above the floor lights about 0.2 of 96 m^2: half of the reflected light comes from there.
 TEST(SplitPilot, ALampNearASurface) {
   const SplitPilot pilot = pilot_of(0.3f, 0.1f);
   EXPECT_GT(pilot.high_share, 0.3);

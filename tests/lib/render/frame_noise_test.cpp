@@ -13,8 +13,7 @@ namespace {
 using test::Cornell;
 using test::NoLight;
 
-/// .18 x 12.92 no longer: 255 (1.055 x .18^(1/2.4) - .055) = 117.6; below .0031308 the line 255 x 12.92 v;
-/// clipped at both ends.
+/// 255 (1.055 x .18^(1/2.4) - .055) = 117.6; below .0031308 the line 255 x 12.92 v; values are clipped at 0 and 1.
 TEST(FrameNoise, CodesAreThoseOfSrgb) {
   EXPECT_NEAR(srgb_code(0.18), 117.65, 0.05);
   EXPECT_NEAR(srgb_code(0.001), 3.2946, 1e-4);
@@ -22,8 +21,8 @@ TEST(FrameNoise, CodesAreThoseOfSrgb) {
   EXPECT_NEAR(srgb_code(7), 255, 1e-9);
 }
 
-/// Median to .18: of 1, 2, 4 the exposure is .09; what a mask leaves out does not count; black that is more
-/// than half of a picture neither.
+/// The median goes to .18: for 1, 2 and 4 the exposure is .09. Masked pixels do not count, nor does black if it is
+/// more than half of the picture.
 TEST(FrameNoise, ExposureIsByTheMedian) {
   std::vector<Layers> pixels(3);
   pixels[0][Layer::direct] = Rgb(1.0f), pixels[1][Layer::direct] = Rgb(4.0f), pixels[2][Layer::direct] = Rgb(2.0f);

@@ -220,7 +220,7 @@ TEST(DataChannels, DepthPositionAndMotionAgreeWithTheCamera) {
   EXPECT_GT(moving, 20);
 }
 
-/// The camera fixed, a box that slides to the right and up by known steps: +u is right, +v is up.
+/// The camera is fixed, and a box moves to the right and up by known steps: +u is right, +v is up.
 TEST(DataChannels, MotionCountsPixelsRightAndUp) {
   const Cornell base(0);
   const auto shifted = [&](Vec3 step) {

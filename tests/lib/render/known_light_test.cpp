@@ -101,10 +101,10 @@ double path_traced(const Chain& chain, const SurfacePoint& from, Vec3 normal, in
   return M_PI * sum / paths;
 }
 
-/// A partition 1 cm thick stands on the floor of a room, open above; the lamp stands low on one side, 1 m from it. On
-/// the dark side, 1 to 8 cm from the partition, no light of the bright side may come through, and the same strip on the
-/// bright side may lose none: both within 3 % of path tracing (16 places x 4096 paths: 0.7 %; photons and points of one
-/// seed: 1 %).
+/// A partition 1 cm thick stands on the floor of a room, open above. The lamp stands low on one side, 1 m from it. On
+/// the dark side, 1 to 8 cm from the partition, no light of the bright side may arrive, and the same strip on the
+/// bright side may not lose light: both within 3 % of path tracing (16 places x 4096 paths: 0.7 %; photons and points
+/// of one seed: 1 %).
 TEST(CacheLeaks, ThinPartitionOnAFloor) {
   HandMadeScene scene;
   const Material grey = matte(Rgb(0.6f));
@@ -140,9 +140,9 @@ TEST(CacheLeaks, ThinPartitionOnAFloor) {
   }
 }
 
-/// Where no record is valid there is no answer, however close a record ends: a path then finds the light. A record on
-/// the lit side of a board, which ended 19 cm before it and was open all around, lit the dark floor on the other side
-/// when its radius was taken four times as large.
+/// Where no record is valid, nothing is returned, however close a record's border is; a path then finds the light.
+/// Before this rule, a record on the lit side of a board, whose border was 19 cm in front of the board and which was
+/// unobstructed, lit the dark floor on the other side, because its radius was taken four times as large.
 TEST(KnownLight, RecordsThatEndShortSayNothing) {
   test::ClosedBox box(Shape::cube, 0.5f);
   const Tracer tracer(box.scene.frame());

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "lib/core/sobol.h"
+#include "lib/material/dielectric.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"
 #include "tests/support/chain.h"
 #include "tests/support/closed_box.h"
 #include "tests/support/frames.h"
+#include "tests/support/materials.h"
 
 namespace tempolux {
 namespace {
@@ -127,6 +129,35 @@ TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
     } else {
       EXPECT_GE(counts.bounce, 2 * kCount);
     }
+  }
+}
+
+/// Where light is known, a path forks at a smooth pane. Behind the pane is a screen of radiance 1, behind the camera
+/// one of 3, and neither reflects: each single path sees (1 - F) 1 + F 3, at normal incidence 1.08 for index 1.5.
+/// (A path that draws one way sees 1 or 3.)
+TEST(Glass, IsFollowedBothWays) {
+  HandMadeScene made;
+  const auto add_screen = [&](float z, const Material& material) {
+    made.add_quad({-40, -40, z}, {40, -40, z}, {40, 40, z}, {-40, 40, z}, material);
+  };
+  add_screen(-3, matte(Rgb(0.0f), Rgb(1.0f)));
+  add_screen(0, test::glass(0, true));
+  made.add_quad({-40, 40, 3}, {40, 40, 3}, {40, -40, 3}, {-40, -40, 3}, matte(Rgb(0.0f), Rgb(3.0f)));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const RecordStore none;
+  KnownLight known;
+  known.records = &none;
+  RayCounts counts;
+  float cos_t;
+  EXPECT_NEAR(fresnel_dielectric(1, 1 / 1.5f, cos_t), 0.04f, 1e-6f);
+  for (const float slant : {0.0f, 1.0f}) {
+    const Ray ray{{0, 0, 1}, normalize(Vec3{slant, 0, -1}), 0, INFINITY};
+    const double reflected = double(fresnel_dielectric(-ray.direction.z, 1 / 1.5f, cos_t));
+    for (std::uint32_t i = 0; i < 100; ++i)
+      EXPECT_NEAR(total(trace_eye_path({tracer, lights}, ray, PixelRandom(3, 0, i), &known, counts)), 1 + 2 * reflected,
+                  1e-5);
   }
 }
 

@@ -71,7 +71,8 @@ TEST(RoughFrame, EndsWhenTheAnswerIsKnown) {
 /// A wall divides the room, and one half is dark. A frame's points are 6 times as dense as a rough frame's, so nearly
 /// all rays end at their first hit. The work of a sample is at most 2 for the camera ray, 2 for the onward ray, 1 for
 /// the light sample and 1 for the point. One ray in 25 finds no point in a fold of the room and costs 5 more: 6.20 in
-/// all. If neighbours across the wall were compared, rays of the lit half would go on beside it: 6.52.
+/// all. If points were compared with neighbours across the wall, rays in the lit half would continue next to it:
+/// 6.52.
 TEST(RoughFrame, RaysEndAtPointsAsInAFrame) {
   test::HandMadeScene scene;
   scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));

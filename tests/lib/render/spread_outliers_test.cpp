@@ -84,7 +84,7 @@ TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
 }
 
-/// Two such samples of four do not confirm each other: each may leave 1.05, and the two others hold .5.
+/// Two such samples of four do not confirm each other: each may leave 1.05, and the other two leave .5.
 TEST(SpreadOutliers, TwoSamplesDoNotConfirmEachOther) {
   Even even(320, 300);
   const std::size_t middle = 150 * 320 + 160;
@@ -94,8 +94,9 @@ TEST(SpreadOutliers, TwoSamplesDoNotConfirmEachOther) {
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
 }
 
-/// In a corner, of a picture so small that all is near a border, beside pixels that show nothing, and with errors that
-/// differ: the sum stays and nothing arrives where nothing is seen. A red sample gives no green.
+/// In a corner, in a picture so small that all pixels are close to a border, next to pixels without a surface, and
+/// with errors that differ: the sum stays, and no light goes to pixels without a surface. A red sample gives no
+/// green.
 TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
   Even even(37, 23);
   even.error = [](double level) { return 0.05 * std::sqrt(level); };

@@ -107,8 +107,8 @@ TEST(EmissiveTexture, TrianglesThatAreDarkAllOverAreNoLights) {
   EXPECT_NEAR(mean_emission_share(scene.frame(), 0, 0).r + mean_emission_share(scene.frame(), 0, 1).r, 2.0f / 8, 0.025);
 }
 
-// Textures with texels larger and smaller than the triangle: what a few points give as the mean. A ramp from 0 to 1
-// over two texels, interpolated between their middles, has as its mean the value at the triangle's centroid; 4 or 400
+// Textures with texels larger or smaller than the triangle: the mean that a few points give. A ramp from 0 to 1 over
+// two texels, interpolated between their middles, has the mean of its value at the triangle's centroid. 4 or 400
 // stripes of 0 and 1 have the mean 1/2.
 TEST(EmissiveTexture, MeansOverATriangleOfAnySize) {
   const auto lamp = [](int texels, float left, float right) {
@@ -568,7 +568,7 @@ HandMadeScene two_coloured_sphere() {
   scene.set_images({png_image(2, 1, 3, {231, 231, 231, 124, 124, 124})});
   scene.add_hollow_sphere({}, 1, 12, wall);
   std::vector<Vec2> uvs;
-  // Vertices of a triangle that touch x = 0 lie on it: 0.5 would be the other half's.
+  // Vertices of a triangle that touch x = 0 lie at x = 0, where u = 0.5 would read the other half.
   for (const Vec3 p : scene.last_positions()) uvs.push_back({0.5f + 0.49f * p.x, 0.5f});
   scene.set_uvs(uvs);
   scene.add_point_light({}, Rgb(1.0f));
@@ -708,7 +708,8 @@ HandMadeScene striped_plate(int kind) {
   return scene;
 }
 
-/// Means of three; sigma of what the first differs from the others' mean by, of their mean.
+/// Means for the three kinds; sigma is the standard error of the difference between the first and the mean of the
+/// others, as a share of that mean.
 struct Stripes {
   double mean[3] = {}, square[3] = {};
   void add(int kind, double value, double count) {
@@ -731,7 +732,7 @@ TEST(TexturedGloss, PhotonsFromAfarMeetWhatIsThere) {
       if (photon.kind == formats::PathKind::caustic) flux.add(kind, double(photon.flux[0]), 1);
   }
   EXPECT_NEAR(flux.mean[0], flux.expected(), 4 * flux.sigma());
-  EXPECT_LT(4 * flux.sigma(), 0.1 * flux.expected());  // else it could not tell
+  EXPECT_LT(4 * flux.sigma(), 0.1 * flux.expected());  // otherwise the test could not distinguish the two
 }
 
 TEST(TexturedGloss, EyePathsFromAfarMeetWhatIsThere) {

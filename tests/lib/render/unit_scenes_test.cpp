@@ -23,8 +23,8 @@ struct UnitScene {
   Tracer tracer;
   Lights lights;
 
-  /// widen: the receiver is surface 0, a plate of 4 cm under the lamp of U6 to U8: made 2 m wide, so that photons
-  /// need not be wasted; its centre is lit the same.
+  /// widen: surface 0, the receiver of U6 to U8, is a plate of 4 cm under the lamp. It is widened to 2 m so that more
+  /// photons hit it; the light at its centre stays the same.
   explicit UnitScene(const std::string& name, bool widen = false)
       : scene(load_gltf("data/units/" + name + ".gltf")),
         segment(segment_of(scene, 0, time)),
@@ -95,9 +95,9 @@ TEST_P(UnitScenes, PathTracerWithinThreePerMille) {
     EXPECT_NEAR(sum[c] / kSamples / centre[std::size_t(c)].get<double>(), 1, 0.003) << "channel " << c;
 }
 
-/// Photons of all kinds that arrive within r of the centre, on the side the camera sees, over pi r^2, times
-/// rho/pi, plus what the surface emits. Under point lights r is a sixteenth of their distance: the curvature
-/// of the irradiance, -3/4 (r/d)^2, takes 0.3 %. Under area lights the disc's mean is known too.
+/// Photons of all kinds that arrive within r of the centre, on the side that the camera sees, over pi r^2, times
+/// rho/pi, plus the surface's emission. Under point lights r is a sixteenth of their distance: the curvature of the
+/// irradiance, -3/4 (r/d)^2, changes it by 0.3 %. Under area lights the mean over the disc is known, too.
 TEST_P(UnitScenes, PhotonDensityWithinOnePercent) {
   const std::string name = GetParam();
   const bool area_light = name >= "U6";

@@ -37,7 +37,7 @@ json example_of_page(const std::string& path) {
   return json::parse(page.substr(begin, page.find("```", begin) - begin));
 }
 
-/// `part` is in `whole`: every key of an object, every element of an array; numbers to 1e-12.
+/// Expects that `whole` contains `part`: every key of each object, every element of each array; numbers to 1e-12.
 void expect_contains(const json& whole, const json& part, const std::string& where) {
   if (part.is_object()) {
     for (const auto& [key, value] : part.items()) {

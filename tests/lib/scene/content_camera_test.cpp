@@ -1,4 +1,5 @@
-// The camera of scenes without one: all corners are in the picture, grounds and strays are not what it looks at.
+// The camera of scenes without one: the picture shows all corners, but grounds and distant small parts do not
+// determine the view.
 #include "lib/scene/content_camera.h"
 
 #include <cmath>
@@ -33,7 +34,8 @@ PlacedCamera camera_of(const GltfMaker& maker, std::string* said = nullptr) {
   return scene_at_frame(scene, segment_of(scene, 0, {}), 0, {}).camera(scene.camera_node("auto"));
 }
 
-/// Where a point is in a picture of 4:3: -1 to 1 from border to border; x beyond 10: behind the camera.
+/// Position of a point in a picture of 4:3: -1 to 1 from border to border; x above 10: the point is behind the
+/// camera.
 std::array<double, 2> seen_at(const PlacedCamera& placed, Vec3d point) {
   const Vec3d p = inverse(placed.scene_from_camera).point(point);
   const double t = std::tan(placed.camera.yfov_rad / 2);

@@ -261,7 +261,7 @@ TEST(GltfGate, NoChangedByteCrashesOrHangs) {
       changed[at] = char(changed[at] ^ change);
       try {
         load_gltf(write_file("changed.glb", changed));
-        ++loaded;  // names, padding and coordinates may hold anything
+        ++loaded;  // names, padding and coordinates may have any value
       } catch (const InputError&) {}
     }
   EXPECT_GT(loaded, 0);

@@ -195,8 +195,8 @@ GltfMaker cube_corner(const std::vector<float>& normals) {
 }
 
 TEST(GltfLoad, NormalsOfNanAreTheMeanOfTheirTrianglesByAngle) {
-  // By angle each of the three sides counts 90 degrees: (1, 1, 1) / sqrt 3. By triangles x would count twice: (2, 1, 1)
-  // / sqrt 6.
+  // Weighted by angle, each of the three sides counts 90 degrees: (1, 1, 1) / sqrt 3. Weighted by triangles x would
+  // count twice: (2, 1, 1) / sqrt 6.
   std::vector<float> normals{kNan, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 1, 0, 0};
   const float third = 1 / std::sqrt(3.0f);
   for (const float wrong : {kNan, kInfinity, -kInfinity}) {
@@ -426,8 +426,8 @@ TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
     EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
-/// Bytes count 255ths, float colours stay what they are, RGB has alpha 1; the material is told that it varies, no other
-/// is.
+/// Bytes count 255ths, float colours keep their values, and RGB has alpha 1. Only the material of these vertices is
+/// marked as varying.
 TEST(GltfLoad, ColoursOfVertices) {
   GltfMaker maker;
   for (int i = 0; i < 4; ++i) maker.add_material(Json::object());
@@ -514,7 +514,8 @@ TEST(GltfLoad, ABadChannelIsNotPlayedWithAWarning_AskedForByNameItIsRefused) {
     maker.animate(0, path, times, values, how);
     return maker;
   };
-  // The scene stands still, and one line says why; asked for by its name it is refused by the same words.
+  // The scene is static, and one warning gives the reason. If the animation is requested by name, it is refused with
+  // the same words.
   const auto trouble_of = [](const GltfMaker& maker) {
     const Scene scene = maker.load();
     EXPECT_TRUE(scene.animations.empty());

@@ -1,4 +1,4 @@
-// Draco, meshopt and WebP: what is unpacked equals the plain scene; what is damaged is refused by one line.
+// Draco, meshopt and WebP: an unpacked scene equals the plain scene; damaged data is refused in one line.
 #include "lib/core/unpack.h"
 #include "lib/image/texture_images.h"
 #include "lib/scene/scene_hash.h"
@@ -198,7 +198,7 @@ TEST(GltfPacked, PrimitivesThatShareTheirAccessorsAreUnpackedOnce) {
 }
 
 TEST(GltfPacked, DamageAnywhereIsReadOrRefusedByOneLine) {
-  // Every byte of the packed data changed once. Some changes are of values that may be anything.
+  // Each byte of the packed data is changed once. Some of the changed values may have any value.
   int refused = 0, read = 0;
   for (const GltfMaker& sound : {draco_square(), draco_square(11), meshopt_square()}) {
     for (std::size_t i = 0; i < sound.bytes.size(); i += 3) {

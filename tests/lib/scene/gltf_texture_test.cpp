@@ -108,8 +108,8 @@ TEST(GltfTexture, SamplersAndTransforms) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(texture.transform[std::size_t(i)], expected[i], 1e-6) << i;
 }
 
-/// A square whose normal map is the same everywhere: red (tilts along its right) or green (along its top). Its
-/// coordinates put the right at x = 1 and the top at y = 1; the file's tangents say: right at y = 1.
+/// A square whose normal map is constant: red tilts the normal along the image's right, green along its top. The
+/// texture coordinates put the right at x = 1 and the top at y = 1; the tangents of the file put the right at y = 1.
 GltfMaker with_tangents(bool green, float side, const Json& transform = nullptr) {
   const std::string png = test::png_bytes(
       1, 1, 3, green ? std::vector<std::uint8_t>{128, 218, 218} : std::vector<std::uint8_t>{218, 128, 218});
@@ -144,7 +144,8 @@ TEST(GltfTexture, NormalMapsFollowTheTangentsOfTheFile) {
   EXPECT_NEAR_VEC(bent_normal(mirrored), (Vec3{s, 0, s}), kCode);
   flat.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_NEAR_VEC(bent_normal(flat), (Vec3{s, 0, s}), kCode);
-  // A map that is turned on the surface lies where its coordinates say; one that is only shifted keeps the tangents.
+  // A map that is turned on the surface follows its texture coordinates; a map that is only shifted keeps the file's
+  // tangents.
   EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"rotation", M_PI / 2}})), (Vec3{0, -s, s}), kCode);
   EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"offset", {0.2, 0}}, {"scale", {2, 5}}})), (Vec3{0, s, s}),
                   kCode);

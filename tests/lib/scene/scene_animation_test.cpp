@@ -101,7 +101,8 @@ TEST(SceneAnimation, MatricesAreColumnMajor) {
 }
 
 TEST(SceneAnimation, AKeyAtAFrameIsMetExactlyThoughItsTimeIsRounded) {
-  // 7/24 s is not a float32: the file's time lies beside the frame's, and a fast move would show it.
+  // 7/24 s is no float32: the key's time in the file differs slightly from the frame's time, and a fast movement
+  // would show this.
   AnimationTrack track;
   for (int k = 0; k <= 48; ++k) {
     track.times_s.push_back(double(float(k / 24.0)));
@@ -164,7 +165,7 @@ TEST(SceneAnimation, OneAnimationCanBeChosenByName) {
   EXPECT_EQ(world_from_node(other, 24, {})[0].translation.x, 2.5);
   EXPECT_EQ(other.duration_s, 2);
   EXPECT_TRUE(left.warnings.empty());
-  // All together: both want the same node, the first in the file has it, and it is said.
+  // With all animations together two of them animate one node: the first in the file is used, and a warning says so.
   const Scene both = load_gltf(path);
   EXPECT_EQ(world_from_node(both, 24, {})[0].translation.x, -1);
   EXPECT_TRUE(has_warning(both, "--animation NAME chooses one"));

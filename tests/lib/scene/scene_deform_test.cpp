@@ -91,8 +91,8 @@ TEST(Morph, MovesOnlyWhereItsWeightsDiffer) {
   EXPECT_NE(frame_of(scene, 30).hashes.moving_geometry, frame_of(scene, 31).hashes.moving_geometry);
 }
 
-/// A quad between two joints: corners 0, 1 follow joint A, 2 and 3 follow B with `share` and A with the rest. The
-/// mesh's node stands elsewhere, which must not matter.
+/// A quad between two joints: corners 0 and 1 follow joint A; corners 2 and 3 follow B with the weight `share` and A
+/// with the rest. The mesh's own node has another transform, which must have no effect.
 GltfMaker skin(float share, bool second_set = false) {
   GltfMaker maker;
   const int mesh = maker.add_square();

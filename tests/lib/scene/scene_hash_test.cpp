@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// A floor, an emissive square, a moving square, a lamp, two materials in use and a camera.
+/// A scene with a floor, an emissive square, a moving square, a lamp, two used materials and a camera.
 GltfMaker room() {
   GltfMaker maker;
   maker.add_material({{"name", "Grey"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}}}});

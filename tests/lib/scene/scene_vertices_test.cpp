@@ -32,8 +32,8 @@ std::vector<Expected> second_reader(const std::string& file, int animation) {
   return lines;
 }
 
-/// Ten vertices of every primitive at ten times: 1e-6 of the scene's size, of which one rounding to float32 of the
-/// coordinates is 6e-8 and that of the frame's time against the file's keys the rest.
+/// Ten vertices of every primitive at ten times agree to 1e-6 of the scene's size. One rounding of coordinates to
+/// float32 is 6e-8 of it; the rest is the rounding of the frame's time against the file's keys.
 void expect_same_vertices(const std::string& file, int animation) {
   const std::vector<Expected> expected = second_reader(file, animation);
   ASSERT_GE(expected.size(), 100u) << file << ": the second reader failed";

@@ -1,5 +1,5 @@
-// The scene without what moves: hashes of the file with the mover taken out, surfaces that no ray meets, lights that
-// are off.
+// The static scene: its hashes are those of the file without the mover, no ray meets moving surfaces, and moving
+// lights are off.
 #include "lib/scene/static_scene.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace tempolux {
 namespace {
 
-/// A triangle that stands, one that moves if it is `there`, and a lamp that moves.
+/// A static triangle, a moving triangle if `there`, and a lamp, which moves if `lamp_moves`.
 Scene scene_with(bool there, bool lamp_moves = false) {
   GltfMaker maker;
   const int mesh = maker.add_triangle();
@@ -104,8 +104,8 @@ TEST(Standing, BoxesHoldWhatMoves) {
   EXPECT_TRUE(moving_boxes(frame_of(scene_with(false), 0)).all.empty());
 }
 
-/// Pieces of a ball, and of the same ball in two frames: every triangle lies in one of them, and they are a good deal
-/// smaller than the ball's box.
+/// Pieces of a ball in one frame and in two: each triangle lies in one piece, and the pieces are much smaller than
+/// the ball's box.
 TEST(Standing, PiecesHoldAllTriangles) {
   const auto ball_at = [](float x) {
     test::HandMadeScene scene;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr float kPi = 3.14159265f;
 
-/// columns x rows cells of a surface over (u, v) in [0, 1]^2; corners of cells counter-clockwise where v runs down.
-/// Vertices are not shared between cells: what is equal must be found.
+/// A surface of columns x rows cells over (u, v) in [0, 1]^2; the corners of a cell run counter-clockwise where v
+/// points down. Cells do not share vertices, so equal vertices must be found.
 Primitive patch(int columns, int rows, const std::function<Vec3(float, float)>& position,
                 const std::function<Vec3(float, float)>& normal, const std::function<Vec2(float, float)>& uv) {
   Primitive p;
@@ -50,9 +50,9 @@ float worst(const Primitive& p, const std::function<Vec3(Vec3)>& expected, const
   return most;
 }
 
-// A cylinder of 24 flat strips, u around, y up. A strip's direction of u is 7.5 degrees off the circle's tangent; laid
-// into the tangent plane it is that tangent. At the seam u jumps from 1 to 0: two vertices of one strip each, and the
-// same.
+// A cylinder of 24 flat strips, u around, y up. Within a strip the direction of u differs by 7.5 degrees from the
+// circle's tangent; projected onto the tangent plane it equals this tangent. At the seam u jumps from 1 to 0, so the
+// seam has two vertices at each place, one for each strip, with equal tangents.
 TEST(Tangents, FollowACylinder) {
   const auto around = [](float u, float v) { return Vec3{std::cos(2 * kPi * u), 1 - v, -std::sin(2 * kPi * u)}; };
   const auto outwards = [](float u, float) { return Vec3{std::cos(2 * kPi * u), 0, -std::sin(2 * kPi * u)}; };
@@ -69,10 +69,11 @@ TEST(Tangents, FollowACylinder) {
   for (const float side : p.tangent_sides) EXPECT_EQ(side, 1);  // image upright as seen from outside: up is n x right
 }
 
-// A sphere of 64 x 32 cells, u around, v from pole to pole. Every triangle has an edge along a parallel: its direction
-// of u is that chord, half a cell's turn, pi / 64, before or behind the vertex; what of it lies in the vertex' tangent
-// plane leans by pi / 64 x cos(v pi) from the parallel there. Those before and behind, of the same corners' angles,
-// lean against each other: nothing is left but at the seam, where u is 0 or 1 and only one side speaks.
+// A sphere of 64 x 32 cells, u around, v from pole to pole. Every triangle has an edge along a parallel, and its
+// direction of u is this chord, half a cell (pi / 64) before or behind the vertex. Projected onto the vertex' tangent
+// plane, the chord leans by pi / 64 x cos(v pi) from the parallel. The chords before and behind the vertex have equal
+// angles at their corners, so their leanings cancel, except at the seam, where u is 0 or 1 and only one side
+// contributes.
 TEST(Tangents, FollowASphere) {
   const auto at = [](float u, float v) {
     const float phi = 2 * kPi * u, theta = kPi * v;
@@ -91,8 +92,8 @@ TEST(Tangents, FollowASphere) {
   EXPECT_NEAR(worst(p, parallel, at_seam), kPi / 64 * std::cos(kPi / 8), 1e-3);
 }
 
-// The image lies on the right half as it is, on the left mirrored: u = |x|. The vertices of the seam have equal
-// position, normal and coordinates, and two tangents: each becomes two.
+// The right half shows the image, the left half shows it mirrored: u = |x|. Vertices of the seam have equal
+// positions, normals and coordinates but two tangents, so each becomes two vertices.
 TEST(Tangents, VerticesOfAMirroredSeamAreParted) {
   Primitive p;
   p.positions = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0}};
@@ -112,8 +113,8 @@ TEST(Tangents, VerticesOfAMirroredSeamAreParted) {
   for (std::size_t v = 6; v < 8; ++v) EXPECT_EQ(p.positions[v], p.positions[p.influences[v].joint]);
 }
 
-// Three corners of 30, 60 and 90 degrees meet in a plane, their edges of different lengths. Within each triangle u and
-// v are linear; the tangent is the direction in which v stays and u grows, and counts by the corner's angle.
+// Three corners of 30, 60 and 90 degrees meet in a plane; their edges have different lengths. Within each triangle u
+// and v are linear. The tangent is the direction in which v is constant and u grows, weighted by the corner's angle.
 TEST(Tangents, AreWeightedByAngles) {
   const auto corner = [](float degrees, float radius) {
     return Vec3{radius * std::cos(degrees * kPi / 180), radius * std::sin(degrees * kPi / 180), 0};
@@ -143,8 +144,9 @@ TEST(Tangents, AreWeightedByAngles) {
 }
 
 TEST(Tangents, WhereCoordinatesSayNothing) {
-  // The second triangle's coordinates have no area: it takes the first's tangent where they meet over an edge, and none
-  // at the corner that is its own. The third touches them in a vertex alone, and takes its tangent too.
+  // The coordinates of the second triangle have no area. It takes the first triangle's tangent at the edge that they
+  // share, and none at its third corner. The third triangle touches them at one vertex and takes the tangent there,
+  // too.
   Primitive p;
   p.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 1, 0}, {2, 2, 0}};
   p.normals.assign(6, {0, 0, 1});
@@ -160,8 +162,8 @@ TEST(Tangents, WhereCoordinatesSayNothing) {
   EXPECT_TRUE(none.tangents.empty());
 }
 
-// A texture transform that turns the image turns the tangents; morph targets bring what they change: a square in the
-// plane of x and y that a target stands up, so that x becomes z.
+// A texture transform that turns the image turns the tangents. Morph targets change the tangents with the surface: a
+// target turns a square of the plane x, y upright, so x becomes z.
 TEST(Tangents, FollowTransformsAndMorphTargets) {
   Primitive square;
   square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};

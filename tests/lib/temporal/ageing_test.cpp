@@ -1,4 +1,4 @@
-// The draw of cells by age: the law of sequential draws, and what it makes of ages in the long run.
+// Drawing cells by age: the probabilities of sequential draws, and the distribution of ages after many frames.
 #include "lib/temporal/ageing.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(AgeDraw, DrawsEachOnceAndNeverMoreThanThereAre) {
   EXPECT_TRUE(drawn.empty());
 }
 
-// An age that would not fit any more: those cells are drawn whatever was asked for, and the others by the same law.
+// Cells whose age would no longer fit into the field are always drawn, and the others with the same probabilities.
 TEST(AgeDraw, SaturatedAgesAreAlwaysDrawn) {
   const std::vector<std::uint16_t> ages{1, formats::kMaxAge, 4, formats::kMaxAge};
   AgeDraw lot;
@@ -70,8 +70,8 @@ TEST(AgeDraw, SaturatedAgesAreAlwaysDrawn) {
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.begin() + 2), (std::set<std::uint32_t>{1, 3}));
 }
 
-/// What 500 cells of which 50 are drawn in each frame come to (docs/methods/formulas.md): ages count 1 in the frame of
-/// the draw; stale: share of cells not drawn in so many frames.
+/// The steady state of 500 cells of which 50 are drawn in each frame (docs/methods/formulas.md). Ages count 1 in the
+/// frame of the draw. stale: share of cells that were not drawn in a number of frames.
 struct Steady {
   double mean = 0, above_10 = 0, above_20 = 0;
   std::array<double, 4> stale{};  ///< after 5, 10, 15, 20 frames
@@ -108,7 +108,7 @@ Steady steady() {
   return made;
 }
 
-/// Within 2 %, and .002 where the share itself is a few cells.
+/// Within 2 %, or .002 where the share is only a few cells.
 void expect_near(double found, double expected, const char* what) {
   EXPECT_NEAR(found, expected, 0.02 * expected + 0.002) << what;
 }

@@ -1,4 +1,4 @@
-// Bright points sampled explicitly beside samples that are kept.
+// Bright points sampled explicitly, together with samples that are kept over time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 
-/// A floor that is black, and high above it a bright square of 1 m, for which one point stands (spacing 1, R = 0.56 m).
-/// Seen from 8 m, beyond the fade at 6 R, all of its high part is sampled explicitly.
+/// A black floor, and high above it a bright square of 1 m, which one point represents (spacing 1, R = 0.56 m). From
+/// 8 m, farther than the end of the fade at 6 R, all of its high part is sampled explicitly.
 struct Spot {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -46,7 +46,7 @@ double mean_of(const KeptHemispheres& kept) {
   return sum / double(kept.records.size());
 }
 
-/// One frame of it: the first, or what follows from `kept`. high: share of the point's light.
+/// Records of one frame: the first frame, or the frame after `kept`. high: share of the point's light.
 KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres kept, TemporalCounts& counts) {
   const SceneFrame& frame = now.scene.frame();
   const Tracer tracer(frame);
@@ -76,10 +76,10 @@ KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres 
   return kept;
 }
 
-// A square of 1 m at 8 m, radiance E / pi, right above: irradiance E / pi x integral of cos cos / l^2 = E / pi x
-// 0.01551 (the square's corners are at most 0.71 m aside). Explicit samples of 16 sites know it to 1 %; rays find it
-// with 500 / pi x 0.0155 = 2.5 of 500 cells, 100 records: 1 / sqrt(250) = 6 %. Whatever share is high, whether it is so
-// from the start or comes and goes, the light is the same; and in each frame that of the frame.
+// A square of 1 m at 8 m straight above, radiance E / pi, gives the irradiance E / pi x integral of cos cos / l^2 = E
+// / pi x 0.01551 (corners are at most 0.71 m from the axis). Explicit samples of 16 sites have an error of 1 %. Rays
+// hit the square in 500 / pi x 0.0155 = 2.5 of 500 cells; 100 records have an error of 1 / sqrt(250) = 6 %. For any
+// high share, constant or changing, the light of each frame is the same as gathered anew.
 TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
   const double form = 0.01551 / M_PI;
   double exact = 0;
@@ -104,7 +104,7 @@ TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
     for (const KeptHemisphere& k : kept.records)
       EXPECT_TRUE(high[2] == 0 || std::ranges::find(k.anchors, 0u) == k.anchors.end()) << "an anchor of a bright point";
   }
-  // Nothing moves: nothing is sampled.
+  // Nothing moves, so nothing is sampled.
   Spot same(100);
   TemporalCounts a, still;
   const KeptHemispheres kept = spot_frame(first, nullptr, 0.7f, {}, a),

@@ -1,5 +1,5 @@
-// Windows of photons over time: how often stationary light closes them, what changing light makes of them, what they
-// hold.
+// Windows of photons over time: how often constant light closes them, their length in changing light, and their
+// content.
 #include "lib/temporal/photon_windows.h"
 
 #include <gtest/gtest.h>
@@ -17,13 +17,13 @@ namespace {
 
 constexpr int kFrames = 33, kMiddle = 16;
 
-/// An element, the kernel's region around it, 29 times as large, the ring, nine times that, and the frame, 30 times
-/// that.
+/// Counts of an element and of the regions around it: the kernel's region, 29 times as large as the element; the
+/// ring, nine times as large as that; and the frame, 30 times as large as the ring.
 struct Simulated {
   HitSeries element{kFrames}, kernel{kFrames}, ring{kFrames}, frame{kFrames};
 
-  /// `rate`: photons of the kernel's region in a frame, all worth 1. `strong`: 0, or the power of further photons, one
-  /// for so many others.
+  /// `rate`: mean number of photons of power 1 in the kernel's region per frame. `strong`: power of further photons,
+  /// of which there is one for every `strong` photons of power 1; 0: none.
   Simulated(double rate, const std::function<double(int)>& light, std::mt19937_64& random, double strong = 0) {
     for (int f = 0; f < kFrames; ++f) {
       const auto number = [&](double mean) {
@@ -49,19 +49,20 @@ struct Simulated {
 double still(int) { return 1; }
 
 TEST(BlockContrast, IsThatOfPhotonsDealtToBlocksAtRandom) {
-  // 9 photons of 1 in one frame, 27 in two: of 36, 2/3 belong there, 24 with variance 36 x 2/9 = 8 and
-  // skewness (1 - 4/3) / sqrt(2/9) / 6.
+  // 9 photons of power 1 in one frame, 27 in the other two: 36 photons, of which 2/3, 24, belong to the two frames,
+  // with the variance 36 x 2/9 = 8 and the skewness correction (1 - 4/3) / sqrt(2/9) / 6.
   EXPECT_NEAR(block_contrast({9, 9, 9}, 1, {27, 27, 27}, 2),
               3 / std::sqrt(8.0) + 1 / std::sqrt(2.0) / 6 * (9.0 / 8 - 1) / 6, 1e-12);
   EXPECT_EQ(block_contrast({}, 1, {}, 2), 0);
-  // Photons of other power: one of 3 beside three of 1: S = 6, Q = 12.
+  // Photons of different power, one of 3 in one frame and three of 1 in the other: S = 6, Q = 12.
   EXPECT_NEAR(block_contrast({1, 3, 9}, 1, {3, 3, 3}, 1), 0, 1e-12);
 }
 
-/// Stated: 5 %. 20000 windows, 1000 alarms +- 31: .0015. What is asked for is a fifth, .01; the tests of a window are
-/// not quite independent, and their distributions not quite Gaussian: of 8 photons a frame, where many tests have
-/// hardly enough, alarms are a quarter rarer. A full window of 2500 has 76. Seen to fail (.1 to .8) when each frame is
-/// compared with the middle one alone, or tests are not counted.
+/// The option asks for 5 % false alarms. In 20000 windows these are 1000 +- 31, a standard error of .0015. The band
+/// is a fifth, .01, because the tests of a window are not quite independent and their distributions not quite
+/// Gaussian. With 8 photons per frame, too few for many of the tests, alarms are a quarter rarer. 76 photons per
+/// frame are 2500 in a full window. Seen to fail (.1 to .8) if each frame is compared with the middle one alone, or
+/// if the number of tests is ignored.
 TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   std::mt19937_64 random(5);
   WindowOptions options;
@@ -75,9 +76,10 @@ TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   }
 }
 
-/// One photon in 100 is worth 100, so that half of the light has few photons. Stated: 5 %, of 20000 windows; a fifth
-/// and three standard errors, .0015 each. Seen to fail (.030) if blocks are tested as soon as they have eight photons
-/// of any power: tests that hardly ever reject count among the tests of a window.
+/// One photon in 100 has the power 100, so half of the light comes from few photons. The option asks for 5 % false
+/// alarms; the band is a fifth of this plus three standard errors of .0015 for 20000 windows. Seen to fail (.030) if
+/// blocks are tested from eight photons of any power on: tests that hardly ever reject then count among the tests of
+/// a window.
 TEST(GrowWindow, KeepsItsRateWherePowersDiffer) {
   std::mt19937_64 random(9);
   WindowOptions options;
@@ -90,9 +92,10 @@ TEST(GrowWindow, KeepsItsRateWherePowersDiffer) {
   EXPECT_NEAR(double(alarms) / kWindows, 0.05, 0.01 + 3 * 0.0015);
 }
 
-/// algorithms.md 2.3: light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save
-/// 12 and 29 times the photons at best. Asked for are 10 and 20. 2000 estimates: the ratio of two mean squares has a
-/// standard error of sqrt(2 x 2 / 2000) = 4.5 %.
+/// Light L(f) = 1 + .3 sin(2 pi f / P) with a period P of 60 or 240 frames, at 30 photons per frame. The mean over n
+/// frames around frame f has the squared error L / (30 n) + (mean of L over the window - L)^2. Over all phases this
+/// is least for n = 15 and n = 33, the full window: 1/12 and 1/31 of the error of one frame. The test asks for 1/10
+/// and 1/20. The ratio of two mean squares of 2000 estimates has a standard error of sqrt(2 x 2 / 2000) = 4.5 %.
 TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
   std::mt19937_64 random(6);
   const WindowThresholds thresholds{WindowOptions{}};
@@ -115,9 +118,9 @@ TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
   }
 }
 
-/// A lamp that doubles four frames on, 100 photons a frame: the step's contrast in one frame on each side is far beyond
-/// any threshold (one frame of 200 beside nine of 100: (200 - 110) / sqrt(1100 x .09) = 9). The other side stays open
-/// to its end.
+/// A lamp doubles its power four frames after the middle, at 100 photons per frame. One frame of 200 next to nine of
+/// 100 has the contrast (200 - 110) / sqrt(1100 x .09) = 9, far above any threshold. The window stays open to its end
+/// on the other side.
 TEST(GrowWindow, AStepClosesItsSideAlone) {
   std::mt19937_64 random(7);
   const WindowThresholds thresholds{WindowOptions{}};
@@ -139,14 +142,14 @@ TEST(GrowWindow, FewPhotonsTakeAllFrames) {
   EXPECT_EQ(grow_window({&one, &one, &one, &one}, 2, kFrames, thresholds), (Window{2, 16}));
 }
 
-/// Counts of a room's elements.
+/// Photon counts of the elements of a room.
 class CollectWindows : public testing::Test {
  protected:
   CollectWindows() {
     room_.add_room({-1, -1, -1}, {1, 1, 1}, test::matte(Rgb(0.5f)));
     elements_ = all_elements(room_.frame(), MeshCuts(0.5, {&room_.frame()}));
   }
-  /// So many photons in each element in each frame, up to 2 more.
+  /// `photons` in each element in each frame, plus up to 2 at random.
   std::vector<FrameCounts> counts(int photons, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::vector<FrameCounts> frames(kFrames);
@@ -225,7 +228,7 @@ TEST_F(CollectWindows, HaveNoDirectionOfTime) {
   }
 }
 
-/// Counts in other units: frames of a lamp that is half as bright are worth the same in the mean.
+/// Frames may have different units of flux: frames of a lamp that is half as bright contribute equally in the mean.
 TEST_F(CollectWindows, TakeUnitsFromEachFrame) {
   std::vector<FrameCounts> frames = counts(2, 4);
   std::vector<formats::MeshElement> elements;

@@ -1,4 +1,4 @@
-// Which cells can see a box: none is left out, whatever lies where.
+// Which cells can see a box: no such cell is left out, for any positions.
 #include "lib/temporal/swept_boxes.h"
 
 #include <gtest/gtest.h>

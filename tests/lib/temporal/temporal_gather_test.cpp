@@ -1,4 +1,4 @@
-// Kept hemispheres over time: what must follow, what must stay, and that nothing is lost on the way.
+// Kept hemispheres over time: they follow changes of light and surfaces, stay the same otherwise, and lose no light.
 #include "lib/temporal/temporal_gather.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 
-/// A floor, 4 m wide, above which a flat square of half-width `half` m, 0.6 m high, turns about its axis, z. All of it
-/// shines back radiance 1 where it is seen: reflectance 1, irradiance pi. Otherwise all is black.
+/// A floor, 4 m wide, and above it, at 0.6 m, a flat square of half-width `half` m that turns about the axis z. The
+/// square reflects radiance 1 towards the floor: reflectance 1, irradiance pi. All other surfaces are black.
 struct Turning {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -39,7 +39,7 @@ struct Turning {
   }
 };
 
-/// One frame's gathering; points may stand for all that faces their way.
+/// Gathering of one frame. A point may represent all surfaces that face the same way.
 struct Gathering {
   const SceneFrame& frame;
   Tracer tracer;
@@ -57,7 +57,7 @@ struct Gathering {
         gather({tracer, lights, lookup, points, anchored_points(frame, points), before, {}, {}, std::move(eye)}, rays,
                placement, options, 8) {}
 
-  /// What pixel (x, y) of a picture of the floor near the origin sees: places `step` m apart.
+  /// Pixel (x, y) sees a place of the floor around the origin; neighbouring places are `step` m apart.
   PixelView floor(float step) const {
     return [this, step](const Look& look) -> std::optional<SeenPoint> {
       Hit hit;
@@ -67,7 +67,7 @@ struct Gathering {
   }
 };
 
-/// Radii so small that each place gets a record of its own.
+/// Radii so small that each place gets its own record.
 PlacementOptions everywhere() {
   PlacementOptions options;
   options.error_bound = 1e-6f;
@@ -87,12 +87,12 @@ Mean mean_of(const KeptHemispheres& kept) {
   return {sum / n, std::sqrt(std::max(0.0, square / n - sum / n * (sum / n)) / n)};
 }
 
-// A square that turns by 1.5 degrees a frame for 200 frames over 1000 places side by side: their mean irradiance is
-// that of fresh gathering within 3 standard errors of both. It fails if cells that are traced again get another
-// direction (what hits the square is thrown away: 29 to 75 % of its light is lost), or if they are left out where cells
-// are drawn by age (what has come to hit it stays: 33 to 70 % too much). The square's box fills 0.9 % of the
-// hemisphere: of 512 rays some always meet it. A record none of whose rays do keeps all its directions: of 64 rays most
-// records would come to that state, and stay there.
+// A square turns by 1.5 degrees per frame for 200 frames. The mean irradiance of 1000 places below it equals that of
+// fresh gathering within 3 standard errors of both. Seen to fail with either of two mistakes. If cells that are
+// traced again get a new direction, rays that hit the square are replaced: 29 to 75 % of its light is lost. If these
+// cells are left out when cells are drawn by age, rays that have come to hit the square stay: 33 to 70 % too much.
+// The square's box fills 0.9 % of the hemisphere, so some of 512 rays always hit it. With 64 rays most records would
+// come to a state in which no ray hits the box, and would keep all their directions.
 TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
   constexpr int kWidth = 40, kHeight = 25, kFrames = 200;
   for (const float half : {0.06f, 0.15f}) {
@@ -127,8 +127,8 @@ TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
   }
 }
 
-/// A closed room, 2 m wide, reflectance 1/2, whose points all say the same irradiance: each ray brings its half over
-/// pi.
+/// A closed room, 2 m wide, of reflectance 1/2. All points have the same irradiance E, so each ray returns the
+/// radiance E / (2 pi).
 struct Room {
   HandMadeScene scene;
   std::vector<IrradiancePoint> points;
@@ -183,10 +183,10 @@ TEST(TemporalGather, WhatStandsStaysToTheBitWithoutARay) {
   }
 }
 
-// Light that grows by 1/2 % a frame for 24 frames: E grows by 1.005^24 = 1.127 (each step is far below a mantissa's,
-// 1/128 to 1/256: rounded down, cells would stay as they are for the ten frames they live). 16 records of 200 cells,
-// whose 24 roundings are off by up to half a step each: 0.4 % x sqrt(24 / 3200) = 0.03 %. Only a tenth of the cells is
-// traced. Where nothing is refreshed, too.
+// Light grows by 1/2 % per frame for 24 frames: E grows by 1.005^24 = 1.127. Each step is far smaller than that of a
+// mantissa, 1/128 to 1/256; if mantissas were rounded down, cells would keep their value for the ten frames that they
+// live. 16 records of 200 cells have 24 roundings with errors of up to half a step: 0.4 % x sqrt(24 / 3200) = 0.03 %.
+// A tenth of the cells is traced per frame, in the second case none.
 TEST(TemporalGather, AnchoredCellsFollowTheirPointsLittleByLittle) {
   for (const float refresh : {0.1f, 0.0f}) {
     auto before = std::make_unique<Room>(3.0f);
@@ -207,7 +207,7 @@ TEST(TemporalGather, AnchoredCellsFollowTheirPointsLittleByLittle) {
   }
 }
 
-// Scaling mantissas in place is keeping the scaled radiance anew: the same random numbers, the same bytes.
+// Scaling mantissas in place gives the same bytes as storing the scaled radiance, with the same random numbers.
 TEST(KeptHemisphere, ScalingInPlaceIsKeepingTheProduct) {
   KeptHemisphere a;
   a.record.key = 99;
@@ -231,10 +231,11 @@ TEST(KeptHemisphere, ScalingInPlaceIsKeepingTheProduct) {
   EXPECT_EQ(a.samples[0].rgbe, (std::array<std::uint8_t, 4>{}));
 }
 
-// Light that two points know, that of a hit near by and that where its ray came to: scaled as either it goes wrong. The
-// ceiling shines 1.9 times as much, and then for eight frames something goes on changing a little: within these each
-// such cell is traced again once, and is what it would be if all were. Mantissas are 1/128 at most, twice: 2 %; what
-// changes in eight frames is a thousandth. Without turns cells are up to 24 % off.
+// A cell with a close hit has the light of two points: that of the hit, and that at which its continued ray ended.
+// Scaled by the change of either point, the cell would be wrong by up to 24 %. Here the ceiling becomes 1.9 times as
+// bright, and for eight more frames the light of a wall changes slightly. Within these frames each such cell is
+// traced again once, and then equals the value that tracing all cells gives. Two roundings of mantissas are 1/128
+// each, at most 2 %; the wall's light changes by a thousandth in eight frames.
 TEST(TemporalGather, NearHitsAreTracedAgainInTurn) {
   const auto lit = [](float ceiling, float wall) {
     auto room = std::make_unique<Room>(1.0f);
@@ -274,11 +275,11 @@ TEST(TemporalGather, NearHitsAreTracedAgainInTurn) {
     }
 }
 
-// The light that a lamp throws goes from one wall to another in four frames, beside light that stays; all 30 ways, so
-// that nothing grows brighter on the whole. A hit near by brings light that two points know. Were its anchor that which
-// told more of it, a hit on a wall that is dark yet would follow another wall and miss that its own grows bright: 1.8 %
-// of the light is lost. Its own point does not know the other's part either; without a trend that leaves a second
-// order: .5 %.
+// A lamp's light moves from one wall to another within four frames, in addition to constant light. All 30 pairs of
+// walls are summed, so the whole does not grow brighter. A cell with a close hit has the light of two points. If the
+// brighter of the two were its anchor, a hit on a wall that is still dark would follow another wall and miss that its
+// own wall becomes bright: 1.8 % of the light would be lost. With the hit's own point as anchor the other point's
+// change is missed, too, but it has no trend: an error of second order remains, .5 %.
 TEST(TemporalGather, NearHitsDoNotGoDarkUnderAMovingLamp) {
   constexpr int kFrames = 4;
   const auto lit = [](int from, int to, int f) {
@@ -307,8 +308,9 @@ TEST(TemporalGather, NearHitsDoNotGoDarkUnderAMovingLamp) {
   EXPECT_NEAR(over_time / anew, 1, 0.01);
 }
 
-// A plate comes down to 1 cm above a record and hides it: the smallest radius, 4 pixels of 2.5 cm, is no longer its
-// due. Seen, or with no camera, it keeps that; and what lies in a corner from the start keeps it hidden, too.
+// A plate comes down to 1 cm above a record and hides it from the camera: the smallest radius, 4 pixels of 2.5 cm, no
+// longer applies. It still applies if the camera sees the record, if there is no camera, and if the record was hidden
+// in a corner from the start.
 TEST(TemporalGather, WhatIsHiddenAndCloseHasNoSmallestRadius) {
   const auto stage = [](float height) {
     auto scene = std::make_unique<HandMadeScene>();
@@ -345,7 +347,8 @@ TEST(TemporalGather, WhatIsHiddenAndCloseHasNoSmallestRadius) {
   EXPECT_FLOAT_EQ(radius(0.02f, 3), smallest);
 }
 
-// Where all cells are traced anyway none is drawn by age but a quarter of `refresh` of the others: here, of none.
+// If cells must be traced anyway, age draws at most a quarter of `refresh` of the other cells. Here there are no
+// others.
 TEST(TemporalGather, WhatMustBeTracedCountsAsRefreshed) {
   Room room(1), brighter(3);
   TemporalCounts counts, later;
@@ -355,8 +358,8 @@ TEST(TemporalGather, WhatMustBeTracedCountsAsRefreshed) {
   EXPECT_EQ(later.aged, 0u);
 }
 
-// Light that is three times as strong at once: cells are traced again along their old rays, age as they are, and are
-// right at once.
+// If light becomes three times as strong at once, cells are traced again along their old rays, keep their age, and
+// are right at once.
 TEST(TemporalGather, BeyondHalfAndTwiceCellsAreTracedAgain) {
   Room room(1), brighter(3), dark(0);
   TemporalCounts counts, later, black, back;
@@ -369,13 +372,13 @@ TEST(TemporalGather, BeyondHalfAndTwiceCellsAreTracedAgain) {
       EXPECT_EQ(formats::age_of(k.samples[c]), 2);
       EXPECT_EQ(k.draw_of(c), 0u);
     }
-  // Lights out, and on again: nothing scaled from 0 stays 0.
+  // Lights go out and on again: a cell that was scaled to 0 does not stay 0.
   const KeptHemispheres out = advanced(brighter, dark, next, black, {.refresh = 0});
   EXPECT_EQ(mean_of(out).mean, 0);
   EXPECT_NEAR(mean_of(advanced(dark, room, out, back, {.refresh = 0})).mean, 1, 0.0005);
 }
 
-// A record on the square itself: it keeps its place in the triangle and its key, its normal turns with it.
+// A record on the square keeps its key and its place in the triangle, and its normal turns with the square.
 TEST(TemporalGather, RecordsRideOnWhatMoves) {
   Turning before(0, 0.4f), now(0.5f, 0.4f);
   const Gathering first(before.scene, before.points, nullptr, {.rays = 64}, everywhere());
@@ -401,11 +404,11 @@ TEST(TemporalGather, RecordsRideOnWhatMoves) {
   EXPECT_NEAR(r.position[2], 0.1f, 1e-6);
   EXPECT_NEAR(r.normal[0], -std::sin(0.5f), 1e-6);
   EXPECT_NEAR(r.normal[1], std::cos(0.5f), 1e-6);
-  EXPECT_EQ(later.moved, kept.records[0].samples.size());  // its surroundings pass by: all anew
+  EXPECT_EQ(later.moved, kept.records[0].samples.size());  // its surroundings have moved: all cells are traced anew
 }
 
-// What shrinks to nothing takes its records with it, and what is back gets new ones: no record without a place, nothing
-// that is not a number.
+// An object that shrinks to nothing loses its records, and gets new ones when it is back. No record lacks a place,
+// and no number is NaN.
 TEST(TemporalGather, WhatIsNotThereHasNoRecords) {
   Turning there(0, 0.4f), gone(0.2f, 0), back(0.4f, 0.4f);
   const Gathering first(there.scene, there.points, nullptr, {.rays = 64}, everywhere());
@@ -430,9 +433,9 @@ TEST(TemporalGather, WhatIsNotThereHasNoRecords) {
   const Gathering again(back.scene, back.points, &gone.scene.frame(), {.rays = 64}, everywhere());
   again.gather.advance(kept, third);
   EXPECT_EQ(third.removed, 0u);
-  EXPECT_GT(third.moved, 0u);  // what is back is in the way of rays from the floor
+  EXPECT_GT(third.moved, 0u);  // the square, which is back, blocks rays from the floor
   again.gather.place(on_the_square(again), 3, 3, kept, third_store, third);
-  EXPECT_GE(kept.records.size(), 18u);  // those of the floor, and new ones
+  EXPECT_GE(kept.records.size(), 18u);  // the records of the floor, and new ones
   for (const KeptHemisphere& k : kept.records)
     EXPECT_TRUE(std::isfinite(k.record.irradiance[1]) && std::isfinite(k.record.normal[0]));
 }

@@ -184,8 +184,8 @@ TEST(Tracer, RaysThatAreNotFiniteAreMissesAndCounted) {
   EXPECT_EQ(tracer.refused_ray_count(), 2 * std::size(bad));
 }
 
-/// At every scale and offset a ray that leaves a wall of a closed room meets another wall, never its own
-/// and never nothing: no self hits, no leaks at edges.
+/// At every scale and offset, a ray that leaves a wall of a closed room meets another wall, and never its own wall or
+/// none: no self hits, no leaks at edges.
 TEST(Tracer, ARoomIsClosedAtEveryScale) {
   for (float scale : {1e-4f, 1.0f, 1e6f}) {
     HandMadeScene scene;
@@ -217,8 +217,8 @@ TEST(Tracer, ARoomIsClosedAtEveryScale) {
   }
 }
 
-/// Rays aimed at the very edges of a long room, and what leaves the points they meet: rounding must not put such
-/// a point behind the neighbouring wall, from where the next ray would find the way out.
+/// Rays aimed exactly at the edges of a long room, and rays that leave the points they meet. Rounding must not put
+/// such a point behind the neighbouring wall, from where the next ray would leave the room.
 TEST(Tracer, WhatLeavesAnEdgeStaysInTheRoom) {
   HandMadeScene scene;
   scene.add_room({-5, -0.5f, -0.5f}, {5, 0.5f, 0.5f}, matte(Rgb(0.5f)));
@@ -260,7 +260,7 @@ TEST(Tracer, AShadowRayIsFreeBetweenTwoWallsAndBlockedByAThird) {
   EXPECT_TRUE(tracer.occluded(spawn_shadow_ray(tracer.surface_point(hit), {0.2f, 1, 0.1f}, 1e-6f)));
 }
 
-/// A room of many triangles, as one surface and as an instance of the same primitive with the same transform.
+/// A room of many triangles twice: as one surface, and as an instance of the same primitive with the same transform.
 struct TwoRooms {
   static constexpr std::uint32_t kCells = 24;
   Primitive primitive;
@@ -323,7 +323,7 @@ TEST(Tracer, AnInstanceIsTheSameSurfaceAsACopy) {
       ASSERT_TRUE(copy.intersect(ray, a) && instance.intersect(ray, b));
       EXPECT_TRUE(instance.occluded(ray));
       const SurfacePoint p = copy.surface_point(a), q = instance.surface_point(b), r = instance.surface_point(a);
-      // the same hit is the same point to the last bit; a hit found in the instance's space is off by some ulp
+      // the same hit gives the same point to the last bit; a hit found in the instance's space differs by a few ulp
       EXPECT_TRUE(p.position == r.position && p.normal == r.normal && p.normal_geometric == r.normal_geometric);
       differing += a.triangle != b.triangle;
       if (a.triangle == b.triangle) {

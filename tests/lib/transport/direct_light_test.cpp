@@ -59,8 +59,8 @@ TEST(SampleDirect, MeanIsTheIrradianceOfALamp) {
   EXPECT_NEAR(sum / kSamples / Lamp::irradiance(), 1, 0.024);
 }
 
-/// What comes from behind one of the normals does not count; a coat takes its share of the light by the angle; a sheet
-/// in between lets nothing through.
+/// Light from behind one of the normals does not count. A coat reduces light by the angle. A sheet in between blocks
+/// it.
 TEST(SampleDirect, NormalsCoatAndShadow) {
   const Lamp lamp;
   const SurfacePoint place = place_at({0, 0, 0}, kUp);

@@ -1,4 +1,4 @@
-// Majorants as text: the same numbers back, and nothing that is damaged.
+// Majorants as text: files are read back with the same numbers, and damaged files are refused.
 #include "lib/volume/majorants_file.h"
 
 #include <gtest/gtest.h>

@@ -36,8 +36,8 @@ Affine scaled(double s, Vec3d t = {}) {
   return a;
 }
 
-/// A cube of n blocks, density 1, `edge` m from its first to its last voxel's border; along an axis its depth is edge x
-/// sigma_t: the ramps at both ends, a voxel long, hold half a voxel each.
+/// A cube of n blocks of density 1, `edge` m from the border of its first voxel to that of its last. Its depth along
+/// an axis is edge x sigma_t: the ramps at both ends, each a voxel long, hold half a voxel each.
 Media cube(int n, double edge, MediumOptions options) {
   const double voxel = edge / (8 * n);
   std::vector<Medium> media;
@@ -98,13 +98,13 @@ TEST(VoxelGrid, RefusesWhatIsNoDensity) {
 }
 
 TEST(Medium, OpticalDepthIsExact) {
-  // sigma = z / 10 between the voxels, so a way along z from 2.3 to 9.1 holds (9.1^2 - 2.3^2) / 20.
+  // sigma = z / 10 between the voxels, so a path along z from 2.3 to 9.1 has the depth (9.1^2 - 2.3^2) / 20.
   std::vector<Medium> media;
   media.emplace_back(grid_of(2, [](int, int, int z) { return 0.1f * float(z); }), scaled(1), MediumOptions{});
   const Media linear(std::move(media));
   EXPECT_NEAR(linear.optical_depth({3, 3, 2.3f}, {0, 0, 1}, 6.8), (9.1 * 9.1 - 2.3 * 2.3) / 20, 1e-5);
-  // Products of linear fields are cubic along a diagonal: x y z from (1,1,1) to (6,6,6) is the integral of s^3 sqrt(3)
-  // ds.
+  // A product of linear fields is cubic along a diagonal: x y z from (1,1,1) to (6,6,6) has the depth integral of s^3
+  // sqrt(3) ds.
   std::vector<Medium> cubic;
   cubic.emplace_back(grid_of(1, [](int x, int y, int z) { return float(x * y * z); }), scaled(1), MediumOptions{});
   const float d = 1 / std::sqrt(3.0f);
@@ -172,7 +172,7 @@ TEST(Majorants, FrozenOnesMustHold) {
   EXPECT_THROW(Media({Medium(one, scaled(1.5), {})}, of_two), std::invalid_argument);
 }
 
-/// Slabs of depth tau: the share that passes, by collisions and by ratio tracking.
+/// The transmittance of slabs of depth tau, by collisions and by ratio tracking.
 TEST(Flight, PassesByBeerAndLambert) {
   for (const float tau : {1e-6f, 1e-3f, 0.1f, 1.0f, 5.0f, 1e4f}) {
     const Media media = cube(2, 1, {.sigma_t = tau});
@@ -204,8 +204,9 @@ TEST(Flight, KeepsThinMediaExact) {
   EXPECT_NEAR(sum * 0x1p-32, -std::expm1(-1e-6), 0.0005e-6);
 }
 
-/// What a half-space of isotropic scattering reflects of light at normal incidence: 1 - sqrt(1 - w) H(1). Chandrasekhar
-/// 1950; values of docs/methods/formulas.md. Any profile of density along the normal reflects the same.
+/// The share of light at normal incidence that a half-space of isotropic scattering reflects: 1 - sqrt(1 - w) H(1).
+/// Chandrasekhar 1950; values of docs/methods/formulas.md. The share is the same for any profile of density along the
+/// normal.
 TEST(Flight, HalfSpaceReflectsByChandrasekhar) {
   const Media media = cube(3, 24000, {});  // voxels of 1000 free ways
   struct Case {

@@ -9,7 +9,8 @@
 namespace tempolux::test {
 namespace {
 
-/// A pinhole camera written down a second time: eye, turn about +y, half the picture's height at distance 1.
+/// A second, independent description of a pinhole camera: eye, turn about +y, half the picture's height at distance
+/// 1.
 struct Pinhole {
   Vec3d eye;
   double turn, yfov;
@@ -55,8 +56,9 @@ TEST(FlowOfView, OfAPlaneIsItsHomography) {
   EXPECT_LT(std::sqrt(squares / count), 1e-4);
 }
 
-/// Following a point to the next frame and its flow back again, bilinear there, leads to where it was: where the same
-/// whole surface is seen in both. Bilinear flow of a plane is off by its curvature, below .01 pixels here.
+/// A point is followed to the next frame and back by the flow there, bilinear. It returns to its start where one
+/// whole surface is seen in both frames. The bilinear flow of a plane has an error by its curvature, below .01 pixels
+/// here.
 TEST(FlowOfView, ForwardAndBackAgain) {
   const Cornell now(10), next(11);
   const int width = 320, height = 240;

@@ -35,7 +35,7 @@ struct View {
       : room(room_), camera(placed, room_.frame.origin, width, height), seen(room_.tracer, camera) {}
 };
 
-/// What a test paints a point of an object with.
+/// The colour that a test gives to a point of an object.
 using Paint = std::function<Rgb(Vec3d world, std::uint32_t object)>;
 
 /// A colour that changes slowly over space, another for each object.
@@ -67,7 +67,7 @@ inline Image painted(const View& view, const Paint& paint) {
   return image;
 }
 
-/// A target warped from keys, all in one place that outlives the result.
+/// A target warped from keys; owns everything that the result refers to.
 struct Warped {
   std::vector<std::unique_ptr<KeyFrame>> keys;
   std::vector<std::unique_ptr<ObjectMotions>> motions;
@@ -95,7 +95,7 @@ struct Warped {
     wanted.look = [&](std::span<const RasterPoint> at, FacePoint* points) { target.seen.look(at, points); };
     frame = warp(wanted, list, options);
   }
-  /// Of the composed picture; channels are A B G R.
+  /// Colour of pixel p of the composed picture, whose channels are A B G R.
   Rgb colour(std::size_t p) const { return {frame.colour[3][p], frame.colour[2][p], frame.colour[1][p]}; }
 };
 

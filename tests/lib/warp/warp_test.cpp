@@ -9,7 +9,7 @@ using formats::why_border, formats::why_changed_light, formats::why_edge, format
 
 const PlacedCamera kMiddle = camera_at({0, 1, 1.9});
 
-/// A paint that no two neighbouring pixels share: any interpolation shows.
+/// Neighbouring pixels have very different colours, so any interpolation shows.
 Rgb speckled(Vec3d p, std::uint32_t object) {
   return {float(std::sin(900 * p.x) + 2), float(std::sin(700 * p.y) + 2), float(object) + float(std::sin(800 * p.z))};
 }
@@ -26,9 +26,9 @@ TEST(Warp, ToItsOwnFrameIsTheSameToTheBit) {
   }
 }
 
-/// Another program's key: it does not know the scene's objects, and filters its normals. Depth and normals say what is
-/// what, so it gives nearly all that the same key with objects gives, and no ghosts: blue is the object's number, and
-/// the room's objects have a depth or a normal of their own wherever they meet.
+/// A key of another program has no object numbers of the scene and filtered normals. Depth and normals separate its
+/// surfaces. It contributes nearly all pixels that the same key with objects contributes, and no ghosts: blue is the
+/// object's number, and the room's objects differ in depth or normal wherever they meet.
 TEST(Warp, KeysThatKnowNoObjectsAreOfUse) {
   const Cornell room;
   const View left(room, camera_at({-0.1, 1, 1.9})), right(room, camera_at({0.1, 1, 1.9}));
@@ -51,8 +51,7 @@ TEST(Warp, KeysThatKnowNoObjectsAreOfUse) {
   EXPECT_GE(given_without, given * 99 / 100);
 }
 
-/// Two equal keys, the camera standing: the weights of the blend leave their bits alone. Where the box moved the key is
-/// of no use.
+/// Two equal keys and a static camera: blending does not change a bit. Where the box moved the key is not used.
 TEST(Warp, NoiseOfWhatStandsIsNoDifferenceOfTheKeys) {
   const Cornell room;
   const View view(room, kMiddle);
@@ -91,9 +90,9 @@ TEST(Warp, WhatStandsKeepsItsBitsBetweenTwoKeys) {
   EXPECT_GT(still, 5000);
 }
 
-/// The camera comes nearer by half: each pixel of the key stands for two on a side. Every pixel of the wall is given,
-/// and shows what the wall is painted with there. Beside edges the nearest of 16 pixels is taken, at most 2 away: 2 x
-/// .033 m of a paint that changes by .22 per m.
+/// The camera halves its distance, so each pixel of the key becomes two in each direction. Every pixel of the wall is
+/// filled, and shows the wall's colour at its place. Next to edges the closest of 16 pixels is taken, at most 2
+/// pixels away: 2 x .033 m of a colour that changes by .22 per m.
 TEST(Warp, NoCracksWhereAKeyIsMagnified) {
   const Cornell room;
   const View far(room, camera_at({0.2, 1.3, 1.9})), near(room, camera_at({0.2, 1.3, 0.4}));
@@ -114,7 +113,7 @@ TEST(Warp, NoCracksWhereAKeyIsMagnified) {
   }
   EXPECT_GT(wall, 1000);
   EXPECT_LT(masked, wall / 20);
-  // 3.3 m against 1.8: 3.4 times the area. With a limit of 2 all of it is masked, and said to be undersampled.
+  // 3.3 m against 1.8 m: 3.4 times the area. With a limit of 2 all of it is masked with the cause undersampled.
   const Warped limited(near, {{far, key}}, {.slow_deg_per_s = 0, .most_magnified = 2});
   for (std::size_t p = 0; p < truth.pixel_count(); ++p)
     if (std::abs(world_at(near, p).z + 1.4) < 1e-4 && whole[p] && world_at(near, p).x > 0.3) {
@@ -122,8 +121,8 @@ TEST(Warp, NoCracksWhereAKeyIsMagnified) {
     }
 }
 
-/// Seen from the side the tall box uncovers wall that the key does not show. What is not masked has the colour of its
-/// own object: blue is the object's number, and nothing of another one comes in, at edges neither.
+/// Seen from the side, the tall box uncovers wall that the key does not show. Pixels that are not masked have the
+/// colour of their own object: blue is the object's number, and no other object's colour is mixed in, also at edges.
 TEST(Warp, NoGhostsWhereDepthsDisagree) {
   const Cornell room;
   const View left(room, camera_at({-0.4, 1, 1.9})), right(room, camera_at({0.4, 1, 1.9}));
@@ -135,13 +134,13 @@ TEST(Warp, NoGhostsWhereDepthsDisagree) {
     occluded += (warped.frame.why[p] & why_occlusion) != 0;
     outside += (warped.frame.why[p] & why_border) != 0;
     if (warped.frame.why[p] != 0) continue;
-    EXPECT_TRUE(whole[p]) << p;  // one key alone is not believed at edges
+    EXPECT_TRUE(whole[p]) << p;  // at edges one key alone is not enough
     EXPECT_NEAR(warped.colour(p).b, truth.find("B")->values[p], 1e-5) << p;
     EXPECT_NEAR(warped.colour(p).r, truth.find("R")->values[p], 0.03) << p;
   }
   EXPECT_GT(occluded, 100);
   EXPECT_GT(outside, 300);  // .8 m to the side, of 2.4 m that the wall shows
-  // A second key from the other side knows what the first one lacks.
+  // A second key from the other side shows what the first one lacks.
   const View beyond(room, camera_at({0.6, 1, 1.9}));
   const Warped both(right, {{left, key}, {beyond, painted(beyond, smooth_paint)}});
   int left_over = 0;
@@ -149,8 +148,9 @@ TEST(Warp, NoGhostsWhereDepthsDisagree) {
   EXPECT_LT(left_over, (occluded + outside) / 10);
 }
 
-/// An edge pixel is composed of the shares of its surfaces: blue, the object's number, averaged over 64 x 64 positions
-/// in the pixel. Eight positions, each row and column once, miss a straight edge's share by 1/8 at most.
+/// An edge pixel is composed from the shares of its surfaces: blue, the object's number, is averaged over 64 x 64
+/// positions in the pixel. With eight positions, one in each row and column, the share of a straight edge has an
+/// error of at most 1/8.
 TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
   const Cornell room;
   const View key_view(room, camera_at({0.02, 1, 1.9})), view(room, kMiddle);
@@ -184,8 +184,9 @@ TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
   EXPECT_LT(masked, edges / 2);  // where a shadow, or here another paint, begins at the edge: they are traced
 }
 
-/// One object 30 times as bright as all others: its edges are known at more positions than eight, or masked. What is
-/// believed is to err by edge_share, .05, of its light; 4 sigma. (With eight positions 1/8 of 29 is missed beside it.)
+/// One object is 30 times as bright as all others. Its edges are sampled at more than eight positions, or masked.
+/// Pixels that are not masked have an error of at most edge_share, .05, of their light, at 4 sigma. (With eight
+/// positions the error would be 1/8 of 29.)
 TEST(Warp, EdgesOfBrightThingsAreKnownFinely) {
   const Cornell room;
   const View key_view(room, camera_at({0.02, 1, 1.9})), view(room, kMiddle), other(room, camera_at({-0.02, 1, 1.9}));
@@ -216,7 +217,7 @@ TEST(Warp, EdgesOfBrightThingsAreKnownFinely) {
   EXPECT_GT(believed, 20);
 }
 
-/// A rigid object takes its colours along: painted in its own space, it looks the same wherever it is.
+/// A rigid object that is painted in its own space looks the same wherever it moves.
 TEST(Warp, AMovingObjectIsFollowed) {
   const Cornell before(8), now(14);
   const View a(before, kMiddle), view(now, kMiddle);
@@ -246,9 +247,9 @@ TEST(Warp, AMovingObjectIsFollowed) {
   EXPECT_GT(box, 100);
 }
 
-/// Light that differs between the keys by a fifth, under noise of a tenth per pixel, is noticed over 25 pixels: 7
-/// standard errors of .1 sqrt(2)/5. Equal light under the same noise is not, but for the 3 in 1000 pixels beyond 3
-/// standard errors; beside them those that one key alone shows, at the left and the right border, 2 of 96 columns.
+/// Light differs between the keys by a fifth, with a noise of a tenth per pixel. Over 25 pixels this is 7 standard
+/// errors of .1 sqrt(2)/5, so it is detected. Equal light with the same noise is masked only in the 3 of 1000 pixels
+/// above 3 standard errors, and in the pixels that one key alone shows, 2 of 96 columns at the left and right border.
 TEST(Warp, ChangedLightIsTold) {
   const Cornell room;
   const View view(room, kMiddle), a(room, camera_at({0.02, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
@@ -280,7 +281,7 @@ TEST(Warp, SpecularLightThatMattersIsMasked) {
       for (float& value : image.add(name).values) value = gloss;
     return image;
   };
-  // A viewer who sees errors of a tenth of the light, sharply.
+  // A viewer with sharp sight who sees errors of a tenth of the light.
   const auto seen = [](const GlossInDoubt& doubt) {
     std::vector<float> probability;
     for (std::size_t p = 0; p < doubt.counted.size(); ++p)
@@ -295,12 +296,12 @@ TEST(Warp, SpecularLightThatMattersIsMasked) {
     return double(count) / double(warped.frame.why.size());
   };
   EXPECT_GT(masked(0.2f, 0.35f, true), 0.9);
-  EXPECT_LT(masked(0.2f, 0.28f, true), 0.1);    // but one key alone is not believed
-  EXPECT_GT(masked(0.2f, 0.2f, false), 0.9);    // nobody judges: all that shines is masked
+  EXPECT_LT(masked(0.2f, 0.28f, true), 0.1);    // one key alone is not enough
+  EXPECT_GT(masked(0.2f, 0.2f, false), 0.9);    // without a viewer's model all gloss is masked
   EXPECT_EQ(masked(0.005f, 0.018f, false), 0);  // below a fiftieth of the light
 }
 
-/// All layers are there: their sum is RGB to the bit, after warping too.
+/// The frame has all layers, and their sum is RGB to the bit, also after warping.
 TEST(Warp, LayersStillAddUp) {
   const Cornell room;
   const View view(room, kMiddle), a(room, camera_at({0.03, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
