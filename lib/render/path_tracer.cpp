@@ -60,11 +60,12 @@ struct Vertex {
   bool forks = false;         ///< both lobes are followed
   float times_diffuse = 1, times_specular = 1;  ///< probability of a lobe over the Bsdf's, if the path forks
 
-  /// diffuse_probability: the probability with which the Bsdf draws the Lambert lobe, in (0, 1).
-  void fork(float diffuse_probability) {
+  /// probability: Bsdf::fork_probability, in (0, 1). At glass times_diffuse is the reflection's factor and
+  /// times_specular that of the transmission.
+  void fork(float probability) {
     forks = true;
-    times_diffuse = 1 / diffuse_probability;
-    times_specular = 1 / (1 - diffuse_probability);
+    times_diffuse = 1 / probability;
+    times_specular = 1 / (1 - probability);
   }
 };
 
@@ -394,7 +395,7 @@ bool EyeTracer::step(PathState& state) const {
   Vertex at{x, material, only_specular, only_specular, only_specular};
   if (known_ && !only_specular && x.bsdf.has_diffuse()) add_known_light(at, smooth, state);
   if (known_ && known_->forks() && !state.forked && state.path.sharp() && x.bsdf.forks())
-    at.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+    at.fork(std::clamp(x.bsdf.fork_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
   add_light(at, state);
   return !(at.direct_known && !x.bsdf.has_specular()) && leave(at, state);
 }
