@@ -18,8 +18,8 @@ stage() {   # a file inside OUT in words
     refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';;
     stands_points) echo 'light on static surfaces';;
     split) echo 'bright points apart';; cache) echo 'indirect light';;
-    stands_cache) echo 'indirect light on what stands still';; kept) echo 'indirect light, kept over time';;
-    counts) echo 'photons counted';; lights) echo 'which way sky and sun come in';;
+    stands_cache) echo 'indirect light on static surfaces';; kept) echo 'indirect light, kept over time';;
+    counts) echo 'photons counted';;
     windows) echo 'light from photons of many frames';; pictures | raw) echo pixels;; filtered) echo 'noise filter';;
     smoky) echo smoke;; keys) echo 'pixels of a key frame';; walk) echo 'distance of keys';;
     walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
@@ -30,7 +30,7 @@ stage() {   # a file inside OUT in words
 weigh() {
   awk -F / 'BEGIN { w["path"] = 60; w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7
                     w["cache"] = w["kept"] = 5; w["photons"] = w["stands"] = w["points"] = w["stands_points"] = 1
-                    w["filtered"] = w["lights"] = w["smoky"] = 1 }
+                    w["filtered"] = w["smoky"] = 1 }
             { sum += $1 in w ? w[$1] : .2 } END { printf "%.1f", sum }'
 }
 

@@ -213,7 +213,7 @@ TEST(FluxCells, AllInOnePointAndNothingAreNoError) {
   const FluxCells cells = cells_of(block, 1, kBrightLimit);  // no area, no mean: nothing is above it
   EXPECT_EQ(divide(block, cells).low.photons.size() + divide(block, cells).high.photons.size(), 1000u);
   for (Photon& p : block.photons) p.flux = {-1, 0, -2};  // a dynamic map: negative only
-  FluxCells hundredth(1, 0.01);  // with a known area the only cell has the mean irradiance
+  FluxCells hundredth(1, 0.01);                          // with a known area the only cell has the mean irradiance
   add_flux(block, hundredth);
   hundredth.close(0.01);
   const DividedPhotons parts = divide(block, hundredth);

@@ -155,12 +155,11 @@ TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
     ASSERT_EQ(kept.change, read.change) << frame;
     ASSERT_EQ(kept.ledger, read.ledger) << frame;
     ASSERT_EQ(choose_groups(kept, frame, false, how), groups_);
-    EXPECT_EQ(
-        written("kept/" + name,
-                [&](const auto& sink) {
-                  write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true}, sink);
-                }),
-        wanted)
+    EXPECT_EQ(written("kept/" + name,
+                      [&](const auto& sink) {
+                        write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true}, sink);
+                      }),
+              wanted)
         << frame;
     EXPECT_EQ(is_overlay("kept/" + name), is_overlay(name)) << frame;
     EXPECT_EQ(std::filesystem::file_size(path("kept/" + name)), std::filesystem::file_size(path(name))) << frame;
