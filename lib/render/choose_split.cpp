@@ -42,7 +42,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
   FluxCells cells(edge.edge(), 0);
   for (const formats::Photon& photon : photons) cells.add(place_of(photon), photon.flux);
-  cells.close({});
+  cells.close(kBrightLimit);
   if (cells.bright_count() == 0) return {};
   const PhotonIndex index(photons);
   const SeenPlaces seen = places_seen(scene, view, kPlaces, seed ^ 0x73706c6974ull);

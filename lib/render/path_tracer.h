@@ -132,7 +132,7 @@ struct PathParts {
   Layers own;
   Layers lit;                ///< light sampled at the first matte surface
   Layers onward;             ///< light found by rays from the first matte surface's Lambert lobe
-  StoredNoise stored_noise;  ///< not included in `own`
+  StoredNoise stored_noise{};  ///< not included in `own`
   Layers sum() const {
     Layers all = own;
     for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += lit.value[l] + onward.value[l];

@@ -296,11 +296,11 @@ TEST(CausticLight, AFewPhotonsAskedHaveTheMeanOfAll) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum_few[c] / sum_all[c], 1, 0.01) << c;
 }
 
-/// 4000 photons of equal flux, spread at random over a floor of 2 m: the mean square of the noise is the variance of
-/// the irradiance. Footprints of 25 photons are .18 m wide, so the 64 places of a map, .2 m apart, are nearly
-/// independent, and 20 maps give both figures within 4 %. The limit is 25 %, because radii follow the density, so a
-/// place's terms are not quite independent. The wrong noise, of photons with one common sign, is the irradiance itself:
-/// 25 times as much.
+/// 4000 photons of equal flux, spread at random over a floor of 2 m: the mean square of the noise is at most the
+/// variance of the irradiance, and at least half of it. It counts the photons that light a place, but not that their
+/// footprints are narrower where photons happen to be dense, which adds variance. Footprints of 25 photons are .18 m
+/// wide, so the 64 places of a map, .2 m apart, are nearly independent, and 20 maps give both figures within 4 %.
+/// Photons with one common sign would give the irradiance itself: 20 times as much.
 TEST(CausticLight, NoiseHasTheVarianceBetweenMaps) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.0f)));
@@ -325,7 +325,8 @@ TEST(CausticLight, NoiseHasTheVarianceBetweenMaps) {
   }
   const double mean = sum / n, variance = square / n - mean * mean;
   EXPECT_NEAR(mean / 1000, 1, 0.03);
-  EXPECT_NEAR(noise_square / n / variance, 1, 0.25);
+  EXPECT_GT(noise_square / n / variance, 0.5);
+  EXPECT_LT(noise_square / n / variance, 1.08);
 }
 
 /// A dense spot among sparse photons: within the reported distance, no footprint is narrower than four times that
