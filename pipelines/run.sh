@@ -17,6 +17,7 @@ for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME MEASURED; do absolute $name; 
 goal=$1 film=
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
+quiet=; case "${MAKEFLAGS%% *}" in *s*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && quiet=yes ;; esac
 export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
@@ -98,10 +99,9 @@ failed() {
 }
 if [ -s "$aside/commands" ]; then
   ending makes "$goal" -C "$folder" || failed $?
-else
-  echo "make: Nothing to be done for '$goal'."
+elif [ -z "$quiet" ]; then
+  echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
-[ "$TOTAL$goal$film" != 0demo ] || echo "nothing has changed; look at $OUT/sheet.png"
 [ "$goal" != report ] || echo "look at $OUT/report/index.html"
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }
