@@ -56,8 +56,8 @@ float received_share(Vec3 wi, Vec3 normal, const LitSurface& at);
 ///
 /// - s_i: received_share at x (normal map and coat) if photons store directions, else 1.
 /// - d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening around the photon.
-/// - r_i [m]: distance to the photon's k-th neighbour, at most max_radius, at least Reach::offset(), and halved while
-/// hardly any of the ellipsoid is surface (on wires).
+/// - r_i [m]: distance to the photon's k-th neighbour, limited to the range from Reach::offset() to max_radius. It is
+/// halved until enough of the ellipsoid is surface, which matters on wires.
 /// - A_i [m^2]: area reachable from the photon, weighted by K (Reach, which also decides whether x is reachable).
 ///
 /// The light of a photon is spread over exactly the reachable surface. So the integral of E equals the flux, also at

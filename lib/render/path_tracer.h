@@ -37,6 +37,12 @@ struct StoredNoiseT {
   const RgbT<T>* of(Layer layer) const {
     return layer == Layer::caustic ? &caustic : layer == Layer::indirect ? &indirect : nullptr;
   }
+  template <class U>
+  StoredNoiseT& operator+=(const StoredNoiseT<U>& more) {
+    caustic += RgbT<T>(more.caustic);
+    indirect += RgbT<T>(more.indirect);
+    return *this;
+  }
 };
 using StoredNoise = StoredNoiseT<float>;
 
@@ -130,8 +136,8 @@ struct PathParts {
   /// Everything that is in neither of the other two: light seen directly or by events S, and known light at the first
   /// matte surface.
   Layers own;
-  Layers lit;                ///< light sampled at the first matte surface
-  Layers onward;             ///< light found by rays from the first matte surface's Lambert lobe
+  Layers lit;                  ///< light sampled at the first matte surface
+  Layers onward;               ///< light found by rays from the first matte surface's Lambert lobe
   StoredNoise stored_noise{};  ///< not included in `own`
   Layers sum() const {
     Layers all = own;

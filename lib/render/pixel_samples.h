@@ -27,8 +27,7 @@ struct PixelSum {
     add(sample.own, own);
     add(sample.lit, lit);
     add(sample.onward, onward);
-    stored_noise.caustic += Rgbd(sample.stored_noise.caustic);
-    stored_noise.indirect += Rgbd(sample.stored_noise.indirect);
+    stored_noise += sample.stored_noise;
     const auto square = [](double v) { return v * v; };
     seen_square += square(seen(sample.own));
     mirrored_square += square(mirrored(sample.own));
@@ -36,8 +35,7 @@ struct PixelSum {
   }
   PixelSum operator+(const PixelSum& more) const {
     PixelSum sum = *this;
-    sum.stored_noise.caustic += more.stored_noise.caustic;
-    sum.stored_noise.indirect += more.stored_noise.indirect;
+    sum.stored_noise += more.stored_noise;
     for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) {
       for (std::size_t l = 0; l < kLayerCount; ++l) (sum.*part).value[l] += (more.*part).value[l];
       (sum.*part).coverage += (more.*part).coverage;

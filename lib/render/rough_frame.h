@@ -57,8 +57,9 @@ struct RoughFrame {
   /// too.
   SampleEffort gather;
   double record_sample = 0;  ///< shadow rays of a sample that reads a record
-  /// records: number that the picture needs. record_ray: shadow rays of one gather ray with its continuations.
-  /// record_error: squared error of the interpolated light x number of rays.
+  /// records: the number of records that the picture needs. record_ray: the work of one gather ray and the rays that
+  /// continue it, in shadow rays. record_error: the squared error of the interpolated light with one gather ray per
+  /// record; n rays divide it by n.
   double records = 0, record_ray = 0, record_error = 0;
   MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
   double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates

@@ -40,48 +40,11 @@ class HandMadeScene {
   }
   /// Adds the six faces of a box, fronts outwards; returns the object's number.
   std::uint32_t add_box(Vec3 lower, Vec3 upper, const Material& material, bool moving = false) {
-    const Vec3 l = lower, u = upper;
-    return add({{l.x, l.y, l.z},
-                {u.x, l.y, l.z},
-                {u.x, u.y, l.z},
-                {l.x, u.y, l.z},
-                {l.x, l.y, u.z},
-                {u.x, l.y, u.z},
-                {u.x, u.y, u.z},
-                {l.x, u.y, u.z}},
-               {{0, 2, 1},
-                {0, 3, 2},
-                {4, 5, 6},
-                {4, 6, 7},
-                {0, 1, 5},
-                {0, 5, 4},
-                {3, 6, 2},
-                {3, 7, 6},
-                {0, 7, 3},
-                {0, 4, 7},
-                {1, 2, 6},
-                {1, 6, 5}},
-               material, moving);
+    return add_faces_of_box(lower, upper, material, moving, false);
   }
   /// Adds the six faces of a box, fronts inwards.
   void add_room(Vec3 lower, Vec3 upper, const Material& material) {
-    const Vec3 l = lower, u = upper;
-    const std::vector<Vec3> p{{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z},
-                              {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}};
-    add(p,
-        {{0, 1, 2},
-         {0, 2, 3},
-         {4, 6, 5},
-         {4, 7, 6},
-         {0, 5, 1},
-         {0, 4, 5},
-         {3, 2, 6},
-         {3, 6, 7},
-         {0, 3, 7},
-         {0, 7, 4},
-         {1, 6, 2},
-         {1, 5, 6}},
-        material);
+    add_faces_of_box(lower, upper, material, false, true);
   }
   /// Adds a sphere of subdivided octahedron faces, fronts inwards.
   void add_hollow_sphere(Vec3 centre, float radius, int subdivisions, const Material& material) {
@@ -142,6 +105,15 @@ class HandMadeScene {
   }
 
  private:
+  std::uint32_t add_faces_of_box(Vec3 l, Vec3 u, const Material& material, bool moving, bool inwards) {
+    const std::vector<Vec3> p{{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z},
+                              {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}};
+    std::vector<std::array<std::uint32_t, 3>> faces{{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                                                    {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}};
+    if (inwards)
+      for (auto& [a, b, c] : faces) std::swap(b, c);
+    return add(p, faces, material, moving);
+  }
   SceneFrame frame_;
   std::vector<Surface> fixed_, moving_;
   std::vector<std::unique_ptr<Primitive>> primitives_;
