@@ -244,9 +244,6 @@ void Tool::common_options(unsigned flags) {
       ->type_name("FILE");
   left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
       ->type_name("FILE");
-  left_out(app.add_option("--said", common.said_file,
-                          "file with warnings that earlier tools have given, one per line; they are not repeated"))
-      ->type_name("FILE");
   left_out(app.add_flag("-q,--quiet", common.quiet, "print errors only"));
   left_out(app.add_flag("-v,--verbose", common.verbose, "report each phase and its time"));
 }

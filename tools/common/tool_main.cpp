@@ -123,10 +123,11 @@ void Tool::State::clear_bar() {
 }
 
 bool Tool::State::was_said(const std::string& message) {
-  if (common.said_file.empty()) return false;
+  const char* file = std::getenv("TEMPOLUX_SAID");
+  if (!file) return false;
   if (!said) {
     said.emplace();
-    std::ifstream stream(common.said_file);
+    std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);) said->insert(line);
   }
   return said->contains(message.substr(0, message.find('\n')));

@@ -79,7 +79,6 @@ struct Common {
   double environment_strength = 1, environment_rotation_deg = 0;
   VolumeOptions volume;
   std::string stats_file, dep_file;      ///< "": none
-  std::string said_file;                 ///< file with warnings that an earlier stage has given, one per line; "": none
   std::vector<std::string> state_files;  ///< listed in the depfile in place of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
   int reduce_textures = 0;               ///< pixels on a side: larger images are reduced; 0: none
@@ -117,7 +116,7 @@ class Tool {
   int run(const std::function<int()>& body);
 
   Stats& stats();
-  /// "tool: message" on standard error unless --quiet; each message once, and not if the file of --said has it.
+  /// "tool: message" on standard error unless --quiet; each message once, and not if the file TEMPOLUX_SAID has it.
   void warn(const std::string& message);
   /// Only with --verbose.
   void say(const std::string& message);

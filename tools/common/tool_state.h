@@ -37,7 +37,7 @@ struct Tool::State {
   State(std::string tool, std::string what, int count, char** values)
       : name(std::move(tool)), argc(count), argv(values), app(std::move(what), name) {}
 
-  /// True if the file of --said has this warning.
+  /// True if the file TEMPOLUX_SAID has this warning: an earlier tool of the run has given it.
   bool was_said(const std::string& message);
   std::optional<std::set<std::string>> said;
 
