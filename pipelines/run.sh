@@ -33,7 +33,7 @@ set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channel
   --strategy "$STRATEGY" --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" \
   --reference-samples "$REFERENCE_SAMPLES"
 for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD \
-  light-units:LIGHT_UNITS environment-color:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT \
+  light-units:LIGHT_UNITS environment:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT \
   volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS smoke-words:SMOKE; do
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"

@@ -9,7 +9,7 @@
 PLAN = plan.mk
 include $(PLAN)
 # An empty variable leaves out its option. Names of files stay in the environment.
-shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} \
+shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment "$$SKY"} \
   $${VOLUME:+--volume "$$VOLUME"} $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME
 export TEMPOLUX_SAID = state/warnings# warnings of scene-plan: the stages do not repeat them
 scene  = "$$SCENE" $(words) $(shared)

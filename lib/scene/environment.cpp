@@ -83,10 +83,10 @@ Environment load_environment(const std::string& path, const EnvironmentOptions& 
 
 Environment uniform_environment(Rgb color, const EnvironmentOptions& options) {
   Environment environment;
-  environment.path = "--environment-color";
+  environment.path = "--environment";
   Scale scale(environment, options.strength);
   if (!is_finite(color) || std::min({color.r, color.g, color.b}) < 0)
-    throw InputError("--environment-color: a colour is three numbers from 0 on, as 0.2,0.3,0.5");
+    throw InputError("--environment: a colour is three numbers from 0 on, as 0.2,0.3,0.5");
   environment.radiance = {{scale(color.r, 0), scale(color.g, 0), scale(color.b, 0)}};
   environment.hash = content_hash(environment);
   return environment;

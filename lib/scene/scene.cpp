@@ -75,8 +75,8 @@ void require_lights(const Scene& scene) {
   }
   throw InputError(
       scene.path +
-      ": lights: nothing in the scene emits light; give --environment FILE.hdr or --environment-color "
-      "1,1,1 (make: ENVIRONMENT=FILE.hdr, SKY=1,1,1); from Blender tick Include > Punctual Lights, or export by "
+      ": lights: nothing in the scene emits light; give --environment FILE.hdr or 1,1,1 (make: "
+      "ENVIRONMENT=FILE.hdr, SKY=1,1,1); from Blender tick Include > Punctual Lights, or export by "
       "tempolux_export.py, which keeps area lights and the world");
 }
 

@@ -53,7 +53,7 @@ def run(command, limit, **how):
 
 
 def options(light):
-    names = {"SKY": "--environment-color", "ENVIRONMENT": "--environment", "LIGHT_UNITS": "--light-units"}
+    names = {"SKY": "--environment", "ENVIRONMENT": "--environment", "LIGHT_UNITS": "--light-units"}
     return [word for name, value in light.items() for word in (names[name], value)]
 
 
@@ -85,7 +85,7 @@ class Comparison:
         out = self.folder / f"out{seed}"
         light = dict(light)
         if self.old:                                                                 # makefiles before SKY and LIGHT_UNITS
-            words = [f"{o} {light.pop(n)}" for n, o in (("SKY", "--environment-color"), ("LIGHT_UNITS", "--light-units")) if n in light]
+            words = [f"{o} {light.pop(n)}" for n, o in (("SKY", "--environment"), ("LIGHT_UNITS", "--light-units")) if n in light]
             light |= {"TIME": " ".join(words)} if words else {}
         run(["make", "-f", "Makefile.example", "--no-print-directory", f"{out}/frames/{frame:04d}.exr", f"BIN={self.seeded_tools(seed)}", f"OUT={out}", f"SCENE={scene}",
              f"FRAMES={frame}", f"SIZE={self.size}", f"QUALITY={self.quality}", "CHANNELS=RGBA,layers", *(f"{k}={v}" for k, v in light.items())],

@@ -7,7 +7,7 @@ import daylight
 import open_scenes
 from furnish import Asset, bounds, looking
 
-SKY_OF_SUN = ("--environment-color", "0.1,0.12,0.15")     # beside the sun of `-sun` scenes: an eighth of its light
+SKY_OF_SUN = ("--environment", "0.1,0.12,0.15")     # beside the sun of `-sun` scenes: an eighth of its light
 # Of a file by others what it is rendered with: frame, options of all tools, environment map below hdri.
 AS_MADE = {"evening_shot": (10, ("--light-units", "spec"), "evening_sky.exr")}
 WITH_SUN = ("house", "low-poly-jungle", "GrassFieldInstanced", "CesiumMan", "issum", "lamborghini", "DepthOfFieldExample")
@@ -45,7 +45,7 @@ def ours(bench):
             ("S1", "S1_cornell.glb", 0, "closed", ()), ("S2", "S2_cornell_moving.glb", 10, "closed", ()),
             ("S3", "S3_indirect_room.glb", 1, "closed", ()), ("S4", "S4_atrium.glb", 10, "closed", ()),
             ("S5", "S5_moving_light.glb", 10, "window", ()),
-            ("S8", "S8_window_room.glb", 17, "window", ("--light-units", "spec", "--environment-color", "1.1,1.5,2"))):
+            ("S8", "S8_window_room.glb", 17, "window", ("--light-units", "spec", "--environment", "1.1,1.5,2"))):
         if (made / file).exists():
             yield Case(name, made / file, frame, kind, shared=shared)
     yield Case("PC", bench.project / "pipelines" / "scenes" / "cornell_classic.gltf", 0, "closed")

@@ -49,7 +49,7 @@ def render(program, image, scene, frame, size, samples, seed, sky="0,0,0", light
 
 def by_cycles(bench, program, case, size, samples, seed):
     words = dict(zip(case.shared[::2], case.shared[1::2]))
-    return render(program, bench.out / "tmp" / "cycles.exr", case.file, case.frame, size, samples, seed, words.get("--environment-color", "0,0,0"),
+    return render(program, bench.out / "tmp" / "cycles.exr", case.file, case.frame, size, samples, seed, words.get("--environment", "0,0,0"),
                   "SPEC" if words.get("--light-units") == "spec" else "COMPAT")
 
 

@@ -3,7 +3,7 @@ from pathlib import Path
 
 from furnish import Asset
 
-SKY = ("--environment-color", "0.5,0.7,1")     # W/m^2/sr
+SKY = ("--environment", "0.5,0.7,1")     # W/m^2/sr
 SUN = 20                                       # W/m^2 across its direction
 
 

@@ -87,7 +87,7 @@ class Found:
         if asset.has_camera and asset.has_light:
             return file, rougher
         if not asset.has_light:
-            self.sky = ["--environment-color", "0.1,0.12,0.15"]
+            self.sky = ["--environment", "0.1,0.12,0.15"]
         if not asset.gltf.get("meshes"):
             return self.placed(asset, [-2] * 3, [2] * 3, rougher)
         sun = with_sun(asset, self.folder / "sun")

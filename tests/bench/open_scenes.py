@@ -22,7 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 from scenes import Scene, box_mesh, grid_mesh, leaves_mesh, sphere_mesh
 
-SKY = ("--environment-color", "0.5,0.7,1")     # W/m^2/sr: gives an open horizontal surface about 2.3 W/m^2
+SKY = ("--environment", "0.5,0.7,1")     # W/m^2/sr: gives an open horizontal surface about 2.3 W/m^2
 SUN = (20, 19, 17)                             # W/m^2 across its direction: nine times the sky's
 SUNLIGHT = (-0.45, -0.6, -0.66)                # direction of travel: through the hut's door and its window
 GROUNDS = (5, 50, 500, 5000)                   # m from the middle to each side

@@ -46,7 +46,7 @@ done
 # Photons of the sky aimed at the box: the same mixture for all maps, and another one is refused.
 printf 'tempolux view 1.0\n0.3 0.3 0.3 0.5 1\n' >near.view
 printf 'tempolux view 1.0\n0.3 0.3 0.3 0.25 1\n' >nearer.view
-sky='--environment-color 1,1,1'
+sky='--environment 1,1,1'
 trace "$scene" $sky --photons 6k --importance near.view --map static -o sky.s.photons --paths sky.paths 2>/dev/null || bad 'sky static'
 trace "$scene" $sky --frame 4 --importance near.view --map dynamic --static sky.paths -o sky.d.photons || bad 'sky dynamic'
 trace "$scene" $sky --frame 4 --photons 6k --importance near.view -o sky.g.photons 2>/dev/null || bad 'sky global'

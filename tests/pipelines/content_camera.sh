@@ -7,7 +7,7 @@ work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 bad() { echo "$*"; cat "$work/log"; exit 1; }
 run() { make -s -f Makefile.example demo BIN="$bin" OUT="$work/out" SCENE=tests/data/packed/scenes/draco-lossless.glb FRAMES=0 SIZE=32x18 \
-  QUALITY=draft PHOTONS=2k POINTS='--point-count 200' TIME='--environment-color 1,1,1' > "$work/log" 2>&1; }
+  QUALITY=draft PHOTONS=2k POINTS='--point-count 200' TIME='--environment 1,1,1' > "$work/log" 2>&1; }
 run || bad 'the chain does not run'
 [ -s "$work/out/frames/0000.exr" ] || bad 'no frame was made'
 grep -q '^scene-plan: .*no camera: --camera auto looks at' "$work/log" || bad 'nothing says where it looks from'

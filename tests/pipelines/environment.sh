@@ -46,7 +46,7 @@ if [ -n "$3" ]; then compare "$2" "--environment $3"; else echo 'skipped: no sce
 compare "$yard" "$sky"
 
 # A file made with another environment, or with none, is stale.
-for other in "$sky --environment-strength 2" "$sky --environment-rotation 45" "--environment-color 1"; do
+for other in "$sky --environment-strength 2" "$sky --environment-rotation 45" "--environment 1"; do
   "$bin/frame-render" "$yard" $other --photons "$work/p.photons" --size 8x8 -o "$work/x.exr" 2> "$work/stderr"
   [ $? = 2 ] && grep -q 'another state of the scene: lights differ' "$work/stderr" || bad "$other: $(cat "$work/stderr")"
 done

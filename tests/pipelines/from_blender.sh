@@ -80,6 +80,6 @@ for by in 1e-7 1e-3; do
   if cmp -s "$work/again.glb" "$work/stirred.glb"; then same=1e-7; else same=1e-3; fi
   [ $same = $by ] || bad "exported again over what differs by $by: $(grep -A3 Error "$work/log")"
 done
-"$1/frame-render" "$work/shot.glb" --frame 4 --fps 30 --environment-color 1,1.2,1.6 --size 16x9 --integrator path --spp 1 -o "$work/f.exr" > "$work/log" 2>&1 || bad "$(cat "$work/log")"
+"$1/frame-render" "$work/shot.glb" --frame 4 --fps 30 --environment 1,1.2,1.6 --size 16x9 --integrator path --spp 1 -o "$work/f.exr" > "$work/log" 2>&1 || bad "$(cat "$work/log")"
 grep -v 'by way of mirrors and smooth glass is missing' "$work/log" | grep . && bad "a message: $(cat "$work/log")"   # the spot and the glass: true
 echo 'from Blender: lamps, constraints, world, frames and a second export are right'

@@ -30,7 +30,7 @@ trace
   grep -q 'tempolux-images.so, which was not .*; install all of tempolux together, or copy its folder' "$scratch/log" ||
   bad "without its module: $(cat "$scratch/log")"
 # The same holds for the program that unpacks geometry and WebP; a scene without packed data does not need it.
-unpack() { "$scratch/usr/bin/photon-trace" "$1" --environment-color 1,1,1 --photons 100 -q -o "$scratch/p.photons" 2> "$scratch/log"; }
+unpack() { "$scratch/usr/bin/photon-trace" "$1" --environment 1,1,1 --photons 100 -q -o "$scratch/p.photons" 2> "$scratch/log"; }
 unpack tests/data/packed/scenes/draco-lossless.glb || bad "packed: $(cat "$scratch/log")"
 find "$scratch/usr" -name tempolux-decode -exec rm {} +
 unpack pipelines/scenes/S1_cornell.glb || bad "plain, without the helper: $(cat "$scratch/log")"

@@ -55,7 +55,7 @@ scene.mesh(positions, triangles, scene.material(0.7), normals)
 scene.camera((0, 1, 4), (0, 0, 0), fov=0.7)
 scene.save(sys.argv[1])
 END
-"${MAKE:-make}" -s -f Makefile.example SCENE="$work/lone.gltf" FRAMES=0 SIZE=32x18 OUT="$work/lone" BIN="$bin" QUALITY=draft TIME='--environment-color 1,1,1' \
+"${MAKE:-make}" -s -f Makefile.example SCENE="$work/lone.gltf" FRAMES=0 SIZE=32x18 OUT="$work/lone" BIN="$bin" QUALITY=draft TIME='--environment 1,1,1' \
   demo > /dev/null 2> "$work/lone.log" || { cat "$work/lone.log"; bad 'a lone object: not rendered'; }
 [ "$(planned "$work/lone" indirect)" = paths ] || bad 'a lone object: not paths'
 [ -s "$work/lone/frames/0000.exr" ] || bad 'a lone object: no frame'

@@ -44,7 +44,7 @@ def uniform(s):
     path = plate(s)
     side, spp = s.pick((32, 64), (64, 256))
     for strength in (1e-20, 1.0, 1e20):
-        options = ("--environment-color", "1", "--environment-strength", strength)
+        options = ("--environment", "1", "--environment-strength", strength)
         for name, image in (("path tracing", s.render(path, (side, side), spp, *options)),
                             ("photon chain", chain(s, path, (side, side), spp, *options))):
             s.near(f"sky of {strength:g}, {name}", RHO * strength, image.mean(), 4 * RHO / math.sqrt(side * side * spp))
@@ -61,7 +61,7 @@ def furnace(s):
     scene.quad((1, 0, -1), (1, 0, 1), (1, 1, 1), (1, 1, -1), white)
     scene.camera((0, 2.2, 2.2), (0, 0.35, -0.1), fov=0.45)
     path = scene.save(s.path(".gltf"))
-    size, spp, options = (48, 32), s.pick(256, 1024), ("--environment-color", "1")
+    size, spp, options = (48, 32), s.pick(256, 1024), ("--environment", "1")
     image = s.render(path, size, spp, *options, "--channels", "RGBA,layers")
     s.near("path tracing", 1, image.mean(), 0.003)
     s.near("photon chain", 1, chain(s, path, size, 64, *options, photons=s.pick("400k", "4M")).mean(), 0.01)

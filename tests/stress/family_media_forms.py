@@ -83,7 +83,7 @@ def half_space(s):
             continue
         spp = s.pick(4, 256)
         image = s.render(path, size, spp, "--integrator", "path", "--volume", volume, "--sigma-t", 2000 / ACROSS, "--albedo", albedo,
-                         "--environment-color", "1,1,1", timeout=600)
+                         "--environment", "1,1,1", timeout=600)
         s.near(f"albedo {albedo:g}", back, image.mean("G"), 4 * image.sigma_of_mean("G") / back)
 
 

@@ -54,7 +54,7 @@ def sky(s):
     scene, radiance = Scene(), 100.0
     hole = room(scene)
     scene.camera((0, -0.5, 0), (0, -1, 0), half_height=0.1)
-    path, options = scene.save(s.path(".gltf")), ("--environment-color", f"{radiance:g}")
+    path, options = scene.save(s.path(".gltf")), ("--environment", f"{radiance:g}")
     direct = RHO / math.pi * irradiance_of_polygon((0, -1, 0), (0, 1, 0), hole, radiance)
     size, spp = s.pick(((32, 32), 64), ((96, 96), 1024))
     paths = s.render(path, size, spp, "--integrator", "path", "--channels", "RGBA,layers", *options)

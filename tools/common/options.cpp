@@ -131,34 +131,23 @@ std::string version_text(const std::string& tool) {
 void Tool::environment_options() {
   CLI::App& app = state_->app;
   Common& common = state_->common;
-  CLI::Option* file =
-      app.add_option("--environment", common.environment,
-                     "latitude-longitude map of the light around the scene, .hdr or .exr; the middle of the map is +Z, "
-                     "its top +Y; maps made for Blender's axes need --environment-rotation 90")
-          ->type_name("FILE");
-  CLI::Option* color =
-      parsed_option(app, "--environment-color", "the same radiance from all directions, W/m^2/sr, instead of a map", "",
-                    [&common](const std::string& text) { common.environment_color = parse_color(text); })
-          ->type_name("R,G,B")
-          ->excludes(file);
-  const auto needs_one = [file, color](const CLI::Option* option) {
-    if (option->count() > 0 && file->count() == 0 && color->count() == 0)
-      throw CLI::RequiresError(option->get_name(), "--environment or --environment-color");
-  };
-  CLI::Option* strength = app.add_option("--environment-strength", common.environment_strength,
-                                         "radiance of a map's pixel of value 1, W/m^2/sr")
-                              ->type_name("X")
-                              ->capture_default_str()
-                              ->check(number_between(0, 1e30));
-  CLI::Option* rotation = app.add_option("--environment-rotation", common.environment_rotation_deg,
-                                         "turns the map about +Y, from +Z towards +X, degrees")
-                              ->type_name("DEG")
-                              ->capture_default_str()
-                              ->check(number_between(-1e6, 1e6));
-  app.parse_complete_callback([=] {
-    needs_one(strength);
-    needs_one(rotation);
-  });
+  CLI::Option* light = app.add_option("--environment", common.environment,
+                                      "light around the scene: a latitude-longitude map, .hdr or .exr, or R,G,B, one "
+                                      "radiance from all directions, W/m^2/sr. The middle of a map is +Z, its top +Y; "
+                                      "maps made for Blender's axes need --environment-rotation 90")
+                           ->type_name("LIGHT");
+  app.add_option("--environment-strength", common.environment_strength,
+                 "radiance of a map's pixel of value 1, W/m^2/sr")
+      ->type_name("X")
+      ->capture_default_str()
+      ->needs(light)
+      ->check(number_between(0, 1e30));
+  app.add_option("--environment-rotation", common.environment_rotation_deg,
+                 "turns the map about +Y, from +Z towards +X, degrees")
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->needs(light)
+      ->check(number_between(-1e6, 1e6));
 }
 
 void Tool::volume_options() {

@@ -74,8 +74,7 @@ struct Common {
   int segment_length = 24;
   std::string light_units = "raw";
   std::string animation;    ///< name of the animation to play; "": all
-  std::string environment;  ///< file; "": none
-  std::optional<std::array<float, 3>> environment_color;
+  std::string environment;  ///< file or R,G,B; "": none
   double environment_strength = 1, environment_rotation_deg = 0;
   VolumeOptions volume;
   std::string stats_file, dep_file;      ///< "": none
