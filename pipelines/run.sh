@@ -22,7 +22,7 @@ export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
 case $goal in
-  tidy) exec "$BIN/scene-plan" --tidy "$OUT";;
+  tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
   film) film=yes goal=demo;;
 esac

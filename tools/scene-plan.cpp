@@ -1,7 +1,6 @@
 // tools/scene-plan.cpp -- decides which stages a range of frames needs, and from which files each picture is made.
 //
 //     scene-plan room.glb --frames 0-47 -o out
-//     scene-plan --tidy out
 //
 // Writes out/plan.json, out/plan.mk and out/state/*. If scene, options and programs have not changed, it only finds
 // that out and writes nothing. Format: formats/plan/plan.md.
@@ -22,26 +21,18 @@
 #include "tools/stages/measured.h"
 #include "tools/stages/samples.h"
 #include "tools/stages/planning.h"
-#include "tools/stages/tidy.h"
 
 using namespace tempolux;
 
 namespace {
 
 struct Options {
-  std::string scene, folder = "out", tidy_folder, samples, estimate, quality = "final", method = "frames",
+  std::string scene, folder = "out", samples, estimate, quality = "final", method = "frames",
                      filter = "auto", report, measured;
   std::vector<std::string> recipes;
   double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
   Wish wish;
 };
-
-void remove_left_overs(tools::Tool& tool, const Options& options) {
-  const tools::Tidied tidied = tools::tidy(options.tidy_folder);
-  std::cout << "removed " << tidied.removed << " unfinished files of " << tidied.bytes << " bytes, kept " << tidied.kept
-            << " that may still be written\n";
-  tool.stats().count("removed", double(tidied.removed));
-}
 
 /// The wish in full, its words checked.
 Wish wish_of(tools::Tool& tool, const Options& options) {
@@ -175,7 +166,7 @@ int main(int argc, char** argv) {
                    argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; not needed for --tidy and --estimate");
+  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; not needed for --estimate");
   tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")
       ->capture_default_str();
   add_methods(tool, options);
@@ -194,21 +185,17 @@ int main(int argc, char** argv) {
   aside("--estimate", options.estimate, "FOLDER",
         "print the estimated cost of a run instead of planning: CPU seconds and bytes of each stage, from the samples "
         "in this folder (make -f Makefile.example estimate)");
-  aside("--tidy", options.tidy_folder, "FOLDER",
-        "remove unfinished files of killed runs from this folder and its subfolders instead of planning");
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   std::string arguments = std::filesystem::current_path().string();
   for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
   return tool.run([&] {
-    const bool plans = options.tidy_folder.empty() && options.estimate.empty();
+    const bool plans = options.estimate.empty();
     if (plans == options.scene.empty())
       throw InputError(plans ? "scene is required; see scene-plan --help"
-                             : "--tidy and --estimate need no scene; leave it out");
+                             : "--estimate needs no scene; leave it out");
     if (plans) plan_range(tool, options, hash_hex(arguments));
-    else if (!options.estimate.empty())
-      std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
-    else remove_left_overs(tool, options);
+    else std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
     return int(tools::exit_ok);
   });
 }

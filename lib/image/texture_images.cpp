@@ -19,14 +19,13 @@ const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer t
   const EncodedImage& source = images_[image];
   std::unique_ptr<TexturePyramid> pyramid;
   try {
-    pyramid =
-        std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer, limits_.reduce_to);
+    pyramid = std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer);
   } catch (const std::bad_alloc&) {
-    throw ResourceError(source.place + ": not enough memory to decode it; reduce textures with --reduce-textures");
+    throw ResourceError(source.place + ": not enough memory to decode it; use smaller images");
   }
   if (bytes_.fetch_add(pyramid->byte_count()) + pyramid->byte_count() > limits_.max_bytes)
     throw InputError(source.place + ": textures take more than " + std::to_string(limits_.max_bytes) +
-                     " bytes decoded; reduce them with --reduce-textures");
+                     " bytes decoded; use smaller images, or allow more with --max-memory");
   ++decoded_;
   entry.pyramid = std::move(pyramid);
   entry.ready.store(entry.pyramid.get(), std::memory_order_release);

@@ -16,7 +16,6 @@ namespace tempolux {
 struct TextureLimits {
   int max_side = 16384;                   ///< px on a side: larger images are refused before they are decoded
   std::uint64_t max_pixels = 1ull << 28;  ///< of one image: larger images are refused
-  int reduce_to = 1 << 30;                ///< px on a side: larger images are reduced when they are decoded
   std::uint64_t max_bytes = 4ull << 30;   ///< of all decoded pyramids together; more is an error
 };
 

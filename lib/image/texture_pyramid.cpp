@@ -45,27 +45,19 @@ Rgba mix(const Rgba& a, const Rgba& b, float share) {
 
 }  // namespace
 
-TexturePyramid::TexturePyramid(CodedPixels pixels, TextureTransfer transfer, int max_side)
+TexturePyramid::TexturePyramid(CodedPixels pixels, TextureTransfer transfer)
     : channels_(pixels.channels),
       bits_(pixels.bits),
       cutout_(transfer == TextureTransfer::srgb_cutout && pixels.channels % 2 == 0),
       colour_(&TexelCodes::of(pixels.bits, transfer != TextureTransfer::linear)),
       alpha_(&TexelCodes::of(pixels.bits, false)) {
-  TEMPOLUX_CHECK(pixels.width > 0 && pixels.height > 0 && max_side > 0);
+  TEMPOLUX_CHECK(pixels.width > 0 && pixels.height > 0);
   levels_.push_back({pixels.width, pixels.height, std::move(pixels.bytes)});
-  if (const int side = std::max(pixels.width, pixels.height); side > max_side) {
-    const double scale = double(max_side) / side;
-    levels_[0] = smaller(levels_[0], std::max(1, int(std::lround(pixels.width * scale))),
-                         std::max(1, int(std::lround(pixels.height * scale))));
-  }
   while (levels_.back().width > 1 || levels_.back().height > 1) {
     const TexelLevel& last = levels_.back();
-    levels_.push_back(smaller(last, std::max(1, last.width / 2), std::max(1, last.height / 2)));
+    levels_.push_back(reduce_texels(last, std::max(1, last.width / 2), std::max(1, last.height / 2),
+                                    {channels_, bits_, cutout_, colour_, alpha_}));
   }
-}
-
-TexelLevel TexturePyramid::smaller(const TexelLevel& from, int width, int height) const {
-  return reduce_texels(from, width, height, {channels_, bits_, cutout_, colour_, alpha_});
 }
 
 std::uint64_t TexturePyramid::byte_count() const {

@@ -83,11 +83,11 @@ def measure_updates(options, runner):
         for part in ("fresh", "base", "update"):
             (runner.folder / part).mkdir(exist_ok=True)
         runner.run("scene-plan", scene, *smoke, "--frames", frames, "--update", "10%", "-o", runner.folder / "plan")
-        smoke = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", first)]
+        frozen = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", first)]
         paths = ["--photons", PATHS, "--kinds", "indirect,volume"]
         fresh = runner.folder / "fresh"
-        anew = runner.run("photon-trace", scene, *smoke, "--frames", f"{first + 1}-{last}", *paths, "-o", fresh / "p.####.photons") / (last - first)
-        runner.run("photon-trace", scene, *smoke, "--frames", first, *paths, "--pilots", options.pilots, "-o", fresh / "p.####.photons")
+        anew = runner.run("photon-trace", scene, *frozen, "--frames", f"{first + 1}-{last}", *paths, "-o", fresh / "p.####.photons") / (last - first)
+        runner.run("photon-trace", scene, *frozen, "--frames", first, *paths, "--pilots", options.pilots, "-o", fresh / "p.####.photons")
         runner.run("frame-render", scene, *smoke, "--frames", frames, "--photons", fresh / "p.####.photons", "--size", options.size, "--spp", 1,
                    "--channels", "RGBA,layers,Z", "-o", runner.folder / "base/f.####.exr")
         compose(runner, scene, smoke, frames, fresh / "p.####.photons", fresh / "f.####.exr")
@@ -101,7 +101,7 @@ def measure_updates(options, runner):
                     old.unlink()
                 (folder / f"p.{first:04d}.photons").write_bytes((fresh / f"p.{first:04d}.photons").read_bytes())
                 stats = folder / "stats.json"
-                cpu = runner.run("photon-trace", scene, *smoke, "--frames", f"{first + 1}-{last}", "--photons", PATHS, "--kinds", "indirect,volume",
+                cpu = runner.run("photon-trace", scene, *frozen, "--frames", f"{first + 1}-{last}", "--photons", PATHS, "--kinds", "indirect,volume",
                                  "--update", folder / "p.####.photons", "--share", share, "--strategy", *STRATEGIES[strategy],
                                  "-o", folder / "p.####.photons", "--stats", stats)
                 compose(runner, scene, smoke, f"{first + 1}-{last}", folder / "p.####.photons", folder / "f.####.exr")
@@ -122,8 +122,8 @@ def measure_updates(options, runner):
 def measure_cost(options, runner):
     _, scene, smoke, _, _ = next(scenes(options))
     runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "--update", "10%", "-o", runner.folder / "plan")
-    smoke = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", 0)]
-    photons, frames, common = runner.folder / "cost.####.photons", range(5, 12), [scene, *smoke, "--kinds", "caustic,indirect,volume"]
+    frozen = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", 0)]
+    photons, frames, common = runner.folder / "cost.####.photons", range(5, 12), [scene, *frozen, "--kinds", "caustic,indirect,volume"]
     first = runner.folder / "cost.0004.photons"
     others = None
     print("\n| paths | strategy | a process for each frame, CPU s | of a fresh map | one for all, CPU s | of fresh maps | a whole frame, of one with a fresh map |\n|---:|---|---:|---:|---:|---:|---:|")
@@ -160,11 +160,11 @@ def whole_frame(runner, common, photons):
 def measure_refine(options, runner):
     _, scene, smoke, _, _ = next(scenes(options))
     runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "--update", "10%", "-o", runner.folder / "plan")
-    smoke = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", 0)]
+    frozen = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", 0)]
     kinds = ["--kinds", "indirect,volume", "--frame", 12]
     (runner.folder / "base").mkdir(exist_ok=True)
     maps = {name: runner.folder / f"{name}.photons" for name in ("reference", "plain", "refined", "even")}
-    runner.run("photon-trace", scene, *smoke, *kinds, "--photons", "6M", "--groups", 2520, "--seed", 999, "-o", maps["reference"])
+    runner.run("photon-trace", scene, *frozen, *kinds, "--photons", "6M", "--groups", 2520, "--seed", 999, "-o", maps["reference"])
     runner.run("frame-render", scene, *smoke, "--frame", 12, "--photons", maps["reference"], "--size", options.size, "--spp", 1,
                "--channels", "RGBA,layers,Z", "-o", runner.folder / "base/f.0012.exr")
     frame = {name: runner.folder / f"{name}.exr" for name in maps}
@@ -172,7 +172,7 @@ def measure_refine(options, runner):
     compose(runner, scene, smoke, 12, maps["reference"], frame["reference"], *width)
     sums = dict.fromkeys(("plain", "refined", "even"), 0.0)
     for seed in range(options.seeds):
-        common = [scene, *smoke, *kinds, "--seed", seed]
+        common = [scene, *frozen, *kinds, "--seed", seed]
         runner.run("photon-trace", *common, "--photons", PATHS, "-o", maps["plain"])
         runner.run("photon-trace", *common, "--photons", PATHS, "--update", maps["plain"], "--refine", 54264, "-o", maps["refined"])
         runner.run("photon-trace", *common, "--photons", PATHS + 54264, "-o", maps["even"])

@@ -65,7 +65,7 @@ def measured(folder, programs, scene, paths):
     run("shown", "st-filter", "mesh", scene, *smoke, *frames, "--photons", photons, "-o", folder / "i.####.meshirrad")
     run("render", "frame-render", scene, *smoke, *frames, "--meshirrad", folder / "i.####.meshirrad", "--size", SIZE, "--spp", 1, "--pixel-error", 0,
         "--channels", "RGBA,layers,Z", "-o", folder / "c.####.exr")
-    run("compose", "volume-compose", scene, *frozen, *frames, "--photons", photons, "--base", folder / "c.####.exr", "--direct", "photons", "--spp", 1,
+    run("compose", "volume-compose", scene, *smoke, *frames, "--photons", photons, "--base", folder / "c.####.exr", "--direct", "photons", "--spp", 1,
         "-o", folder / "s.####.exr")
     return phases
 

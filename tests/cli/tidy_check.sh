@@ -1,4 +1,4 @@
-# scene-plan --tidy removes what killed runs left, and nothing else.
+# pipelines/tidy.sh removes what killed runs left, and nothing else.
 failed=0
 bad() { echo "$*"; failed=1; }
 host=$(hostname)
@@ -24,8 +24,9 @@ mkdir "out/.folder.tmp.$host.$dead"
 ln -s ../elsewhere "out/.link.tmp.$host.$dead"
 mkdir elsewhere; : > "elsewhere/.0001.exr.tmp.$host.$dead"; ln -s ../elsewhere out/linked
 
-scene-plan --tidy out > said || bad "--tidy exits $?"
-grep -q '^removed 3 unfinished files of [0-9]* bytes, kept 2' said || bad "says: $(cat said)"
+tidy() { sh "$HERE/../../pipelines/tidy.sh" "$1"; }
+tidy out > said || bad "tidy.sh exits $?"
+grep -q '^removed 3 unfinished files, kept 2' said || bad "says: $(cat said)"
 [ -z "$(find out -name '.real.out.tmp.*' -o -name '.old.exr.*')" ] && [ ! -e "out/with blank/.0001.exr.tmp.$host.$dead" ] ||
   bad 'left-overs are still there'
 for file in $keep "out/.new.exr.tmp.otherhost.77" "out/.living.exr.tmp.$host.$living" "elsewhere/.0001.exr.tmp.$host.$dead"; do
@@ -33,5 +34,5 @@ for file in $keep "out/.new.exr.tmp.otherhost.77" "out/.living.exr.tmp.$host.$li
 done
 [ -d "out/.folder.tmp.$host.$dead" ] && [ -L "out/.link.tmp.$host.$dead" ] || bad 'a folder or a link is gone'
 kill $living
-scene-plan --tidy nowhere 2> errors; [ $? = 2 ] && [ "$(wc -l < errors)" = 1 ] || bad "a folder that is not there: $(cat errors)"
+tidy nowhere 2> errors; [ $? = 2 ] && [ "$(wc -l < errors)" = 1 ] || bad "a folder that is not there: $(cat errors)"
 exit $failed

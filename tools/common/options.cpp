@@ -182,10 +182,6 @@ void Tool::volume_options() {
          "share of the extinction that is scattered, 0 to 1: R,G,B or one number [1]")
       ->type_name("R,G,B")
       ->allow_extra_args(false);
-  app.add_option("--majorants", volume.majorants,
-                 "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
-                 "segment; needed for maps that are updated")
-      ->type_name("FILE");
   app.add_option("--phase-g", volume.phase_g, "mean cosine of scattering by Henyey and Greenstein: forward above 0 [0]")
       ->type_name("X")
       ->allow_extra_args(false)
@@ -213,15 +209,15 @@ void Tool::common_options(unsigned flags) {
     scene_options(app, common);
     environment_options();
     volume_options();
+    if (flags & uses_majorants)
+      app.add_option("--majorants", common.volume.majorants,
+                     "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
+                     "segment; needed for maps that are updated")
+          ->type_name("FILE");
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
     left_out(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
-    app.add_option("--reduce-textures", common.reduce_textures,
-                   "reduce larger texture images to this many pixels on a side; 0: none")
-        ->type_name("N")
-        ->check(number_between(0, 65536))
-        ->capture_default_str();
   }
   left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")

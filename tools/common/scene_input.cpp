@@ -14,7 +14,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   const Common& common = tool.common();
   GltfOptions options;
   options.animation = common.animation;
-  if (common.reduce_textures > 0) options.textures.reduce_to = common.reduce_textures;
+  if (common.max_memory_bytes > 0) options.textures.max_bytes = common.max_memory_bytes;
   scene_ = load_gltf(path, options);
   add_environment();
   if (needs & light) require_lights(scene_);

@@ -50,6 +50,7 @@ enum CommonOptions : unsigned {
   uses_seed = 2,    ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
+  uses_majorants = 16,  ///< --majorants; only with uses_scene
 };
 
 /// Media that the command line names. A list has one value for all volumes, or one for each.
@@ -80,7 +81,6 @@ struct Common {
   std::string stats_file, dep_file;      ///< "": none
   std::vector<std::string> state_files;  ///< listed in the depfile in place of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
-  int reduce_textures = 0;               ///< pixels on a side: larger images are reduced; 0: none
   bool allow_stale = false, quiet = false;
   int verbose = 0;
 

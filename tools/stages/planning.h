@@ -62,7 +62,7 @@ class Planner {
 
 /// Options that all stages share and that are not part of the scene's states: they enter the keys as typed. Input
 /// files, segments and the choice of an animation are part of the states.
-inline constexpr std::array kSharedWords{"--fps", "--reduce-textures", "--allow-stale"};
+inline constexpr std::array kSharedWords{"--fps", "--allow-stale"};
 
 /// Throws InputError, naming the option, unless the words consist of letters, digits, blanks and . , : + - _ % /. They
 /// are written to plan.mk, where other characters have a meaning.

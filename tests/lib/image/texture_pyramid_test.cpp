@@ -16,7 +16,7 @@ namespace {
 constexpr TextureWrap kRepeat = TextureWrap::repeat, kMirrored = TextureWrap::mirrored, kClamp = TextureWrap::clamp;
 
 /// A row of four grey texels of linear values 0, 51, 102 and 255 / 255.
-TexturePyramid row() { return {CodedPixels{4, 1, 1, 8, {0, 51, 102, 255}}, TextureTransfer::linear, 1024}; }
+TexturePyramid row() { return {CodedPixels{4, 1, 1, 8, {0, 51, 102, 255}}, TextureTransfer::linear}; }
 float at(const TexturePyramid& texture, float u, TextureWrap wrap, bool nearest = false, float level = 0) {
   return texture.read({u, 0.5f}, wrap, wrap, nearest, level)[0];
 }
@@ -62,13 +62,13 @@ TEST(TexturePyramid, Nearest) {
 
 TEST(TexturePyramid, ColoursAreDecodedFromSrgbAndAlphaIsNot) {
   // IEC 61966-2-1: code 188 is ((188/255 + 0.055) / 1.055)^2.4 = 0.502886 linear, 10 is 10 / 255 / 12.92.
-  const TexturePyramid texture{CodedPixels{1, 1, 4, 8, {188, 10, 255, 128}}, TextureTransfer::srgb, 1024};
+  const TexturePyramid texture{CodedPixels{1, 1, 4, 8, {188, 10, 255, 128}}, TextureTransfer::srgb};
   const Rgba value = texture.texel(0, 0, 0);
   EXPECT_NEAR(value[0], 0.502886f, 1e-5);
   EXPECT_NEAR(value[1], 10.0f / 255 / 12.92f, 1e-7);
   EXPECT_FLOAT_EQ(value[2], 1);
   EXPECT_FLOAT_EQ(value[3], 128.0f / 255);
-  const TexturePyramid numbers{CodedPixels{1, 1, 2, 8, {188, 128}}, TextureTransfer::linear, 1024};
+  const TexturePyramid numbers{CodedPixels{1, 1, 2, 8, {188, 128}}, TextureTransfer::linear};
   EXPECT_FLOAT_EQ(numbers.texel(0, 0, 0)[2], 188.0f / 255);  // grey on all three
   EXPECT_FLOAT_EQ(numbers.texel(0, 0, 0)[3], 128.0f / 255);
 }
@@ -77,7 +77,7 @@ TEST(TexturePyramid, SixteenBits) {
   const std::uint16_t codes[3] = {65535, 1000, 0};
   CodedPixels pixels{1, 1, 3, 16, std::vector<std::uint8_t>(6)};
   std::memcpy(pixels.bytes.data(), codes, 6);
-  const TexturePyramid texture{pixels, TextureTransfer::linear, 1024};
+  const TexturePyramid texture{pixels, TextureTransfer::linear};
   EXPECT_FLOAT_EQ(texture.texel(0, 0, 0)[0], 1);
   EXPECT_FLOAT_EQ(texture.texel(0, 0, 0)[1], 1000.0f / 65535);
   EXPECT_FLOAT_EQ(texture.texel(0, 0, 0)[2], 0);
@@ -85,7 +85,7 @@ TEST(TexturePyramid, SixteenBits) {
 
 TEST(TexturePyramid, LevelsAreMeansOfLinearLight) {
   // Black and white in a checker: half the light, which is code 188 in sRGB (127 would be a mean of codes).
-  const TexturePyramid texture{CodedPixels{2, 2, 1, 8, {0, 255, 255, 0}}, TextureTransfer::srgb, 1024};
+  const TexturePyramid texture{CodedPixels{2, 2, 1, 8, {0, 255, 255, 0}}, TextureTransfer::srgb};
   ASSERT_EQ(texture.level_count(), 2);
   EXPECT_NEAR(texture.texel(1, 0, 0)[0], 0.5f, 0.003f);                   // half a code of sRGB at 188
   EXPECT_FLOAT_EQ(at(row(), 0.3f, kRepeat, false, 9), 102.0f / 255);      // the mean of the row, 0.4
@@ -97,15 +97,15 @@ TEST(TexturePyramid, LevelsAreMeansOfLinearLight) {
 /// third of it is visible.
 TEST(TexturePyramid, WhatACutoutHidesHasNoShareInItsMeans) {
   const std::vector<std::uint8_t> codes{255, 255, 255, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255, 85};
-  const TexturePyramid cutout{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb_cutout, 1024};
-  const TexturePyramid plain{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb, 1024};
+  const TexturePyramid cutout{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb_cutout};
+  const TexturePyramid plain{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb};
   EXPECT_EQ(cutout.texel(1, 0, 0)[0], 1);
   EXPECT_EQ(cutout.texel(1, 0, 0)[1], 1);
   EXPECT_NEAR(plain.texel(1, 0, 0)[0], 0.5f, 0.003f);
   EXPECT_FLOAT_EQ(cutout.texel(1, 0, 0)[3], plain.texel(1, 0, 0)[3]);
   EXPECT_FLOAT_EQ(cutout.texel(1, 0, 0)[3], 85.0f / 255);
   // All hidden: the plain mean.
-  const TexturePyramid hidden{CodedPixels{2, 1, 2, 8, {0, 0, 255, 0}}, TextureTransfer::srgb_cutout, 1024};
+  const TexturePyramid hidden{CodedPixels{2, 1, 2, 8, {0, 0, 255, 0}}, TextureTransfer::srgb_cutout};
   EXPECT_NEAR(hidden.texel(1, 0, 0)[0], 0.5f, 0.003f);
 }
 
@@ -117,25 +117,22 @@ TEST(TexturePyramid, OddSizesKeepTheMean) {
     pixels.bytes.push_back(code);
     if (i % 3 == 1) mean += code / 255.0 / (37 * 11);
   }
-  for (const int max_side : {1024, 16, 5}) {
-    const TexturePyramid texture{pixels, TextureTransfer::linear, max_side};
-    EXPECT_LE(std::max(texture.width(), texture.height()), max_side);
-    for (int level = 0; level < texture.level_count(); ++level) {
-      double sum = 0;
-      for (int y = 0; y < texture.height(level); ++y)
-        for (int x = 0; x < texture.width(level); ++x) sum += texture.texel(level, x, y)[1];
-      // Rounding to codes: at most half a code on each of up to six levels.
-      EXPECT_NEAR(sum / (texture.width(level) * texture.height(level)), mean, 3 / 255.0) << level;
-    }
-    EXPECT_EQ(texture.width(texture.level_count() - 1), 1);
-    EXPECT_EQ(texture.height(texture.level_count() - 1), 1);
+  const TexturePyramid texture{pixels, TextureTransfer::linear};
+  for (int level = 0; level < texture.level_count(); ++level) {
+    double sum = 0;
+    for (int y = 0; y < texture.height(level); ++y)
+      for (int x = 0; x < texture.width(level); ++x) sum += texture.texel(level, x, y)[1];
+    // Rounding to codes: at most half a code on each of up to six levels.
+    EXPECT_NEAR(sum / (texture.width(level) * texture.height(level)), mean, 3 / 255.0) << level;
   }
+  EXPECT_EQ(texture.width(texture.level_count() - 1), 1);
+  EXPECT_EQ(texture.height(texture.level_count() - 1), 1);
 }
 
 TEST(TexturePyramid, ATexelIsBlackOnlyIfAllItCoversIs) {
   CodedPixels pixels{64, 64, 1, 8, std::vector<std::uint8_t>(64 * 64)};
   pixels.bytes[64 * 41 + 9] = 1;
-  const TexturePyramid texture{pixels, TextureTransfer::srgb, 1024};
+  const TexturePyramid texture{pixels, TextureTransfer::srgb};
   EXPECT_GT(texture.texel(6, 0, 0)[0], 0);
   EXPECT_TRUE(texture.any_colour({0, 0}, {1, 1}, kRepeat, kRepeat));
   const float u = 9.5f / 64, v = 41.5f / 64;
@@ -167,10 +164,8 @@ TEST(TextureImages, LimitsOfBytesAndSide) {
   const auto error = [&](const TextureLimits& limits) {
     return message_of<InputError>([&] { make(limits).pyramid(0, TextureTransfer::linear); });
   };
-  const TextureImages small = make({.reduce_to = 2});
-  EXPECT_EQ(small.pyramid(0, TextureTransfer::linear).width(), 2);
-  EXPECT_EQ(small.decoded_bytes(), 5u);
-  EXPECT_NE(error({.max_bytes = 80}).find("--reduce-textures"), std::string::npos);  // 64 + 16 + 4 + 1 bytes
+  EXPECT_EQ(error({.max_bytes = 85}), "");
+  EXPECT_NE(error({.max_bytes = 84}).find("--max-memory"), std::string::npos);  // 64 + 16 + 4 + 1 bytes
   EXPECT_NE(error({.max_pixels = 63}).find("limit of 63"), std::string::npos);
 }
 
