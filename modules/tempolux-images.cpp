@@ -14,7 +14,6 @@
 #include "lib/image/any_io.h"
 #include "lib/image/encoded_image.h"
 #include "lib/image/images_module.h"
-#include "lib/image/nonzero_pixels.h"
 
 namespace {
 
@@ -38,13 +37,6 @@ void load(const PixelsRequest& request) {
   tempolux::ImageReadOptions options;
   options.max_pixels = request.max_pixels;
   const tempolux::Image image = tempolux::load_image(request.path, options);
-  if (request.mask) {
-    const std::vector<std::uint8_t> mask = tempolux::nonzero_pixels(image);
-    void* bytes = request.allocate(request.user, image.width, image.height, 1, 8);
-    if (!bytes) throw std::bad_alloc();
-    std::memcpy(bytes, mask.data(), mask.size());
-    return;
-  }
   const auto planes = colour(image, request.path);
   auto* to = static_cast<float*>(request.allocate(request.user, image.width, image.height, 3, 32));
   if (!to) throw std::bad_alloc();

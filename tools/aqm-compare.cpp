@@ -28,14 +28,14 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string test, reference, layer, mask, except, smooth, json, difference, metric = "error", fail_by = "rmse";
+  std::string test, reference, layer, mask, except, smooth, json, difference, metric = "error";
   tools::VisionWords vision;
   std::vector<std::string> halves;
   bool own_halves = false, either = false, allow_stale = false;
   double fail_above = -1;
-  std::uint64_t min_object_pixels = 64;
+  bool fails_by_aqm = false;  ///< true: fail_above is a share of pixels; false: an RMSE
 
-  bool needs_vision() const { return either || metric == "aqm" || fail_by == "aqm" || vision.used(); }
+  bool needs_vision() const { return either || metric == "aqm" || fails_by_aqm || vision.used(); }
   std::string layer_or_rgb() const { return layer == "RGB" ? "" : layer; }
   std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
 };
@@ -65,17 +65,12 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_flag("--either", o.either,
                "the two frames have equal, independent errors, such as one frame warped from two keys: AQM judges the "
                "error of one of them, their difference / sqrt 2");
-  tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
-  app.add_option("--fail-above", o.fail_above,
-                 "exit 1 if the RMSE, or the figure that --fail-by names, is above this; 5%: if AQM is")
+  app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this; 5%: if AQM is")
       ->type_name("VALUE")
       ->check(tools::number_between(0))
-      ->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
-  app.add_option("--fail-by", o.fail_by, "figure of --fail-above: rmse, relmse or aqm (a share, .05 for 5 %)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"rmse", "relmse", "aqm"}));
+      ->transform(tools::percent([&o] { o.fails_by_aqm = true; }));
   tool.leave_out_of_history(app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
   tool.common_options(tools::uses_frames);
 }
@@ -129,13 +124,6 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   return comparison;
 }
 
-/// relMSE for --fail-above. If the reference is black, relMSE does not exist: then 0 for equal frames, and infinity
-/// for others.
-double relative_error(const Comparison& result) {
-  if (const auto& relative = result.total.relative_squared_error) return relative->value;
-  return result.total.squared_error.root() > 0 ? INFINITY : 0;
-}
-
 /// The output files of each frame.
 class FrameOutputs {
  public:
@@ -168,7 +156,7 @@ class FrameOutputs {
 /// Reads, compares and writes all frames.
 Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector<std::optional<int>>& frames,
                           FrameOutputs& outputs) {
-  ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
+  ComparisonBuilder builder(description(tool, o));
   tools::IdentityGuard identities(tool, o.allow_stale);
   const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth, o.except, o.vision.flow};
   std::optional<VisionOptions> viewing;
@@ -195,12 +183,6 @@ Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector
   return builder.finish();
 }
 
-/// The figure that --fail-above compares with its limit.
-double judged_figure(const Options& o, const Comparison& result) {
-  if (o.fail_by == "aqm") return result.quality->all.share();
-  return o.fail_by == "rmse" ? result.total.squared_error.root() : relative_error(result);
-}
-
 int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   check(tool, o, frames_given);
   std::vector<std::optional<int>> frames{std::nullopt};
@@ -221,7 +203,8 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   std::snprintf(line, sizeof line, ": red +%g, blue -%g\n", outputs.scale, outputs.scale);
   if (o.difference.ends_with(".png")) table += o.difference + line;
   if (!tool.common().quiet) std::fputs(table.c_str(), json && json->is_stdout() ? stderr : stdout);
-  return o.fail_above >= 0 && judged_figure(o, result) > o.fail_above ? tools::exit_differs : tools::exit_ok;
+  const double judged = o.fails_by_aqm ? result.quality->all.share() : result.total.squared_error.root();
+  return o.fail_above >= 0 && judged > o.fail_above ? tools::exit_differs : tools::exit_ok;
 }
 
 }  // namespace

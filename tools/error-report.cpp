@@ -7,6 +7,7 @@
 // pairs of stats (formats/stats) and comparison (formats/comparison); manifest: formats/report/report.md.
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,6 @@ namespace {
 struct Options {
   std::string manifest, folder = "report", title;
   std::vector<std::string> runs;
-  bool no_plots = false;
 };
 
 void declare(tools::Tool& tool, Options& o) {
@@ -35,7 +35,6 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("WHAT STATS COMPARISON");
   tool.output_option(o.folder, "folder of report.csv, report.md, index.html, plots")->capture_default_str();
   app.add_option("--title", o.title, "title of the report")->type_name("TEXT");
-  app.add_flag("--no-plots", o.no_plots, "draw nothing, so that gnuplot is not needed");
   tool.common_options(0);
 }
 
@@ -48,14 +47,16 @@ ReportInput read_input(const Options& o) {
   return input;
 }
 
-Plots draw(const std::vector<SceneReport>& scenes) {
+Plots draw(tools::Tool& tool, const std::vector<SceneReport>& scenes) {
   constexpr double kTimeout = 60;  // s that gnuplot may take for a plot
   Plots plots;
   for (const SceneReport& scene : scenes)
     for (const PlotFormat format : {PlotFormat::svg, PlotFormat::png}) {
       const std::string script = plot_script(scene, format);
       if (script.empty()) continue;
-      plots[scene.file_stem + (format == PlotFormat::svg ? ".svg" : ".png")] = run_gnuplot(script, kTimeout);
+      const std::optional<std::string> drawn = run_gnuplot(script, kTimeout);
+      if (!drawn) return tool.warn("gnuplot: not found; the report has no plots; install gnuplot-nox"), Plots{};
+      plots[scene.file_stem + (format == PlotFormat::svg ? ".svg" : ".png")] = *drawn;
     }
   return plots;
 }
@@ -77,7 +78,7 @@ int report(tools::Tool& tool, const Options& o) {
   tool.stats().phase("fit");
   const std::vector<SceneReport> scenes = scene_reports(input);
   tool.stats().phase("plot");
-  const Plots plots = o.no_plots ? Plots{} : draw(scenes);
+  const Plots plots = draw(tool, scenes);
 
   tool.stats().phase("write");
   const std::string html = report_html(input, scenes, plots);

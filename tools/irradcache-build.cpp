@@ -56,7 +56,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--points", "--rays", "--error-bound", "--size", "--mask", "--keep-points"});
+    refuse_unread(app, "points", {"--points", "--rays", "--error-bound", "--size", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
                   {"--photons", "--importance", "--point-count", "--light-samples", "--keep-points"});
@@ -111,9 +111,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "value, but at least 5 and at most 20 degrees")
       ->capture_default_str()
       ->check(tools::number_between(1e-3, 2.0));
-  app.add_option("--mask", options.mask,
-                 "EXR file, or a pattern, such as a mask of ibr-warp: records only for pixels where a channel is not 0")
-      ->type_name("FILE");
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
   tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();

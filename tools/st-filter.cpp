@@ -32,8 +32,8 @@ namespace {
 struct Options {
   std::vector<std::string> frames, flow;
   std::vector<std::string> channels;
-  std::string output, range, compression = "zip";
-  int width = 5, position = 0;
+  std::string output, range;
+  int position = 0;
   FilterOptions filter;
 };
 
@@ -57,7 +57,7 @@ class FilterRun {
         options_(options),
         names_(std::move(names)),
         sequence_(sequence),
-        windowed_(sequence ? options.width > 1 : names_.size() > 1) {}
+        windowed_(sequence || names_.size() > 1) {}
 
   /// Filters frame `at` of the list with the frames `first` to `last`.
   void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
@@ -75,9 +75,7 @@ class FilterRun {
     image.text["tempolux:history"] += tool_.history_line(number);
     say_noise(image);
     tool_.stats().phase("write");
-    save_exr(output.temporary_path(), image,
-             {false,
-              options_.compression == "none" ? ExrWriteOptions::Compression::none : ExrWriteOptions::Compression::zip});
+    save_exr(output.temporary_path(), image);
     output.commit();
     tool_.stats().end_phase();
     tool_.stats().count("frames", 1);
@@ -158,7 +156,7 @@ class FilterRun {
 
   /// Gives each warning once per run, for the first file that it applies to.
   void explain(const Names& names, const LoadedFrame& loaded) {
-    if (options_.width > 1 && names_.size() > 1 && loaded.flow.empty())
+    if (names_.size() > 1 && loaded.flow.empty())
       warn("motion",
            names.frame +
                ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
@@ -214,12 +212,12 @@ void filter_range(tools::Tool& tool, const Options& options) {
     names.push_back({tools::frame_name(options.frames[0], number),
                      options.flow.empty() ? "" : tools::frame_name(options.flow[0], number)});
   FilterRun run(tool, options, std::move(names), true);
-  const int reach = (options.width - 1) / 2;
+  constexpr std::size_t kReach = 2;  // frames before and after the filtered one
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     // Flow leads to the next frame, so the window ends where a frame number is missing.
     std::size_t first = i, last = i;
-    while (first > 0 && i - first < std::size_t(reach) && numbers[first - 1] == numbers[first] - 1) --first;
-    while (last + 1 < numbers.size() && last - i < std::size_t(reach) && numbers[last + 1] == numbers[last] + 1) ++last;
+    while (first > 0 && i - first < kReach && numbers[first - 1] == numbers[first] - 1) --first;
+    while (last + 1 < numbers.size() && last - i < kReach && numbers[last + 1] == numbers[last] + 1) ++last;
     run.run(first, i, last, tools::frame_name(options.output, numbers[i]), numbers[i]);
     tool.progress(double(i + 1) / double(numbers.size()));
   }
@@ -242,12 +240,8 @@ int main(int argc, char** argv) {
                  "pixel flow of the frames, EXR, one file per frame, or a pattern; if not given: the frames' own "
                  "channels forward and backward")
       ->type_name("FILE");
-  app.add_option("--frames", options.range, "filter these frames, each with its neighbours in this range: 0-47")
+  app.add_option("--frames", options.range, "filter these frames, each with the two before and after it in this range: 0-47")
       ->type_name("SPEC");
-  app.add_option("--width", options.width,
-                 "with --frames: number of frames with which a frame is filtered, including itself; odd")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 63));
   app.add_option("--position", options.position,
                  "number of the input frame that is filtered; 1: the first; 0: the middle one")
       ->capture_default_str()
@@ -257,14 +251,10 @@ int main(int argc, char** argv) {
                  "channels of the frame")
       ->delimiter(',')
       ->type_name("NAMES");
-  app.add_option("--compression", options.compression, "EXR compression")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"zip", "none"}));
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
   tool.common_options(0);
   return tool.run([&] {
     tools::keep_freed_memory();
-    if (options.width % 2 == 0) throw InputError("--width: an odd number of frames has one in the middle; give 3 or 5");
     if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
     if (options.range.empty()) filter_files(tool, options);
     else filter_range(tool, options);

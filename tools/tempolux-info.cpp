@@ -23,7 +23,7 @@ namespace {
 struct Request {
   std::vector<std::string> files;
   bool check = false, digest = false, diff = false, json = false, account = false;
-  std::string format, output, png, sheet, groups, exposure = "auto";
+  std::string format, output, png, sheet, exposure = "auto";
   tools::PictureOptions picture;
 };
 
@@ -98,10 +98,6 @@ int answer(tools::Tool& tool, Request& request) {
     tools::Output output(request.png);
     tools::write_picture(only_file(request, "--png"), request.picture, output);
     output.commit();
-  } else if (!request.groups.empty()) {
-    tools::Output output(request.groups, tools::Output::Kind::text);
-    tools::print_groups(only_file(request, "--groups"), output);
-    output.commit();
   } else if (!request.format.empty()) {
     using Kind = tools::Output::Kind;
     tools::Output output(request.output, request.format == "csv" ? Kind::text : Kind::binary);
@@ -135,9 +131,6 @@ int main(int argc, char** argv) {
           ->type_name("FORMAT")
           ->check(CLI::IsMember({"ply", "csv"}));
   CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
-  CLI::Option* groups = tool.output_option(
-      request.groups, "a line of CSV for each group of a .photons file: frame, paths, photons; - is standard output",
-      "--groups");
   CLI::Option* png = tool.output_option(
       request.png, "write the image as PNG; for a .meshirrad file its elements, seen from a corner above", "--png");
   CLI::Option* sheet = tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
@@ -161,7 +154,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->needs(sheet);
-  const std::vector<CLI::Option*> modes{check, digest, diff, account, format, groups, png, sheet};
+  const std::vector<CLI::Option*> modes{check, digest, diff, account, format, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);

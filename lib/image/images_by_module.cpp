@@ -73,19 +73,4 @@ LinearPixels load_by_module(const std::string& path, std::uint64_t max_pixels) {
   return image;
 }
 
-MaskPixels mask_by_module(const std::string& path, std::uint64_t max_pixels) {
-  MaskPixels mask;
-  Answer answer([&](int width, int height, int, int) -> void* {
-    mask.width = width, mask.height = height;
-    mask.pixels.resize(std::size_t(width) * std::size_t(height));
-    return mask.pixels.data();
-  });
-  PixelsRequest request{};
-  request.path = path.c_str();
-  request.mask = 1;
-  request.max_pixels = max_pixels;
-  answer.ask(request, path);
-  return mask;
-}
-
 }  // namespace tempolux

@@ -25,12 +25,4 @@ struct LinearPixels {
 /// without memory.
 LinearPixels load_by_module(const std::string& path, std::uint64_t max_pixels);
 
-/// nonzero_pixels() of an image.
-struct MaskPixels {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> pixels;
-};
-/// nonzero_pixels() of the image at `path`. Throws as load_by_module.
-MaskPixels mask_by_module(const std::string& path, std::uint64_t max_pixels);
-
 }  // namespace tempolux

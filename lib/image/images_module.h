@@ -5,13 +5,12 @@
 
 namespace tempolux {
 
-inline constexpr std::uint32_t kPixelsAbi = 2;
+inline constexpr std::uint32_t kPixelsAbi = 3;
 
 /// One call: the image to read, and callbacks for its pixels and for errors.
 struct PixelsRequest {
   std::uint32_t abi;           ///< kPixelsAbi; a module of another version refuses the call
   const char* path;            ///< a file to be read as load_image does, as linear R, G, B; null: `bytes`
-  std::int32_t mask;           ///< 1: nonzero_pixels() of the file, one channel of 8 bits
   const unsigned char* bytes;  ///< a PNG or JPEG in memory, decoded to codes as decode_image does
   std::uint64_t size;          ///< of bytes
   const char* place;           ///< source of the bytes, for messages

@@ -52,7 +52,7 @@ std::string interval_file(GraphBuilder& g, const Interval& i) {
     c.file("", key_picture(g, i.first));
     c.file("", key_picture(g, i.last));
     std::ostringstream threshold;
-    threshold << g.wish.threshold;
+    threshold << 100 * g.wish.threshold << '%';
     for (const std::string& word : {frame_digits(i.middle()), key_picture(g, i.middle()), threshold.str(),
                                     left.empty() ? "-" : left, right.empty() ? "-" : right})
       c.option(word);

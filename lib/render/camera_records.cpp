@@ -24,11 +24,9 @@ struct Placement {
   const RecordSource* source = nullptr;         ///< makes the records; null: `gather` does
 };
 
-/// The camera's view without the pixels that are not wanted and the points that are not taken.
-PixelView looks_through(const Placement& place, const CameraView& view, const std::vector<std::uint8_t>& wanted) {
+/// The camera's view without the points that are not taken.
+PixelView looks_through(const Placement& place, const CameraView& view) {
   return [&](const Look& look) -> std::optional<SeenPoint> {
-    if (!wanted.empty() && !wanted[std::size_t(look.y) * std::size_t(view.width()) + std::size_t(look.x)])
-      return std::nullopt;
     std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
     if (seen && place.takes && !place.takes(*seen)) seen.reset();
     return seen;
@@ -42,9 +40,8 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
     const CameraView view(frame.camera(cameras.camera_node), frame.origin, cameras.width, cameras.height);
     PlacementOptions options = place.options;
     if (number != cameras.frames.front()) options.min_weight *= kLaterWeight;
-    const std::vector<std::uint8_t> wanted = cameras.wanted ? cameras.wanted(number) : std::vector<std::uint8_t>{};
-    const std::size_t added = place_records(place.gather, looks_through(place, view, wanted), cameras.width,
-                                            cameras.height, options, store, counts, cameras.progress, place.source);
+    const std::size_t added = place_records(place.gather, looks_through(place, view), cameras.width, cameras.height,
+                                            options, store, counts, cameras.progress, place.source);
     cameras.added(number, added);
   }
   return counts;

@@ -19,8 +19,6 @@ struct RecordCameras {
   int width = 640, height = 360;  ///< of the pictures, pixels
   /// The scene at a frame; throws InputError if its light differs from that of the first.
   std::function<SceneFrame(int frame)> at;
-  /// By pixel, 0: no record is needed there; empty: all pixels.
-  std::function<std::vector<std::uint8_t>(int frame)> wanted;
   std::function<void(double done)> progress;
   std::function<void(int frame, std::size_t records)> added;
 };

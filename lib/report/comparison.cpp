@@ -8,8 +8,12 @@
 
 namespace tempolux {
 
-ComparisonBuilder::ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels)
-    : comparison_(std::move(comparison)), min_object_pixels_(min_object_pixels) {}
+namespace {
+
+/// Objects of fewer pixels are marked: their bias is noise.
+constexpr std::uint64_t kFewPixels = 64;
+
+}  // namespace
 
 void ComparisonBuilder::add(const Compared& pair, int frame, const std::string& name) {
   const bool first = !total_;
@@ -21,7 +25,7 @@ void ComparisonBuilder::add(const Compared& pair, int frame, const std::string& 
   comparison_.channels = pair.channels;
 
   ErrorSums sums = sum_errors(pair, frame);
-  comparison_.frames.push_back({frame, figures_of(sums, min_object_pixels_), {}});
+  comparison_.frames.push_back({frame, figures_of(sums, kFewPixels), {}});
   if (first) total_ = std::move(sums);
   else add_errors(*total_, sums);
   flicker_.add(pair);
@@ -37,7 +41,7 @@ void ComparisonBuilder::add(const AnimationQuality& quality, const VisionOptions
 
 Comparison ComparisonBuilder::finish() {
   TEMPOLUX_CHECK(total_);
-  comparison_.total = figures_of(*total_, min_object_pixels_);
+  comparison_.total = figures_of(*total_, kFewPixels);
   comparison_.flicker = flicker_.result();
   return std::move(comparison_);
 }

@@ -46,9 +46,8 @@ struct Comparison {
 /// Collects the frames of a comparison, one in memory at a time.
 class ComparisonBuilder {
  public:
-  /// `comparison` holds what is given in advance: command, names, mode, layer. Objects of fewer than min_object_pixels
-  /// pixels are marked.
-  ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels);
+  /// `comparison` holds what is given in advance: command, names, mode, layer.
+  explicit ComparisonBuilder(Comparison comparison) : comparison_(std::move(comparison)) {}
   /// Adds a frame. Throws InputError if its size or channels differ from the earlier frames'.
   void add(const Compared& pair, int frame, const std::string& name);
   /// Adds the names of objects of a frame.
@@ -60,7 +59,6 @@ class ComparisonBuilder {
 
  private:
   Comparison comparison_;
-  std::uint64_t min_object_pixels_;
   std::optional<ErrorSums> total_;
   FlickerMeter flicker_;
 };

@@ -36,6 +36,7 @@ std::string content_of(std::FILE* file) {
   return text;
 }
 
+/// The child's process; 0: there is no such program.
 pid_t start(const char* program, std::FILE* in, std::FILE* out, std::FILE* errors) {
   posix_spawn_file_actions_t streams;
   posix_spawn_file_actions_init(&streams);
@@ -48,8 +49,7 @@ pid_t start(const char* program, std::FILE* in, std::FILE* out, std::FILE* error
   pid_t child = 0;
   const int error = posix_spawnp(&child, program, &streams, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&streams);
-  if (error == ENOENT)
-    throw ResourceError("gnuplot: not found; install gnuplot-nox, or leave plots out with --no-plots");
+  if (error == ENOENT) return 0;
   if (error) throw ResourceError(std::string("gnuplot: cannot be started: ") + std::strerror(error));
   return child;
 }
@@ -73,12 +73,14 @@ int wait_for(pid_t child, double timeout_s) {
 
 }  // namespace
 
-std::string run_gnuplot(const std::string& script, double timeout_s) {
+std::optional<std::string> run_gnuplot(const std::string& script, double timeout_s) {
   const File in = temporary_file(), out = temporary_file(), errors = temporary_file();
   if (std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() || std::fflush(in.get()) != 0)
     throw ResourceError(std::string("gnuplot: temporary file: ") + std::strerror(errno));
   std::rewind(in.get());
-  const int status = wait_for(start("gnuplot", in.get(), out.get(), errors.get()), timeout_s);
+  const pid_t child = start("gnuplot", in.get(), out.get(), errors.get());
+  if (child == 0) return std::nullopt;
+  const int status = wait_for(child, timeout_s);
   std::string drawn = content_of(out.get());
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || drawn.empty())
     throw ResourceError("gnuplot: failed: " + content_of(errors.get()).substr(0, 400));

@@ -57,8 +57,7 @@ def quality(bench, _):
         costs.append(cpu)
         rest.append(without_caustics(bench, image, halves))
         for layer in LAYERS:
-            runs[layer].append(bench.compare(image, halves, image.with_name(f"{image.stem}-{layer}.json"), layer,
-                                             "--min-object-pixels", 100)["total"])
+            runs[layer].append(bench.compare(image, halves, image.with_name(f"{image.stem}-{layer}.json"), layer)["total"])
     for layer, totals in runs.items():
         rows.append([layer or "image", quantity(math.sqrt(max(0, mean(t["mse"] for t in totals)))),
                      quantity(mean(t["relmse"] for t in totals)) if layer is None else "-",
@@ -66,7 +65,7 @@ def quality(bench, _):
     relmse, bias = mean(r[1] for r in rest), mean(r[2] for r in rest)
     rows.append(["image without caustics", quantity(math.sqrt(max(0, mean(r[0] for r in rest)))), quantity(relmse), percent(bias), "-"])
     for o in runs[None][0]["objects"]:
-        if o["few_pixels"] or o["bias"] is None:
+        if o["pixels"] < 100 or o["bias"] is None:
             continue
         same = [next(p for p in t["objects"] if p["id"] == o["id"]) for t in runs[None]]
         more.append([o["id"], o["pixels"], mean(p["bias"] for p in same), percent(o["bias_standard_error"] or 0),

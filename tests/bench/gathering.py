@@ -51,7 +51,7 @@ def quality_of(bench, name, settings, size):
         image, cpu = preset(bench, name, seed, size)
         cost.append(cpu)
         totals.append(bench.compare(image, halves, image.with_name(image.stem + "-indirect.json"), "indirect",
-                                    "--relative-to", smooth, "--min-object-pixels", 1)["total"])
+                                    "--relative-to", smooth)["total"])
     objects = []
     for o in totals[0]["objects"]:
         values = [next(p["bias"] for p in t["objects"] if p["id"] == o["id"]) for t in totals]

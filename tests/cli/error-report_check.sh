@@ -1,5 +1,6 @@
 # error-report: a report from known curves, alike each time it is made; refusals; gnuplot missing.
-try() { echo "> error-report $*"; error-report "$@"; echo "exit $?"; }
+tool=$(command -v error-report)
+try() { echo "> error-report $*"; PATH=/nowhere "$tool" "$@"; echo "exit $?"; }   # finds no gnuplot
 "${PYTHON:-python3}" - <<'END'
 import json
 def write(name, **keys):
@@ -19,20 +20,19 @@ write("manifest.json", schema="tempolux.report", title="Known curves", runs=runs
 write("bad-point.json", schema="tempolux.report", runs=[], points=[{"label": "peer", "cpu_s": 0, "rmse": 1}])
 write("bad-image.json", schema="tempolux.report", runs=[{**runs[0], "image": "p1.s.json"}])
 END
-try manifest.json -o plain --no-plots
+try manifest.json -o plain
 cat plain/report.md plain/report.csv; ls plain
 grep -c '<table>' plain/index.html; grep -c 'src="[^d]\|href=' plain/index.html
-try --run 'scene=S2,curve=path,x=1,spp=1' p1.s.json+p4.s.json p1.c.json --no-plots -o one; tail -1 one/report.csv
-try --run curve=a,x=1 p1.s.json p1.c.json --run curve=b,x=2 p4.s.json p4.c.json --no-plots -o two; wc -l < two/report.csv
+try --run 'scene=S2,curve=path,x=1,spp=1' p1.s.json+p4.s.json p1.c.json -o one; tail -1 one/report.csv
+try --run curve=a,x=1 p1.s.json p1.c.json --run curve=b,x=2 p4.s.json p4.c.json -o two; wc -l < two/report.csv
 try
 try manifest.json --no-such
 try p1.s.json
 try missing.json
 try bad-point.json -o bad
-try bad-image.json -o bad --no-plots
+try bad-image.json -o bad
 try --run curve=a,x=1 p1.s.json p1.s.json -o bad
 try manifest.json -o manifest.json
-echo '> no gnuplot'; tool=$(command -v error-report); PATH=/nowhere "$tool" manifest.json -o bare; echo "exit $?"; ls -A bare
 ls -d report bad 2>/dev/null
 command -v gnuplot >/dev/null || exit 0
 error-report manifest.json -o r1 && error-report manifest.json -o r2 && diff -r r1 r2; ls r1 | tr '\n' ' '

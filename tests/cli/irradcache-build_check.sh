@@ -21,15 +21,6 @@ irradcache-build records "$still" --points p.irradpoints $small -o two.irradcach
 irradcache-build "$still" --photons p.photons --point-count 1k $small -o one.irradcache --keep-points kept.irradpoints -q || bad 'both'
 same two.irradcache one.irradcache || bad 'two steps differ from one'
 same p.irradpoints kept.irradpoints || bad 'kept points differ'
-# A mask: records where its pixels look and none elsewhere; of all pixels those that are made without.
-count() { tempolux-info --json "$1" | sed -n 's/^  "records": \([0-9]*\),*$/\1/p'; }
-for part in none:0 half:'0|1' whole:1; do
-  python3 "$HERE/make_exr.py" mask.exr 48x27 "why:id=${part#*:}"
-  irradcache-build records "$still" --points p.irradpoints $small --mask mask.exr -o "${part%%:*}.irradcache" -q || bad "a mask, ${part%%:*}"
-done
-[ "$(count none.irradcache)" = 0 ] || bad "a mask of nothing: $(count none.irradcache) records"
-[ "$(count half.irradcache)" -gt 0 ] && [ "$(count half.irradcache)" -lt "$(count whole.irradcache)" ] || bad "a mask of one half: $(count half.irradcache) records"
-same whole.irradcache two.irradcache || bad 'a mask of all: other records than without'
 
 for threads in 1 2 3 7; do
   irradcache-build "$still" --photons p.photons --point-count 1k $small -o "one.irradcache.$threads" --threads $threads -q

@@ -80,11 +80,9 @@ def flows(s):
     for name, path in [("another size", flow(s, 8, 8)), ("NaN", flow(s, 64, 48, NAN)), ("infinity", flow(s, 64, 48, INF))]:
         out = s.path(".json")
         s.refused(f"flow of {name}", s.run("aqm-compare", "-q", grey, lines, "--flow", path, "--json", out), out)
-    for option, value in [("--ppd", 0), ("--ppd", 1e9), ("--fps", 0), ("--exposure", 1e9), ("--eye", "none"), ("--display", "tv")]:
+    for option, value in [("--fps", 0), ("--exposure", 1e9), ("--eye", "none"), ("--display", "tv")]:
         out = s.path(".json")
         s.refused(f"{option} {value}", s.run("aqm-compare", "-q", grey, lines, "--metric", "aqm", option, value, "--json", out), out)
-    for ppd in (1, 1000):
-        within(s, f"--ppd {ppd}", judged(s, grey, lines, "--ppd", ppd))
 
 
 @case("vision", "16k x 1k", FULL)

@@ -59,9 +59,6 @@ std::string facts_as_text(const Facts& facts);
 /// Exports photons, irradiance points or records in file order: PLY (binary, with colours for viewers: the brightest is
 /// white) or CSV.
 void export_photons(const std::string& path, const std::string& format, Output& output);
-/// A line of CSV for each group of a .photons file: the frame it was traced at, and its number of paths. Throws
-/// InputError if the file has no groups.
-void print_groups(const std::string& path, Output& output);
 void export_irradpoints(const std::string& path, const std::string& format, Output& output);
 void export_irradcache(const std::string& path, const std::string& format, Output& output);
 /// Throws InputError for a file of another type.

@@ -165,28 +165,6 @@ Facts photon_difference(const std::string& a, const std::string& b) {
   return facts;
 }
 
-void print_groups(const std::string& path, Output& output) {
-  PhotonReader reader(path, {.digest = false});
-  std::vector<std::uint64_t> photons(reader.header().group_count);
-  PhotonBlock block;
-  while (reader.read_block(block)) photons[block.group] += block.photons.size();
-  if (reader.ledger().empty()) throw InputError(path + ": does not say what became of its groups: it has no ledger");
-  const bool dated = !reader.header().majorants.empty();
-  std::string text =
-      std::string("group,") + (dated ? "frame,paths," : "") + "photons,emitted_r_W,emitted_g_W,emitted_b_W\n";
-  for (const GroupFlux& group : reader.ledger()) {
-    char line[200];
-    int length = std::snprintf(line, sizeof line, "%u,", unsigned(group.group));
-    if (dated)
-      length += std::snprintf(line + length, sizeof line - std::size_t(length), "%d,%llu,", int(group.frame),
-                              (unsigned long long)(group.paths));
-    std::snprintf(line + length, sizeof line - std::size_t(length), "%llu,%.9g,%.9g,%.9g\n",
-                  (unsigned long long)(photons[group.group]), group.emitted[0], group.emitted[1], group.emitted[2]);
-    text += line;
-  }
-  output.write(text.data(), text.size());
-}
-
 void export_photons(const std::string& path, const std::string& format, Output& output) {
   const bool ply = format == "ply";
   double white = 0;

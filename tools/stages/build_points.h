@@ -16,7 +16,7 @@ namespace tempolux::tools {
 /// The options of irradcache-build.
 struct CacheOptions {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, importance, high, mask, output, keep_points, map = "global", update;
+  std::string photons, points, importance, high, output, keep_points, map = "global", update;
   std::vector<std::string> dynamic;  // the frame's own map comes first
   std::uint64_t point_count = PointOptions{}.count;
   std::vector<formats::ViewSphere> view;  // of importance

@@ -9,7 +9,6 @@
 #include "formats/error.h"
 #include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
-#include "lib/image/images_by_module.h"
 #include "lib/render/camera_records.h"
 #include "lib/scene/static_scene.h"
 
@@ -33,18 +32,6 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   return header;
 }
 
-/// One entry per pixel of the frame: 0 if the pixel needs no records. Empty without --mask.
-std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options, int number) {
-  if (options.mask.empty()) return {};
-  const std::string name = frame_name(options.mask, number);
-  tool.depends_on(name);
-  MaskPixels mask = mask_by_module(name, 512ull << 20);
-  if (mask.width != options.width || mask.height != options.height)
-    throw InputError(name + ": " + std::to_string(mask.width) + "x" + std::to_string(mask.height) +
-                     " pixels; a mask has the size of the picture, --size");
-  return std::move(mask.pixels);
-}
-
 /// Throws InputError unless two frames are equal except for their cameras.
 void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const SceneFrame& first) {
   if (!formats::stale_concerns(identity_of(frame), identity_of(first)).empty())
@@ -58,13 +45,12 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
 RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                          const SceneFrame& first, std::function<SceneFrame(int)> at) {
   RecordCameras cameras{
-      frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}, {}};
+      frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}};
   cameras.at = [&options, &first, at = std::move(at)](int number) {
     SceneFrame frame = at(number);
     check_lit_alike(options, frame, first);
     return frame;
   };
-  cameras.wanted = [&](int number) { return wanted_pixels(tool, options, number); };
   cameras.progress = [&](double done) { tool.progress(done); };
   cameras.added = [&](int number, std::size_t records) {
     tool.stats().set("records_added." + std::to_string(number), double(records));

@@ -32,9 +32,6 @@ void declare_vision(Tool& tool, VisionWords& w) {
       ->type_name("NAME")
       ->capture_default_str()
       ->check(CLI::IsMember({"office", "hdr", "dark"}));
-  app.add_option("--ppd", w.pixels_per_degree, "pixels per degree of the eye; else --display's")
-      ->type_name("VALUE")
-      ->check(number_between(1, 1000));
   app.add_option("--exposure", w.exposure,
                  "stops, as of tempolux-info --png; auto: the first frame's, for the whole sequence")
       ->type_name("{auto,STOPS}")
@@ -61,7 +58,6 @@ void check_vision(const VisionWords& w, bool several_frames) {
 VisionOptions vision_options(const VisionWords& w, const LoadedFrame& first) {
   VisionOptions options;
   options.display = vision::display_named(w.display);
-  if (w.pixels_per_degree > 0) options.display.pixels_per_degree = w.pixels_per_degree;
   options.gaze = w.eye == "track" ? vision::Gaze::track : vision::Gaze::fixed;
   const double said = number_attribute(first.inputs().test.image, "framesPerSecond", 24);
   options.frames_per_second =

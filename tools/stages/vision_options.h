@@ -13,7 +13,7 @@ namespace tempolux::tools {
 /// Values of the options; numbers below 0 mean that the option is not given.
 struct VisionWords {
   std::string flow, map, display = "office", exposure = "auto", eye = "track";
-  double pixels_per_degree = -1, frames_per_second = -1;
+  double frames_per_second = -1;
 
   /// True if an option is given that needs the vision model.
   bool used() const { return !flow.empty() || !map.empty(); }

@@ -23,7 +23,7 @@ Comparison example() {
   comparison.command = "aqm-compare 0.1.0 x.exr r.exr";
   comparison.test = "x.exr";
   comparison.references = {"r.exr"};
-  ComparisonBuilder builder(comparison, 64);
+  ComparisonBuilder builder(comparison);
   const Image x = constant_image(32, 16, 0.75), r = constant_image(32, 16, 0.5);
   builder.add(compare(x, r), 0, "x.exr");
   return builder.finish();
@@ -90,7 +90,7 @@ TEST(ComparisonTest, WhatIsWrittenIsReadBack) {
 TEST(ComparisonTest, FiguresThatDoNotExistAreNullNeverNan) {
   Comparison comparison;
   comparison.references = {"r"};
-  ComparisonBuilder builder(comparison, 64);
+  ComparisonBuilder builder(comparison);
   const Image black = constant_image(1, 1, 0);
   builder.add(compare(black, black), 0, "x");
   builder.add(compare(black, black), 1, "x");
@@ -112,7 +112,7 @@ TEST(ComparisonTest, TextSaysWhatMustNotBeQuoted) {
     Comparison comparison;
     comparison.references = {"r1", "r2"};
     comparison.mode = ComparisonMode::reference_halves;
-    ComparisonBuilder builder(comparison, 64);
+    ComparisonBuilder builder(comparison);
     builder.add(compare(x, r1, &r2), 0, "x");
     const Comparison result = builder.finish();
     const bool below = result.total.squared_error.squared.value < 0;
