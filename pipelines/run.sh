@@ -32,11 +32,15 @@ set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channel
   --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" \
   --strategy "$STRATEGY" --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" \
   --reference-samples "$REFERENCE_SAMPLES"
-for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD \
+for pair in update:UPDATE refine:REFINE photons:PHOTONS pixel-error:ERROR halve-above:THRESHOLD \
   light-units:LIGHT_UNITS environment:SKY measured:MEASURED ${MEASURED:+aqm:AQM} environment:ENVIRONMENT \
-  volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS smoke-words:SMOKE; do
+  volume:VOLUME; do
   eval "value=\$${pair#*:}"
   [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
+done
+for pair in points:POINTS records:CACHE pixels:PIXELS smoke:SMOKE; do
+  eval "value=\$${pair#*:}"
+  [ -z "$value" ] || set -- "$@" --words "${pair%%:*}:$value"
 done
 # shellcheck disable=SC2086
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh" \

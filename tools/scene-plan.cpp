@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ namespace {
 struct Options {
   std::string scene, folder = "out", samples, estimate, quality = "final", method = "frames",
                      filter = "auto", report, measured;
-  std::vector<std::string> recipes;
+  std::vector<std::string> recipes, words;
   double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
   Wish wish;
 };
@@ -45,11 +46,17 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
   for (const CLI::Option* option : tool.app().get_options())
     if (const auto& shared = tools::kSharedWords; std::ranges::find(shared, option->get_name()) != shared.end())
       for (const std::string& word : option->results()) wish.common += option->get_name() + ' ' + word + '\n';
-  for (const auto& [name, words] : {std::pair{"--point-words", wish.points},
-                                    {"--record-words", wish.records},
-                                    {"--pixel-words", wish.pixels},
-                                    {"--channels", wish.channels},
-                                    {"--smoke-words", wish.smoke_words},
+  for (const std::string& one : options.words) {
+    const std::size_t colon = one.find(':');
+    const std::map<std::string, std::string*> stages{
+        {"points", &wish.points}, {"records", &wish.records}, {"pixels", &wish.pixels}, {"smoke", &wish.smoke_words}};
+    const auto stage = stages.find(one.substr(0, colon));
+    if (stage == stages.end() || colon == std::string::npos)
+      throw InputError("--words '" + one + "': write STAGE:OPTIONS; the stages are points, records, pixels, smoke");
+    *stage->second = one.substr(colon + 1);
+    tools::check_words("--words " + stage->first, *stage->second);
+  }
+  for (const auto& [name, words] : {std::pair{"--channels", wish.channels},
                                     {"--update", wish.update},
                                     {"--refine", wish.refine},
                                     {"--strategy", wish.strategy}})
@@ -101,7 +108,7 @@ void add_methods(tools::Tool& tool, Options& options) {
          {"frames", "walkthrough", "auto", "preview"});
   choice("--filter", options.filter,
          "number of frames in the filter's window, 1: each frame alone; a frame is filtered where the halves of its "
-         "samples show that it helps; none: no filter; auto: 1, or none with --pixel-words",
+         "samples show that it helps; none: no filter; auto: 1, or none with --words pixels:...",
          {"auto", "none", "1", "3", "5", "7", "9"});
   choice("--indirect", wish.indirect,
          "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
@@ -137,12 +144,12 @@ void add_figures(tools::Tool& tool, Options& options) {
                  "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
-  number("--rays", wish.rays, 0, 1 << 20, "largest number of gather rays of a record; 0: the preset's");
   number("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
-  text("--point-words", wish.points, "WORDS", "options of irradcache-build points instead of the preset's");
-  text("--record-words", wish.records, "WORDS", "options of irradcache-build records instead of the preset's");
-  text("--pixel-words", wish.pixels, "WORDS", "options of frame-render instead of the preset's");
-  text("--smoke-words", wish.smoke_words, "WORDS", "options of volume-compose");
+  app.add_option("--words", options.words,
+                 "options of a stage instead of the preset's, such as 'pixels:--spp 4 --pixel-error 0'. Stages: points, "
+                 "records (irradcache-build), pixels (frame-render), smoke (volume-compose)")
+      ->type_name("STAGE:OPTIONS")
+      ->allow_extra_args(false);
   text("--update", wish.update, "SHARE",
        "with smoke: trace this share of each photon map anew, such as 10%, and keep the remainder");
   text("--refine", wish.refine, "SHARE",

@@ -50,7 +50,7 @@ ACCIDENT = re.compile(r"sh: |missing separator|No rule to make target|target pat
 ROLES = ["scene", "texture", "buffer", "OUT", "environment", "volume"]
 ENDS = {"scene": ".gltf", "texture": ".png", "buffer": ".bin", "OUT": "", "environment": ".hdr", "volume": "_0000.vdb"}
 PLAIN = {"scene": "scene.gltf", "texture": "floor.png", "buffer": "scene.bin", "OUT": "out", "environment": "sky.hdr", "volume": "smoke_0000.vdb"}
-SMALL = ["FRAMES=0", "TIME=--segment 1", "SIZE=16x9", "QUALITY=draft", "PHOTONS=2k", "RAYS=20", "ERROR=0.1", "POINTS=--point-count 200 --light-samples 1"]
+SMALL = ["FRAMES=0", "TIME=--segment 1", "SIZE=16x9", "QUALITY=draft", "PHOTONS=2k", "ERROR=0.1", "POINTS=--point-count 200 --light-samples 1"]
 # The edit that changes the content of a role's file.
 EDIT = {"scene": "lamp", "texture": "texture", "buffer": "object", "OUT": "lamp", "environment": "sky", "volume": "smoke"}
 

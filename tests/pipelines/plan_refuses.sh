@@ -22,7 +22,7 @@ python3 tests/pipelines/edit_gltf.py "$source" "$work/no-light.glb" emission 0
 refuses 2 'Include > Cameras' "$work/no-camera.glb" --camera Kamera -o "$work/plan"
 refuses 2 'Include > Punctual Lights' "$work/no-light.glb" -o "$work/plan"
 refuses 2 'no camera.*Kamera' "$source" --camera Kamera -o "$work/plan"
-refuses 2 'only letters, digits' "$source" --pixel-words '$(x)' -o "$work/plan"
+refuses 2 'only letters, digits' "$source" --words 'pixels:$(x)' -o "$work/plan"
 refuses 2 'frames' "$source" --frames 5-x -o "$work/plan"
 : > "$work/file"
 refuses 3 'cannot create this folder' "$source" -o "$work/file/plan"

@@ -36,7 +36,7 @@ for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
     os.environ.pop(name, None)
 
 # What every run is given: so little of everything that a run takes half a processor second, and records, which pilots do not choose for so few pixels.
-SMALL = {"PHOTONS": "4k", "RAYS": "30", "ERROR": "0.05", "INDIRECT": "records"}
+SMALL = {"PHOTONS": "4k", "CACHE": "--rays 30", "ERROR": "0.05", "INDIRECT": "records"}
 # The values that a variable takes; the first is what a walk starts with. "" leaves the variable out.
 VALUES = {
     "METHOD": ["", "", "frames", "walkthrough", "auto"],

@@ -25,7 +25,7 @@ for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
 CASES = Path("../shared/scenes/made/cases")
 if not CASES.is_dir():
     CASES = Path(os.environ.get("TEMPOLUX_SCENES", "/nowhere")) / "made" / "cases"
-SMALL = {"QUALITY": "draft", "PHOTONS": "10k", "RAYS": "60", "POINTS": "--point-count 1k --light-samples 1"}
+SMALL = {"QUALITY": "draft", "PHOTONS": "10k", "CACHE": "--rays 60", "POINTS": "--point-count 1k --light-samples 1"}
 RANGES = ["12", "0-12", "0-47", "12-200"]
 MODES = [{}, {"QUALITY": "final", "MOVING": "light"}, {"QUALITY": "final", "MOVING": "records"}, {"QUALITY": "final", "MOVING": "time"}, {"METHOD": "auto"},
          {"METHOD": "walkthrough"}, {"FILTER": "3"}]
