@@ -11,7 +11,7 @@
   draw.py plan PLAN.json OUT.png                         a column for each frame, a row for each concern of the scene;
                                                          equal colours in a row: equal content
 
-POINTS.csv: tempolux-info --export csv; FRAME.json: tempolux-info --json of the frame's EXR."""
+POINTS.csv: tempolux-info --export; FRAME.json: tempolux-info --json of the frame's EXR."""
 import csv
 import json
 import math

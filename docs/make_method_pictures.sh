@@ -12,7 +12,7 @@ python3 -B tests/bench/spot_room.py "$work/spot.glb"
 "$bin/photon-trace" "$work/spot.glb" --photons 200k -o "$work/p.photons" -q
 "$bin/photon-trace" "$work/spot.glb" --photons 20k --kinds direct,indirect -o "$work/few.photons" -q
 "$bin/photonmap-split" "$work/few.photons" --cell 0.3 --low "$work/l.photons" --high "$work/h.photons" -q
-"$info" --export csv -o "$work/high.csv" "$work/h.photons"
+"$info" --export "$work/high.csv" "$work/h.photons"
 "$bin/irradcache-build" points "$work/spot.glb" --photons "$work/p.photons" -o "$work/p.irradpoints" -q
 "$bin/photonmap-split" "$work/p.irradpoints" --low "$work/l.irradpoints" --high "$work/h.irradpoints" -q
 frame() { "$bin/frame-render" "$work/spot.glb" --size 320x180 --points "$work/p.irradpoints" -q "$@"; }
@@ -39,7 +39,7 @@ f="--frame 20" size="--size 320x180"
 "$bin/irradcache-build" records "$work/room.glb" $f $size --update "$work/s.irradcache" --points "$work/u.irradpoints" --dynamic "$work/d.photons" -o "$work/u.irradcache" -q
 "$bin/irradcache-build" records "$work/room.glb" $f $size --points "$work/u.irradpoints" -o "$work/y.irradcache" -q
 room() { "$bin/frame-render" "$work/room.glb" $f $size --points "$work/u.irradpoints" -q "$@"; }
-room --irradcache "$work/u.irradcache" --influence-low 1e6 --influence-high 2e6 --channels indirect -o "$work/t.exr"
+room --irradcache "$work/u.irradcache" --influence 1e6 --channels indirect -o "$work/t.exr"
 room --irradcache "$work/y.irradcache" --channels indirect -o "$work/y.exr"
 room --irradcache "$work/u.irradcache" --channels RGBA,indirect,influence -o "$work/u.exr"
 for layer in t y u; do "$info" --png "$work/$layer.png" --layer indirect --exposure 1 "$work/$layer.exr"; done

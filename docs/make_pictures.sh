@@ -22,9 +22,9 @@ $draw plan "$work/plan/plan.json" $out/scene-plan.png
   -o "$work/f.exr" --stats "$work/f.json"
 "$info" --png $out/frame-render.png "$work/f.exr"
 "$info" --json "$work/f.exr" > "$work/frame.json"
-"$info" --export csv -o "$work/photons.csv" "$work/few.photons"
-"$info" --export csv -o "$work/points.csv" "$work/p.irradpoints"
-"$info" --export csv -o "$work/records.csv" "$work/c.irradcache"
+"$info" --export "$work/photons.csv" "$work/few.photons"
+"$info" --export "$work/points.csv" "$work/p.irradpoints"
+"$info" --export "$work/records.csv" "$work/c.irradcache"
 $draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 0.02
 $draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 0.08
 $draw dots "$work/records.csv" "$work/frame.json" $out/frame-render.png $out/irradcache-build-records.png
@@ -88,7 +88,7 @@ room=pipelines/scenes/S3_indirect_room.glb
 "$info" --png "$work/room.png" "$work/room.exr"
 "$info" --json "$work/room.exr" > "$work/room.json"
 "$bin/photonmap-split" "$work/p.irradpoints" --energy 2 --low "$work/low.irradpoints" --high "$work/high.irradpoints"
-"$info" --export csv -o "$work/high.csv" "$work/high.irradpoints"
+"$info" --export "$work/high.csv" "$work/high.irradpoints"
 $draw dots "$work/high.csv" "$work/room.json" "$work/room.png" $out/photonmap-split.png
 
 # Its error, and error against time of path tracing.

@@ -55,7 +55,7 @@ makes() {   # runs in a subshell
   exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
-  ending $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
+  ending $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
   for plan in small.mk large.mk; do PROGRESS='' ending makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside"
 }

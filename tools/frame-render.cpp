@@ -219,8 +219,7 @@ void check(Options& options, const std::vector<int>& frames) {
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   options.light.photons_alone = options.integrator == "photons";
-  if (!(options.light.influence.low < options.light.influence.high))
-    throw InputError("--influence-low must be below --influence-high");
+  options.light.influence.high *= options.light.influence.low / InfluenceThresholds{}.low;  // the same ratio
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -280,13 +279,10 @@ void add_light_options(tools::Tool& tool, Options& options) {
                  "photons per density estimate of caustic light: fewer are sharper, more are smoother")
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
-  app.add_option("--influence-low", options.light.influence.low,
+  app.add_option("--influence", options.light.influence.low,
                  "up to this influence of the movers, as a share of the static irradiance, indirect light is read from "
-                 "static records, updated by dynamic photons")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
-  app.add_option("--influence-high", options.light.influence.high,
-                 "from this influence on indirect light is gathered anew; blended in between")
+                 "static records, updated by dynamic photons; from 2.5 times this influence on it is gathered anew; "
+                 "blended in between")
       ->capture_default_str()
       ->check(tools::number_above(0));
 }

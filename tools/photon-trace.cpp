@@ -35,19 +35,10 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", map = "global",
+  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", map = "global",
                              importance, paths, static_paths;
   tools::UpdateArguments updating;
 };
-
-/// The number of groups; 0: automatic.
-std::uint32_t group_count(const std::string& text) {
-  if (text == "auto") return 0;
-  const std::uint64_t count = tools::parse_count(text);
-  if (count < 1 || count > formats::photons::kMaxGroupCount)
-    throw InputError("--groups: " + text + " is not in 1 .. " + std::to_string(formats::photons::kMaxGroupCount));
-  return std::uint32_t(count);
-}
 
 /// A density estimate from this many photons has a standard error of 14 %. With fewer photons in each sphere, estimates
 /// also take light from outside the sphere.
@@ -92,7 +83,6 @@ PhotonOptions photon_options_of(const tools::Tool& tool, const Options& options,
   PhotonOptions photon_options;
   photon_options.seed = tool.common().seed_for_frame(frame_number);
   photon_options.photon_count = tools::parse_count(options.photons);
-  photon_options.group_count = group_count(options.groups);
   photon_options.set_kinds(options.kinds);
   return photon_options;
 }
@@ -283,7 +273,7 @@ void check(const CLI::App& app, const Options& options) {
   if (options.map != "dynamic") return;
   if (options.static_paths.empty())
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
-  for (const char* name : {"--photons", "--kinds", "--groups"})
+  for (const char* name : {"--photons", "--kinds"})
     if (app.get_option(name)->count() > 0)
       throw InputError(std::string(name) + ": of --map dynamic the static map has it");
 }
@@ -297,13 +287,11 @@ int main(int argc, char** argv) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   app.add_option("--photons", options.photons,
-                 "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")
+                 "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of their number of groups")
       ->capture_default_str();
   app.add_option(
          "--kinds", options.kinds,
          "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")
-      ->capture_default_str();
-  app.add_option("--groups", options.groups, "number N_g of photon groups (photon i is in group i mod N_g), or auto")
       ->capture_default_str();
   app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")

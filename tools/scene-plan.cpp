@@ -28,7 +28,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, folder = "out", samples, estimate, quality = "final", method = "frames",
+  std::string scene, folder = "out", estimate, quality = "final", method = "frames",
                      filter = "auto", report, measured;
   std::vector<std::string> recipes, words;
   double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
@@ -79,12 +79,12 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
 void plan_range(tools::Tool& tool, const Options& options, const std::string& arguments) {
   const Wish wish = wish_of(tool, options);
   std::optional<tools::PlanFolder> folder;
-  if (options.samples.empty()) folder.emplace(options.folder);
+  if (options.estimate.empty()) folder.emplace(options.folder);
   if (folder && folder->up_to_date(arguments)) return tool.say(options.folder + ": nothing has changed");
   tool.stats().phase("load");
   tools::Planner planner(tool, options.scene, wish, options.recipes, folder ? &*folder : nullptr);
   tool.stats().phase("write");
-  if (!folder) return tools::write_samples(options.samples, planner, wish);
+  if (!folder) return tools::write_samples(options.estimate, planner, wish);
   if (!options.measured.empty()) folder->inputs().hash_of(options.measured);
   folder->write(planner.planned(), planner.tool_hash(), arguments, tool.history_line());
   for (const PlannedSegment& segment : planner.planned().plan.segments)
@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
                    argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; not needed for --estimate");
+  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; without one --estimate prints");
   tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")
       ->capture_default_str();
   add_methods(tool, options);
@@ -186,22 +186,18 @@ int main(int argc, char** argv) {
   };
   aside("--recipes", options.recipes, "FILE",
         "files with the rules of make: if one of them changes, all files are made again");
-  aside("--samples", options.samples, "FOLDER",
-        "write two small plans into this folder instead of a plan; make runs them, and --estimate reads their "
-        "statistics");
   aside("--estimate", options.estimate, "FOLDER",
-        "print the estimated cost of a run instead of planning: CPU seconds and bytes of each stage, from the samples "
-        "in this folder (make -f Makefile.example estimate)");
+        "write two small plans into this folder instead of a plan; make runs them. Without a scene: print the "
+        "estimated cost, CPU seconds and bytes of each stage, from their statistics (make -f Makefile.example "
+        "estimate)");
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   std::string arguments = std::filesystem::current_path().string();
   for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
   return tool.run([&] {
-    const bool plans = options.estimate.empty();
-    if (plans == options.scene.empty())
-      throw InputError(plans ? "scene is required; see scene-plan --help"
-                             : "--estimate needs no scene; leave it out");
-    if (plans) plan_range(tool, options, hash_hex(arguments));
+    if (options.scene.empty() && options.estimate.empty())
+      throw InputError("scene is required; see scene-plan --help");
+    if (!options.scene.empty()) plan_range(tool, options, hash_hex(arguments));
     else std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
     return int(tools::exit_ok);
   });

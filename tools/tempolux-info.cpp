@@ -2,7 +2,7 @@
 //
 //     tempolux-info f.0012.photons
 //     tempolux-info --diff a.exr b.exr || echo they differ
-//     photon-trace room.glb -o - | tempolux-info - --export csv -o - | head
+//     photon-trace room.glb -o - | tempolux-info - --export - | head
 //     tempolux-info --sheet all.png --layer indirect f.*.exr
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -23,7 +23,7 @@ namespace {
 struct Request {
   std::vector<std::string> files;
   bool check = false, digest = false, diff = false, json = false, account = false;
-  std::string format, output, png, sheet, exposure = "auto";
+  std::string exported, png, sheet, exposure = "auto";
   tools::PictureOptions picture;
 };
 
@@ -98,10 +98,13 @@ int answer(tools::Tool& tool, Request& request) {
     tools::Output output(request.png);
     tools::write_picture(only_file(request, "--png"), request.picture, output);
     output.commit();
-  } else if (!request.format.empty()) {
+  } else if (!request.exported.empty()) {
     using Kind = tools::Output::Kind;
-    tools::Output output(request.output, request.format == "csv" ? Kind::text : Kind::binary);
-    tools::export_points(only_file(request, "--export"), request.format, output);
+    const bool ply = request.exported.ends_with(".ply");
+    if (!ply && request.exported != "-" && !request.exported.ends_with(".csv"))
+      throw InputError("--export " + request.exported + ": the name must end in .ply or .csv");
+    tools::Output output(request.exported, ply ? Kind::binary : Kind::text);
+    tools::export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);
     output.commit();
   } else {
     return print_files(request);
@@ -126,11 +129,9 @@ int main(int argc, char** argv) {
   CLI::Option* account =
       app.add_flag("--account", request.account, "bias of the light of several frames together, from their audits");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
-  CLI::Option* format =
-      app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
-          ->type_name("FORMAT")
-          ->check(CLI::IsMember({"ply", "csv"}));
-  CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
+  CLI::Option* exported = tool.output_option(
+      request.exported, "photons, irradiance points or records as points, .ply or .csv; - is CSV on standard output",
+      "--export");
   CLI::Option* png = tool.output_option(
       request.png, "write the image as PNG; for a .meshirrad file its elements, seen from a corner above", "--png");
   CLI::Option* sheet = tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
@@ -154,12 +155,10 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->needs(sheet);
-  const std::vector<CLI::Option*> modes{check, digest, diff, account, format, png, sheet};
+  const std::vector<CLI::Option*> modes{check, digest, diff, account, exported, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);
-  format->needs(output);
-  output->needs(format);
   tool.common_options(0);
   return tool.run([&] { return answer(tool, request); });
 }

@@ -100,7 +100,7 @@ def updated_frame(bench, name, seed, settings, low):
         kept = {n: bench.memory / f"tempolux-bench-{stem}-{n}" for n in ("s.photons", "s.paths", "s.irradpoints", "s.irradcache", "d.photons",
                                                                          "u.irradpoints", "u.irradcache")}
         common, stands = [scene, "--frame", number, "--seed", seed, "-q"], []
-        influence = ["--influence-low", low, "--influence-high", 2.5 * low]
+        influence = ["--influence", low]
 
         def run(tool, *words, stats=None):
             mine = stats or f"{files}-part.json"

@@ -23,7 +23,7 @@ from draw import read_png
 from exr_files import exr
 from read_irradcache import read_irradcache
 
-LOW = 0.06                                   # lower threshold of influence, frame-render --influence-low
+LOW = 0.06                                   # lower threshold of influence, frame-render --influence
 SEGMENT = 24                                 # frames for which what stands is made once: the tools' --segment
 REFERENCES = {"r": 1000, "q": 2000}          # two halves of the reference, by seed
 PARTS = {"updated": lambda blend: blend == 0, "in between": lambda blend: 0 < blend < 255, "gathered": lambda blend: blend == 255}

@@ -164,7 +164,7 @@ def measure_refine(options, runner):
     kinds = ["--kinds", "indirect,volume", "--frame", 12]
     (runner.folder / "base").mkdir(exist_ok=True)
     maps = {name: runner.folder / f"{name}.photons" for name in ("reference", "plain", "refined", "even")}
-    runner.run("photon-trace", scene, *frozen, *kinds, "--photons", "6M", "--groups", 2520, "--seed", 999, "-o", maps["reference"])
+    runner.run("photon-trace", scene, *frozen, *kinds, "--photons", "6M", "--seed", 999, "-o", maps["reference"])
     runner.run("frame-render", scene, *smoke, "--frame", 12, "--photons", maps["reference"], "--size", options.size, "--spp", 1,
                "--channels", "RGBA,layers,Z", "-o", runner.folder / "base/f.0012.exr")
     frame = {name: runner.folder / f"{name}.exr" for name in maps}

@@ -52,7 +52,7 @@ for map in other older; do
   irradcache-build points "$scene" --photons $map.photons --point-count 50 -o o.irradpoints 2>errors.txt || bad "$map: exit $?"
   [ -s errors.txt ] && bad "$map: $(cat errors.txt)"
 done
-header() { tempolux-info --export csv -o header.csv "$1"; head -1 header.csv; }
+header() { tempolux-info --export header.csv "$1"; head -1 header.csv; }
 accept=$HERE/../formats
 header "$accept/photons/accept/columns.photons" | grep 'bounce,wi_x,wi_y,wi_z,albedo_r,albedo_g,albedo_b' >/dev/null || bad 'csv without photons columns'
 header p.photons | grep 'wi_x\|albedo' && bad 'csv with columns that the file has not'
@@ -63,7 +63,7 @@ import csv, subprocess, sys
 sys.path.insert(0, sys.argv[1])
 from read_irradcache import read_irradcache
 name = sys.argv[1] + "/irradcache/accept/columns-influence-update.irradcache"
-subprocess.run(["tempolux-info", "--export", "csv", "-o", "all.csv", name], check=True)
+subprocess.run(["tempolux-info", "--export", "all.csv", name], check=True)
 rows, records = list(csv.DictReader(open("all.csv"))), read_irradcache(name).records
 assert len(rows) == len(records) > 0
 for row, record in zip(rows, records):

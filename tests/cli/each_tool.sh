@@ -51,6 +51,6 @@ each_tool() {
   "$1" aqm-compare aqm-compare "$in/x.exr" --reference-halves "$in/r_a.exr" "$in/r_b.exr" --json a.json --difference d.exr
   "$1" error-report error-report --run scene=S,curve=a,x=1 "$in/x.json" "$in/e.json" \
     --run scene=S,curve=a,x=2 "$in/x.json" "$in/e.json" -o report
-  "$1" tempolux-info tempolux-info "$in/p.photons" --export ply -o a.ply
+  "$1" tempolux-info tempolux-info "$in/p.photons" --export a.ply
   "$1" tempolux-info-png tempolux-info "$in/x.exr" --png a.png
 }

@@ -25,8 +25,8 @@ for type in irradpoints irradcache; do
 
   # Facts and rows of the worked example, against the second reader.
   tempolux-info --json "$example" >out.json || bad "$type: facts"
-  tempolux-info --export csv -o rows.csv "$example" || bad "$type: CSV"
-  tempolux-info --export ply -o points.ply "$example" || bad "$type: PLY"
+  tempolux-info --export rows.csv "$example" || bad "$type: CSV"
+  tempolux-info --export points.ply "$example" || bad "$type: PLY"
   PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$formats "${PYTHON:-python3}" - $type "$example" <<'END' || bad "$type: differs from the second reader"
 import csv, importlib, json, math, struct, sys
 name, path = sys.argv[1:]
@@ -75,6 +75,6 @@ assert f["share_of_samples"] == {"valid": 1, "dynamic": 1 / 3, "miss": 1 / 3, "n
 tempolux-info --diff "$example" "$accept/two-records.radsamples" >/dev/null
 [ $? = 1 ] || bad 'radsamples: files that differ: exit 1'
 
-tempolux-info --export csv -o rows.csv out.json 2>errors.txt
+tempolux-info --export rows.csv out.json 2>errors.txt
 [ $? = 2 ] && [ "$(wc -l <errors.txt)" = 1 ] || bad 'no points in JSON: exit 2, one line'
 exit $failed

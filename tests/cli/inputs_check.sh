@@ -34,7 +34,8 @@ keeps f.exr frame-render S.glb --size 8x6 --spp 1 --mask f.exr --base g.exr -o f
 mkdir plan && cp S.glb plan/plan.mk && cp S.glb plan/state.0000
 keeps plan/plan.mk scene-plan plan/plan.mk -o plan
 keeps plan/state.0000 photon-trace S.glb --photons 1k -o q.photons --state plan/state.0000 --depfile plan/state.0000
-keeps p.photons tempolux-info p.photons --export csv -o p.photons
+cp p.photons p.csv
+keeps p.csv tempolux-info p.csv --export p.csv
 keeps f.exr tempolux-info --png f.exr f.exr
 [ -e q.photons ] && bad 'an output beside the refused one was made'
 

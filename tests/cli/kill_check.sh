@@ -10,7 +10,7 @@ each_tool killed
 filled() { shift; full_disk.sh 1 "$@" || failed=1; }
 each_tool filled
 full_disk.sh 1024 photon-trace "$mirror" --photons 100k -o a.photons || failed=1
-full_disk.sh 256 tempolux-info "$in/p.photons" --export csv -o a.csv || failed=1
+full_disk.sh 256 tempolux-info "$in/p.photons" --export a.csv || failed=1
 
 # A folder that cannot be written; root may write anywhere but in /sys.
 mkdir closed && chmod a-w closed

@@ -29,8 +29,8 @@ cp ones text.vdb; : > nothing.vdb
 
 tiny="--size 8x8 --spp 1 --integrator path -q -o made.exr"
 for file in cube half double heat empty; do expect 0 '' frame-render "$furnace" --volume $file.vdb $tiny; done
-expect 0 '' frame-render "$furnace" --volume twins.vdb --volume-grid density:1 $tiny
-expect 0 '' frame-render "$furnace" --volume two.vdb --volume-grid soot $tiny
+expect 0 '' frame-render "$furnace" --volume twins.vdb:density:1 $tiny
+expect 0 '' frame-render "$furnace" --volume two.vdb:soot $tiny
 refused() { expect 2 "$2" frame-render "$furnace" --volume $1 $tiny; }
 refused negative.vdb 'negative.vdb: voxel (3, 4, 5) is -1'
 refused nan.vdb 'nan.vdb: voxel (3, 4, 5) is nan'
@@ -43,7 +43,7 @@ refused text.vdb 'text.vdb: is not an OpenVDB file'
 refused nothing.vdb 'is not an OpenVDB file'
 refused absent.vdb 'absent.vdb: cannot be opened'
 refused 'smoke.####.vdb' 'smoke.0000.vdb: cannot be opened'
-expect 2 "has no grid 'fire'; it has density" frame-render "$furnace" --volume cube.vdb --volume-grid fire $tiny
+expect 2 "has no grid 'fire'; it has density" frame-render "$furnace" --volume cube.vdb:fire $tiny
 expect 2 'name one' frame-render "$furnace" --sigma-t 3 $tiny
 expect 2 'is given 2 times for 1 volumes' frame-render "$furnace" --volume cube.vdb --sigma-t 3 --sigma-t 4 $tiny
 expect 2 'at most 1' frame-render "$furnace" --volume cube.vdb --albedo 2 $tiny

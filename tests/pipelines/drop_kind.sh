@@ -10,7 +10,7 @@ bad() { echo "FAILED: $*"; failed=1; }
 digest() { "$bin/tempolux-info" --digest "$1" | cut -d' ' -f1; }
 # flux KEY FILE: the total with this name, three numbers.
 flux() { "$bin/tempolux-info" --json "$2" | tr -d ' \n' | sed "s/.*\"$1\":\[\([^]]*\)\].*/\1/"; }
-trace() { "$bin/photon-trace" $scene --frame 3 --photons 20k --groups 4 "$@" -q || exit 1; }
+trace() { "$bin/photon-trace" $scene --frame 3 --photons 20k "$@" -q || exit 1; }
 
 trace --kinds direct,indirect -o - > "$work/both.photons"
 trace --kinds indirect -o "$work/indirect.photons"

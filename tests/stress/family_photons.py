@@ -172,34 +172,9 @@ def negative(s):
         s.refused(f"{' '.join([tool, *before])} of a dynamic map", run, out)
 
 
-@case("photons", "one group, many groups")
-def groups(s):
-    """Photon i is the same photon in whichever group it is counted: the same set of records, if the number of photons
-    is a multiple of the number of groups; else it is rounded up to one."""
+@case("photons", "numbers of photons that are none")
+def counts(s):
     scene = lamp_in_room(s)
-    sets = {}
-    for count in (1, 7, 630, 6300):
-        map_ = s.photons(scene, 6300, "--groups", count)
-        s.near(f"{count} groups: paths", 6300, map_["emitted_paths"], 0)
-        records = [bytes(b.records[i:i + 32]) for b in s.read_in_python(map_["path"]).blocks
-                   for i in range(0, len(b.records), 32)]
-        sets[count] = sorted(records)
-    for count in (7, 630, 6300):
-        s.true(f"{count} groups: the records of one group", sets[count] == sets[1])
-    means = []
-    for count in (1, 7, 6300):
-        files = [s.path(end) for end in (".photons", ".irradpoints", ".irradcache")]
-        s.done(s.run("photon-trace", scene, "--photons", 6300, "--kinds", "indirect", "--groups", count, "-o", files[0]))
-        s.done(s.run("irradcache-build", scene, "--photons", files[0], "--keep-points", files[1], "--point-count", "2k",
-                     "--rays", 100, "--size", "24x24", "-o", files[2]))
-        image = s.render(scene, (24, 24), 4, "--irradcache", files[2], "--points", files[1], "--channels", "RGBA,layers")
-        means.append(image)
-    for count, image in zip((7, 6300), means[1:]):   # the order of photons may round sums another way
-        s.near(f"{count} groups, cache: indirect light of one group", means[0].mean("indirect.G"), image.mean("indirect.G"), 1e-5)
-    for value in ("0", "16777217", "4294967297", "-1", "1e30"):
-        out = s.path(".photons")
-        run = s.run("photon-trace", scene, "--photons", "100", "--groups", value, "-o", out)
-        s.refused(f"--groups {value}", run, out)
     for value in ("-1", "1e30", "nan", "18446744073709551616", ""):
         out = s.path(".photons")
         s.refused(f"--photons '{value}'", s.run("photon-trace", scene, "--photons", value, "-o", out, timeout=20), out)

@@ -155,13 +155,9 @@ void Tool::volume_options() {
   VolumeOptions& volume = state_->common.volume;
   app.add_option("--volume", volume.files,
                  "OpenVDB file, or a pattern such as smoke.####.vdb, of a medium in metres of world space; replaces "
-                 "the media that the scene names; none: no media; repeat it for several media")
+                 "the media that the scene names; none: no media; repeat it for several media. smoke.vdb:soot reads "
+                 "the grid soot, smoke.vdb:soot:1 the second grid of that name, else density or the only density grid")
       ->type_name("FILE")
-      ->allow_extra_args(false);
-  app.add_option(
-         "--volume-grid", volume.grids,
-         "name of the volume's grid; NAME:1 is the second grid of that name [density, else the only density grid]")
-      ->type_name("NAME")
       ->allow_extra_args(false);
   parsed_option(app, "--volume-frames", "frames that have a file; other frames use the nearest one [all]", "",
                 [&volume](const std::string& text) {

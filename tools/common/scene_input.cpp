@@ -44,15 +44,15 @@ SceneInput::~SceneInput() {
 void SceneInput::add_environment() {
   const Common& common = tool_.common();
   const EnvironmentOptions options{common.environment_strength, common.environment_rotation_deg};
-  const std::string& light = common.environment;
-  if (light.empty()) return;
-  if (light.find_first_not_of("0123456789.,e+-") == std::string::npos) {  // a file of such a name: ./1
-    const std::array<float, 3> color = parse_color(light);
+  const std::string& value = common.environment;
+  if (value.empty()) return;
+  if (value.find_first_not_of("0123456789.,e+-") == std::string::npos) {  // a file of such a name: ./1
+    const std::array<float, 3> color = parse_color(value);
     scene_.environment =
         std::make_shared<const Environment>(uniform_environment(Rgb(color[0], color[1], color[2]), options));
   } else {
-    scene_.environment = std::make_shared<const Environment>(load_environment(light, options));
-    scene_.files.push_back(light);
+    scene_.environment = std::make_shared<const Environment>(load_environment(value, options));
+    scene_.files.push_back(value);
   }
   for (const std::string& warning : scene_.environment->warnings) scene_.warnings.push_back(warning);
   if (!scene_.environment->emits()) tool_.warn(scene_.environment->path + ": is black: it lights nothing");

@@ -42,7 +42,11 @@ std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
     VolumeSource source;
     source.place = "--volume " + options.files[i];
     source.pattern = options.files[i];
-    if (const auto* grid = value_for(options.grids, i, n, "--volume-grid")) source.grid = *grid;
+    const std::size_t end = source.pattern.find(".vdb:");
+    if (end != std::string::npos && !source.pattern.ends_with(".vdb")) {
+      source.grid = source.pattern.substr(end + 5);
+      source.pattern.resize(end + 4);
+    }
     if (const auto* sigma = value_for(options.sigma_t, i, n, "--sigma-t")) source.options.sigma_t = *sigma;
     if (const auto* albedo = value_for(options.albedo, i, n, "--albedo"))
       source.options.albedo = Rgb((*albedo)[0], (*albedo)[1], (*albedo)[2]);
@@ -61,10 +65,10 @@ VolumeInput::VolumeInput(Tool& tool, const Scene& scene) : tool_(tool) {
   const bool none = options.files.size() == 1 && options.files.front() == "none";
   if (options.files.empty()) sources_ = volumes_of(scene);
   else if (!none) sources_ = sources_of(options);
-  if ((options.files.empty() || none) && (!options.grids.empty() || !options.sigma_t.empty() ||
+  if ((options.files.empty() || none) && (!options.sigma_t.empty() ||
                                           !options.albedo.empty() || !options.phase_g.empty() || options.frames))
     throw InputError(
-        "--volume-grid, --volume-frames, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
+        "--volume-frames, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
 }
 
 int VolumeInput::last_frame() const {
