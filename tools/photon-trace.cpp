@@ -35,8 +35,8 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", map = "global",
-                             importance, paths, static_paths;
+  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", map = "global", importance, paths,
+                             static_paths;
   tools::UpdateArguments updating;
 };
 
@@ -305,7 +305,8 @@ int main(int argc, char** argv) {
   app.add_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map")
       ->type_name("FILE");
   tools::add_update_options(app, options.updating);
-  tool.common_options(tools::uses_scene | tools::uses_majorants | tools::uses_seed | tools::uses_camera | tools::uses_frames);
+  tool.common_options(tools::uses_scene | tools::uses_majorants | tools::uses_seed | tools::uses_camera |
+                      tools::uses_frames);
 
   return tool.run([&] {
     check(app, options);

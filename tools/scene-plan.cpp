@@ -28,8 +28,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, folder = "out", estimate, quality = "final", method = "frames",
-                     filter = "auto", report, measured;
+  std::string scene, folder = "out", estimate, quality = "final", method = "frames", filter = "auto", report, measured;
   std::vector<std::string> recipes, words;
   double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
   Wish wish;
@@ -145,9 +144,10 @@ void add_figures(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
   number("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
-  app.add_option("--words", options.words,
-                 "options of a stage instead of the preset's, such as 'pixels:--spp 4 --pixel-error 0'. Stages: points, "
-                 "records (irradcache-build), pixels (frame-render), smoke (volume-compose)")
+  app.add_option(
+         "--words", options.words,
+         "options of a stage instead of the preset's, such as 'pixels:--spp 4 --pixel-error 0'. Stages: points, "
+         "records (irradcache-build), pixels (frame-render), smoke (volume-compose)")
       ->type_name("STAGE:OPTIONS")
       ->allow_extra_args(false);
   text("--update", wish.update, "SHARE",
@@ -195,8 +195,7 @@ int main(int argc, char** argv) {
   std::string arguments = std::filesystem::current_path().string();
   for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
   return tool.run([&] {
-    if (options.scene.empty() && options.estimate.empty())
-      throw InputError("scene is required; see scene-plan --help");
+    if (options.scene.empty() && options.estimate.empty()) throw InputError("scene is required; see scene-plan --help");
     if (!options.scene.empty()) plan_range(tool, options, hash_hex(arguments));
     else std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
     return int(tools::exit_ok);

@@ -240,7 +240,8 @@ int main(int argc, char** argv) {
                  "pixel flow of the frames, EXR, one file per frame, or a pattern; if not given: the frames' own "
                  "channels forward and backward")
       ->type_name("FILE");
-  app.add_option("--frames", options.range, "filter these frames, each with the two before and after it in this range: 0-47")
+  app.add_option("--frames", options.range,
+                 "filter these frames, each with the two before and after it in this range: 0-47")
       ->type_name("SPEC");
   app.add_option("--position", options.position,
                  "number of the input frame that is filtered; 1: the first; 0: the middle one")

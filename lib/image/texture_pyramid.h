@@ -20,10 +20,10 @@ inline constexpr std::size_t kTextureTransfers = 3;
 /// Linear R, G, B and alpha, each in [0, 1].
 using Rgba = std::array<float, 4>;
 
-/// Level 0 is the image. Every further level is half as wide and high (rounded down, at least 1); each texel is the mean
-/// of the linear light over its area (for a cutout weighted by alpha, or the plain mean where all texels are hidden).
-/// Texels are stored as codes of the image's kind (sRGB or linear, 8 or 16 bits), rounded to nearest, but to 0 only if
-/// all texels of the area are 0. Alpha is always linear. (0, 0) is the top left corner, (1, 1) the lower right.
+/// Level 0 is the image. Every further level is half as wide and high (rounded down, at least 1); each texel is the
+/// mean of the linear light over its area (for a cutout weighted by alpha, or the plain mean where all texels are
+/// hidden). Texels are stored as codes of the image's kind (sRGB or linear, 8 or 16 bits), rounded to nearest, but to 0
+/// only if all texels of the area are 0. Alpha is always linear. (0, 0) is the top left corner, (1, 1) the lower right.
 class TexturePyramid {
  public:
   TexturePyramid(CodedPixels pixels, TextureTransfer transfer);

@@ -73,11 +73,10 @@ void require_lights(const Scene& scene) {
     if (node.light >= 0 && max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return;
     if (node.mesh >= 0 && std::ranges::any_of(scene.meshes[std::size_t(node.mesh)].primitives, emits)) return;
   }
-  throw InputError(
-      scene.path +
-      ": lights: nothing in the scene emits light; give --environment FILE.hdr or 1,1,1 (make: "
-      "ENVIRONMENT=FILE.hdr, SKY=1,1,1); from Blender tick Include > Punctual Lights, or export by "
-      "tempolux_export.py, which keeps area lights and the world");
+  throw InputError(scene.path +
+                   ": lights: nothing in the scene emits light; give --environment FILE.hdr or 1,1,1 (make: "
+                   "ENVIRONMENT=FILE.hdr, SKY=1,1,1); from Blender tick Include > Punctual Lights, or export by "
+                   "tempolux_export.py, which keeps area lights and the world");
 }
 
 }  // namespace tempolux

@@ -56,7 +56,7 @@ enum CommonOptions : unsigned {
 /// Media that the command line names. A list has one value for all volumes, or one for each.
 struct VolumeOptions {
   std::vector<std::string> files;  ///< FILE.vdb or FILE.vdb:GRID; "none": without the media that the scene names
-  std::vector<float> sigma_t;  ///< 1/m
+  std::vector<float> sigma_t;      ///< 1/m
   std::vector<std::array<float, 3>> albedo;
   std::vector<float> phase_g;
   std::optional<std::pair<int, int>> frames;  ///< frames that have files

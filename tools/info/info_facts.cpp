@@ -87,65 +87,65 @@ Facts identity_facts(const formats::Identity& identity) {
   return facts;
 }
 
-FileType file_type(const std::string& path) {
+namespace {
+
+/// What tempolux-info can do with a type of file. A file's type follows from its first bytes, not from its name.
+struct FileType {
+  const char* magic;
+  Facts (*facts)(const std::string& path, bool allow_nan);
+  Facts (*difference)(const std::string& a, const std::string& b);
+  void (*export_as)(const std::string& path, const std::string& format, Output& output) = nullptr;
+};
+
+template <Facts (*facts)(const std::string&)>
+Facts always_valid(const std::string& path, bool) {
+  return facts(path);
+}
+
+constexpr FileType kPhotons{"\x89TPHOT", always_valid<photon_facts>, photon_difference, export_photons};
+constexpr FileType kJson{"{", always_valid<json_facts>, json_difference};
+constexpr FileType kTypes[] = {
+    kPhotons,
+    {"\x89TPATH", always_valid<paths_facts>, paths_difference},
+    {"\x89TIRPT", always_valid<irradpoints_facts>, irradpoints_difference, export_irradpoints},
+    {"\x89TIRRC", always_valid<irradcache_facts>, irradcache_difference, export_irradcache},
+    {"\x89TRADS", always_valid<radsamples_facts>, radsamples_difference},
+    {"\x89TMESH", always_valid<meshirrad_facts>, meshirrad_difference},
+    {"\x76\x2f\x31\x01", image_facts, image_difference},
+    {"\x89PNG", image_facts, image_difference},
+    {"\xff\xd8\xff", image_facts, image_difference},
+    {"#?", image_facts, image_difference},
+    {"II*", image_facts, image_difference},
+    {"MM", image_facts, image_difference}};
+
+const FileType& type_of(const std::string& path) {
   const std::string head = head_of(path);
-  const std::size_t size = head.size();
-  if (head.starts_with("\x89TPHOT")) return FileType::photons;
-  if (head.starts_with("\x89TPATH")) return FileType::paths;
-  if (head.starts_with("\x89TIRPT")) return FileType::irradpoints;
-  if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
-  if (head.starts_with("\x89TRADS")) return FileType::radsamples;
-  if (head.starts_with("\x89TMESH")) return FileType::meshirrad;
-  if (path == "-") return FileType::photons;  // the reader of photons reports any error
-  if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{') return FileType::json;
-  for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
-    if (head.starts_with(magic)) return FileType::image;
+  for (const FileType& type : kTypes)
+    if (head.starts_with(type.magic)) return type;
+  if (path == "-") return kPhotons;  // the reader of photons reports any error
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && head.substr(first).starts_with(kJson.magic)) return kJson;
   if (head.starts_with("glTF")) throw InputError(path + ": a scene; scene-plan says what is in it");
   throw InputError(path + ": not a file we know; it is none of our formats, no image and no JSON");
 }
 
-Facts facts_of(const std::string& path, bool allow_nan) {
-  switch (file_type(path)) {
-    case FileType::photons: return photon_facts(path);
-    case FileType::paths: return paths_facts(path);
-    case FileType::irradpoints: return irradpoints_facts(path);
-    case FileType::irradcache: return irradcache_facts(path);
-    case FileType::radsamples: return radsamples_facts(path);
-    case FileType::meshirrad: return meshirrad_facts(path);
-    case FileType::image: return image_facts(path, allow_nan);
-    case FileType::json: break;
-  }
-  return json_facts(path);
-}
+}  // namespace
+
+bool is_meshirrad(const std::string& path) { return type_of(path).difference == meshirrad_difference; }
+
+Facts facts_of(const std::string& path, bool allow_nan) { return type_of(path).facts(path, allow_nan); }
 
 Facts difference_of(const std::string& a, const std::string& b) {
-  const FileType type = file_type(a);
-  if (type != file_type(b)) throw InputError(b + ": of another type than " + a + "; nothing to compare");
-  switch (type) {
-    case FileType::photons: return photon_difference(a, b);
-    case FileType::paths: return paths_difference(a, b);
-    case FileType::irradpoints: return irradpoints_difference(a, b);
-    case FileType::irradcache: return irradcache_difference(a, b);
-    case FileType::radsamples: return radsamples_difference(a, b);
-    case FileType::meshirrad: return meshirrad_difference(a, b);
-    case FileType::image: return image_difference(a, b);
-    case FileType::json: break;
-  }
-  return json_difference(a, b);
+  const FileType& type = type_of(a);
+  if (type.difference != type_of(b).difference)
+    throw InputError(b + ": of another type than " + a + "; nothing to compare");
+  return type.difference(a, b);
 }
 
 void export_points(const std::string& path, const std::string& format, Output& output) {
-  switch (file_type(path)) {
-    case FileType::photons: return export_photons(path, format, output);
-    case FileType::irradpoints: return export_irradpoints(path, format, output);
-    case FileType::irradcache: return export_irradcache(path, format, output);
-    case FileType::paths:
-    case FileType::radsamples:
-    case FileType::meshirrad:
-    case FileType::image:
-    case FileType::json: break;
-  }
-  throw InputError(path + ": holds no points to export; use --png or --json");
+  const FileType& type = type_of(path);
+  if (!type.export_as) throw InputError(path + ": holds no points to export; use --png or --json");
+  type.export_as(path, format, output);
 }
 
 std::string facts_as_text(const Facts& facts) {

@@ -19,9 +19,9 @@ namespace tempolux::tools {
 
 using Facts = nlohmann::ordered_json;
 
-enum class FileType { photons, paths, irradpoints, irradcache, radsamples, meshirrad, image, json };
-/// From the first bytes, not from the name; "-" is a stream of photons. Throws InputError.
-FileType file_type(const std::string& path);
+/// True for a .meshirrad file, by its first bytes. Throws InputError for a file that is none of ours, no image, no
+/// JSON.
+bool is_meshirrad(const std::string& path);
 
 /// The lines of a history.
 Facts lines_of(const std::string& text);

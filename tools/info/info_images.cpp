@@ -143,7 +143,7 @@ Facts image_difference(const std::string& a, const std::string& b) {
 }
 
 void write_picture(const std::string& path, const PictureOptions& options, Output& output) {
-  const bool mesh = file_type(path) == FileType::meshirrad;
+  const bool mesh = is_meshirrad(path);
   const Image image = mesh ? mesh_picture(path, options.layer) : load_shown(path, options);
   PreviewOptions preview{options.layer, options.exposure_stops};
   if (mesh && !options.layer.empty() && !preview.exposure_stops) preview.exposure_stops = 0;  // 33 frames are white

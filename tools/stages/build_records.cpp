@@ -44,8 +44,8 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
 /// frame.
 RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                          const SceneFrame& first, std::function<SceneFrame(int)> at) {
-  RecordCameras cameras{
-      frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}};
+  RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {},
+                        {}};
   cameras.at = [&options, &first, at = std::move(at)](int number) {
     SceneFrame frame = at(number);
     check_lit_alike(options, frame, first);
