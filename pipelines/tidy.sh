@@ -7,7 +7,9 @@ find "$1" -type f -name '.?*.tmp.?*.[1-9]*' -exec sh -c '
   for file; do
     process=${file##*.} host=${file%.*}
     case $process in *[!0-9]* | ??????????*) continue;; esac
-    if [ "${host##*.tmp.}" = "$(uname -n)" ]; then [ ! -d "/proc/$process" ]; else [ -n "$(find "$file" -mtime +0)" ]; fi &&
+    if [ "${host##*.tmp.}" = "$(uname -n)" ]; then [ ! -d "/proc/$process" ]
+    else [ -n "$(find "$file" -mtime +0)" ]; fi &&
       { ! command -v flock > /dev/null || flock -n "$file" true; } && rm -f "$file" && echo removed || echo kept
   done' sh {} + |
-  awk '{ n[$1]++ } END { print "removed " n["removed"] + 0 " unfinished files, kept " n["kept"] + 0 " that may still be written" }'
+  awk '{ n[$1]++ }
+    END { printf "removed %d unfinished files, kept %d that may still be written\n", n["removed"], n["kept"] }'

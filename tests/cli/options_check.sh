@@ -17,6 +17,7 @@ frame-render --help | grep -A2 -e '--neighbours N' | tr -d '\n' | grep -q '(2 to
 
 # Limits.
 expect 2 "--spp: '0' is not from 1 to 16777216" $render -o made.exr --spp 0
+expect 2 "--environment: '1,2': not a colour" $render -o made.exr --environment 1,2
 expect 2 "--fail-above: 'nan' is not 0 or more" aqm-compare a.exr b.exr --fail-above nan
 
 # What would be ignored.

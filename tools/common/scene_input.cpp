@@ -47,7 +47,10 @@ void SceneInput::add_environment() {
   const std::string& value = common.environment;
   if (value.empty()) return;
   if (value.find_first_not_of("0123456789.,e+-") == std::string::npos) {  // a file of such a name: ./1
-    const std::array<float, 3> color = parse_color(value);
+    std::array<float, 3> color{};
+    try {
+      color = parse_color(value);
+    } catch (const InputError& error) { throw InputError(std::string("--environment: ") + error.what()); }
     scene_.environment =
         std::make_shared<const Environment>(uniform_environment(Rgb(color[0], color[1], color[2]), options));
   } else {
