@@ -41,7 +41,7 @@ struct RadsamplesRecord {
   std::array<std::array<float, 3>, 3> rotational{}, translational{};  ///< as in .irradcache
   float clearance_reach = 1;                                          ///< m, > 0 or +inf
   std::array<std::uint8_t, 16> clearance{};
-  float further_share = 0;     ///< further rays per cell that the unevenness of its light asks for
+  float further_share = 0;     ///< reserved
   float birth_weight = 0;      ///< sum of the weights that earlier records had at its place when it was placed
   std::uint32_t reserved = 0;  ///< written as 0, read as 0
 

@@ -1,5 +1,4 @@
-// lib/density/nearest_select.h -- private to lib/density: appends to lists and selects from them, eight floats at a
-// time.
+// lib/density/nearest_select.h -- private to lib/density: lists of photons, filled eight at a time, and selection.
 #pragma once
 
 #include <immintrin.h>
@@ -8,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace tempolux {
 
@@ -31,6 +31,11 @@ struct CandidateList {
   std::uint32_t* photon;
   std::size_t count = 0;
 
+  /// Sorts by squared distance, then by photon.
+  std::uint64_t key(std::size_t i) const {
+    return std::uint64_t(std::bit_cast<std::uint32_t>(distance2[i])) << 32 | photon[i];
+  }
+
   /// Appends the lanes set in `mask`.
   void append(__m256 d2, __m256i photons, unsigned mask) {
     const __m256i lanes =
@@ -41,8 +46,8 @@ struct CandidateList {
   }
 };
 
-/// Keeps the k nearest entries (1 <= k <= count) by (distance2, photon), in list order; returns the place of the
-/// farthest one. Distances must be >= 0 and not NaN.
-std::size_t keep_nearest(CandidateList& list, std::size_t k);
+/// Keeps the k nearest entries (1 <= k <= count) by key(), in list order; returns the place of the farthest one.
+/// Distances must be >= 0 and not NaN. `keys`: memory.
+std::size_t keep_nearest(CandidateList& list, std::size_t k, std::vector<std::uint64_t>& keys);
 
 }  // namespace tempolux

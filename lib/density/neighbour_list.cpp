@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include "lib/density/nearest_select.h"
 #include "lib/density/photon_index.h"
 
 namespace tempolux {
@@ -25,23 +26,22 @@ void NeighbourList::sort_by_distance() {
   farthest_ = count_ - 1;
   // Squared distances on a surface are uniformly distributed, so one bucket per entry almost sorts them, and insertion
   // sort finishes. If they are not, buckets fill up and std::sort is used.
-  const auto key = [this](std::size_t i) {
-    return std::uint64_t(std::bit_cast<std::uint32_t>(distance2_[i])) << 32 | photon_[i];
-  };
+  const CandidateList list{distance2_.data(), photon_.data(), count_};
   const float largest = *std::max_element(distance2_.begin(), distance2_.begin() + std::ptrdiff_t(count_));
   const float scale = float(count_) / largest;
   const bool even = std::isfinite(scale) && scale > 0;
   const auto bucket = [&](std::size_t i) { return even ? std::size_t(distance2_[i] * scale) : 0; };
 
-  bucket_end_.assign(count_ + 2, 0);
-  for (std::size_t i = 0; i < count_; ++i) ++bucket_end_[bucket(i)];
+  thread_local std::vector<std::uint32_t> bucket_end;
+  bucket_end.assign(count_ + 2, 0);
+  for (std::size_t i = 0; i < count_; ++i) ++bucket_end[bucket(i)];
   std::uint32_t sum = 0, fullest = 0;
-  for (std::uint32_t& end : bucket_end_) {
+  for (std::uint32_t& end : bucket_end) {
     fullest = std::max(fullest, end);
     end = sum += end;
   }
   keys_.resize(count_);
-  for (std::size_t i = 0; i < count_; ++i) keys_[--bucket_end_[bucket(i)]] = key(i);
+  for (std::size_t i = 0; i < count_; ++i) keys_[--bucket_end[bucket(i)]] = list.key(i);
   if (fullest > kFullBucket) std::sort(keys_.begin(), keys_.end());
   else
     for (std::size_t i = 1; i < count_; ++i) {

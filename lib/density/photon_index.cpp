@@ -6,7 +6,6 @@
 
 #include "formats/large_pages.h"
 #include "lib/core/parallel.h"
-#include "lib/density/parallel_select.h"
 
 namespace tempolux {
 
@@ -19,7 +18,7 @@ struct PhotonIndex::Item {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kChunk = 1 << 14, kBoxChunk = 1 << 16;
+constexpr std::size_t kChunk = 1 << 14;
 
 struct Range {
   std::size_t first, last;
@@ -36,7 +35,7 @@ std::unique_ptr<T[]> room_for(std::size_t count) {
 /// Partitions items around the n-th by coordinate, ties by source: the two halves as sets do not depend on the method.
 template <int axis, class Item>
 void select(std::span<Item> items, std::size_t n) {
-  parallel_nth_element(items, n, [](const Item& a, const Item& b) {
+  std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(n), items.end(), [](const Item& a, const Item& b) {
     return a.position[axis] < b.position[axis] || (a.position[axis] == b.position[axis] && a.source < b.source);
   });
 }
@@ -46,19 +45,6 @@ Box3 box_of(const Item* first, const Item* last) {
   Box3 box;
   for (; first != last; ++first) box.add(Vec3{first->position[0], first->position[1], first->position[2]});
   return box;
-}
-
-/// The same with all threads: the first cuts have fewer ranges than there are threads.
-template <class Item>
-Box3 box_of_many(const Item* first, const Item* last) {
-  const auto count = std::size_t(last - first);
-  std::vector<Box3> boxes((count + kBoxChunk - 1) / kBoxChunk);
-  parallel_chunks(count, kBoxChunk, [&](std::size_t begin, std::size_t end) {
-    boxes[begin / kBoxChunk] = box_of(first + begin, first + end);
-  });
-  Box3 whole;
-  for (const Box3& box : boxes) whole.add(box);
-  return whole;
 }
 
 /// Cuts the range's box across its longest side. The left part gets a power of two of full leaves, so that any aligned
@@ -72,7 +58,7 @@ bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& lef
     std::sort(first, last, [](const Item& a, const Item& b) { return a.source < b.source; });
     return false;
   }
-  const Box3 box = std::size_t(last - first) > kBoxChunk ? box_of_many(first, last) : box_of(first, last);
+  const Box3 box = box_of(first, last);
   const Vec3 extent = box.upper - box.lower;
   const std::size_t mid = range.first + std::bit_ceil(leaves) / 2 * leaf_size;
   const std::span<Item> cut = items.subspan(range.first, range.last - range.first);

@@ -62,8 +62,7 @@ class NeighbourList {
   friend struct PhotonSearch;
   std::vector<float> distance2_;
   std::vector<std::uint32_t> photon_;
-  std::vector<std::uint64_t> keys_;        // memory for sort_by_distance()
-  std::vector<std::uint32_t> bucket_end_;  // memory for sort_by_distance()
+  std::vector<std::uint64_t> keys_;  ///< memory for selection and sorting
   std::size_t count_ = 0, farthest_ = 0;
   /// An estimate of the squared radius that holds k photons of an index; the last few estimates are kept.
   struct Guess {

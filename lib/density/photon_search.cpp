@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
-#include <type_traits>
 
 #include "lib/density/nearest_select.h"
 #include "lib/density/photon_index.h"
@@ -122,7 +121,6 @@ struct PhotonSearch {
   }
 
   /// Appends the photons of a leaf that pass; there must be room for a whole leaf.
-  template <bool kFilter, bool kFlat>
   void scan_leaf(std::uint32_t first) {
     const PhotonIndex::Leaf& leaf = index.leaves_[first >> kLeafBits];
     __m256i photons = _mm256_add_epi32(_mm256_set1_epi32(int(first)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
@@ -130,29 +128,28 @@ struct PhotonSearch {
       const __m256 dx = _mm256_sub_ps(_mm256_load_ps(leaf.x + i), px);
       const __m256 dy = _mm256_sub_ps(_mm256_load_ps(leaf.y + i), py);
       const __m256 dz = _mm256_sub_ps(_mm256_load_ps(leaf.z + i), pz);
-      __m256 d2 = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
-      if constexpr (kFlat) {
-        const __m256 h =
-            _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, nx), _mm256_mul_ps(dy, ny)), _mm256_mul_ps(dz, nz));
-        d2 = _mm256_add_ps(d2, _mm256_mul_ps(flat_factor, _mm256_mul_ps(h, h)));
-      }
-      __m256 pass = _mm256_cmp_ps(d2, bound, _CMP_LE_OQ);
-      if constexpr (kFilter) pass = _mm256_and_ps(pass, filter(index.filters_[first >> kLeafBits].code + i));
+      const __m256 round = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)),
+                                         _mm256_mul_ps(dz, dz)),
+                   h = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, nx), _mm256_mul_ps(dy, ny)),
+                                     _mm256_mul_ps(dz, nz)),
+                   d2 = _mm256_add_ps(round, _mm256_mul_ps(flat_factor, _mm256_mul_ps(h, h)));
+      const __m256 pass =
+          _mm256_and_ps(_mm256_cmp_ps(d2, bound, _CMP_LE_OQ), filter(index.filters_[first >> kLeafBits].code + i));
       list.append(d2, photons, unsigned(_mm256_movemask_ps(pass)));
       photons = _mm256_add_epi32(photons, _mm256_set1_epi32(8));
     }
   }
 
-  /// The children of a node within the bound, nearest first (kSorted) or in tree order. If the query tests normals
-  /// (kFilter), children whose normals all face another way are left out.
-  template <bool kSorted, bool kFilter>
+  /// The children of a node within the bound, nearest first (kSorted) or in tree order. Children whose normals all
+  /// face another way are left out.
+  template <bool kSorted>
   unsigned children_within(Entry entry, std::array<std::uint64_t, 8>& keys) const {
     const std::uint32_t first = std::uint32_t(entry.key);
     const unsigned child_bits = kLeafBits + 3 * entry.level;
     const std::uint64_t number = std::uint64_t(first) >> (child_bits + 3);
     const __m256 d2 = box_distance2(index.tree_.node(entry.level, number));
-    __m256 wanted = _mm256_cmp_ps(d2, bound, _CMP_LE_OQ);
-    if constexpr (kFilter) wanted = _mm256_and_ps(wanted, may_face(index.normals_.node(entry.level, number)));
+    const __m256 wanted =
+        _mm256_and_ps(_mm256_cmp_ps(d2, bound, _CMP_LE_OQ), may_face(index.normals_.node(entry.level, number)));
     unsigned mask = unsigned(_mm256_movemask_ps(wanted));
     alignas(32) std::array<std::uint32_t, 8> bits;
     _mm256_store_si256(reinterpret_cast<__m256i*>(bits.data()), _mm256_castps_si256(d2));
@@ -169,33 +166,31 @@ struct PhotonSearch {
   }
 
   void tighten(std::size_t k) {
-    const std::size_t place = keep_nearest(list, k);
+    const std::size_t place = keep_nearest(list, k, found.keys_);
     set_bound(list.distance2[place], list.photon[place]);
     found.farthest_ = place;
   }
 
   /// Finds an upper bound of the k-th distance: takes the nearest subtrees until they hold k photons that pass.
-  template <bool kFilter, bool kFlat>
   void approach(std::size_t k) {
     reserve(k + PhotonIndex::kLeafSize);
     Stack stack(root());
     std::array<std::uint64_t, 8> keys;
     while (!stack.empty()) {
       const Entry entry = stack.pop();
-      const unsigned children = children_within<true, kFilter>(entry, keys);
+      const unsigned children = children_within<true>(entry, keys);
       if (entry.level > 0) {
         stack.push(keys, children, entry.level - 1);
         continue;
       }
       for (unsigned c = 0; c < children; ++c) {
-        scan_leaf<kFilter, kFlat>(std::uint32_t(keys[c]));
+        scan_leaf(std::uint32_t(keys[c]));
         if (list.count >= k) return tighten(k);
       }
     }
   }
 
   /// Finds the k nearest photons within the bound, in tree order. Fast if the bound is not much too large.
-  template <bool kFilter, bool kFlat>
   void collect(std::size_t k) {
     const std::size_t limit = 2 * k + 32;  // number of candidates at which the bound is tightened
     reserve(limit + PhotonIndex::kLeafSize);
@@ -205,14 +200,14 @@ struct PhotonSearch {
     while (!stack.empty()) {
       const Entry entry = stack.pop();
       if (entry.key > last_key) continue;
-      const unsigned children = children_within<false, kFilter>(entry, keys);
+      const unsigned children = children_within<false>(entry, keys);
       if (entry.level > 0) {
         stack.push(keys, children, entry.level - 1);
         continue;
       }
       for (unsigned c = 0; c < children; ++c) {
         if (keys[c] > last_key) continue;
-        scan_leaf<kFilter, kFlat>(std::uint32_t(keys[c]));
+        scan_leaf(std::uint32_t(keys[c]));
         if (list.count >= limit) tighten(k);
       }
     }
@@ -220,51 +215,35 @@ struct PhotonSearch {
   }
 
   /// Searches within the guess if there is one (finite, above 0), and without it if the guess was too small.
-  template <bool kFilter, bool kFlat>
   void nearest(std::size_t k, float max_radius2, float guess2) {
     if (guess2 > 0 && std::isfinite(guess2)) {
       set_bound(std::min(guess2, max_radius2), 0xffffffffu);
-      collect<kFilter, kFlat>(k);
+      collect(k);
       if (list.count == k || guess2 >= max_radius2) return;
       list.count = 0;
       set_bound(max_radius2, 0xffffffffu);
     }
-    approach<kFilter, kFlat>(k);
-    collect<kFilter, kFlat>(k);
+    approach(k);
+    collect(k);
   }
 
-  template <bool kFilter, bool kFlat>
   void within() {
     Stack stack(root());
     std::array<std::uint64_t, 8> keys;
     while (!stack.empty()) {
       const Entry entry = stack.pop();
-      const unsigned children = children_within<false, kFilter>(entry, keys);
+      const unsigned children = children_within<false>(entry, keys);
       if (entry.level > 0) {
         stack.push(keys, children, entry.level - 1);
         continue;
       }
       reserve(8 * PhotonIndex::kLeafSize);
-      for (unsigned c = 0; c < children; ++c) scan_leaf<kFilter, kFlat>(std::uint32_t(keys[c]));
+      for (unsigned c = 0; c < children; ++c) scan_leaf(std::uint32_t(keys[c]));
     }
   }
 
   Entry root() const { return {0, unsigned(index.tree_.level_count()) - 1}; }
 };
-
-namespace {
-
-/// Calls search(filter, flat) with the two switches of a query as compile-time constants.
-template <class Search>
-void specialised(const PhotonQuery& query, Search search) {
-  const bool filter = query.min_cos > kAnyNormal || (query.kinds & kAllKinds) != kAllKinds;
-  if (filter && query.flattening != 1) search(std::true_type{}, std::true_type{});
-  else if (filter) search(std::true_type{}, std::false_type{});
-  else if (query.flattening != 1) search(std::false_type{}, std::true_type{});
-  else search(std::false_type{}, std::false_type{});
-}
-
-}  // namespace
 
 void PhotonIndex::find_nearest(const PhotonQuery& query, int k, NeighbourList& found) const {
   if (k < 1 || k > kMaxNeighbours) throw std::invalid_argument("find_nearest: k must be 1 to 512");
@@ -273,9 +252,7 @@ void PhotonIndex::find_nearest(const PhotonQuery& query, int k, NeighbourList& f
   const float max_radius2 = query.max_radius * query.max_radius;
   float& guess2 = found.guess_for(*this, k).radius2;
   PhotonSearch search(*this, query, found);
-  specialised(query, [&](auto filter, auto flat) {
-    search.nearest<decltype(filter)::value, decltype(flat)::value>(std::size_t(k), max_radius2, guess2);
-  });
+  search.nearest(std::size_t(k), max_radius2, guess2);
   found.count_ = search.list.count;
   if (found.count_ == std::size_t(k)) guess2 = kGuessFactor * found.distance2_[found.farthest_];
 }
@@ -284,7 +261,7 @@ void PhotonIndex::find_within(const PhotonQuery& query, NeighbourList& found) co
   found.count_ = 0;
   if (size_ == 0 || !is_finite(query.point)) return;
   PhotonSearch search(*this, query, found);
-  specialised(query, [&](auto filter, auto flat) { search.within<decltype(filter)::value, decltype(flat)::value>(); });
+  search.within();
   found.count_ = search.list.count;
   found.farthest_ = 0;
 }

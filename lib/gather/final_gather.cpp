@@ -8,44 +8,21 @@
 #include "lib/gather/hemisphere.h"
 
 namespace tempolux {
-namespace {
+void GatherRays::clear() {
+  rays.clear();
+  keys.clear();
+  cells.clear();
+}
 
-/// Rays from one place, and the radiance that arrives along them.
-struct Shots {
-  const GatherDirections directions;
-  std::vector<Ray> rays;
-  std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> cells;  ///< cell of each ray
-  std::vector<Rgb> radiance;
-  std::vector<float> distance;
-  std::vector<RadianceSource> sources;
-
-  Shots(const SurfacePoint& from, Vec3 normal, const GatherStrata& strata, std::uint64_t seed)
-      : directions(from, normal, strata.rings, strata.sectors, gather_key(from.position, normal, seed)) {}
-
-  void clear() {
-    rays.clear();
-    keys.clear();
-    cells.clear();
-  }
-  /// Adds the sample-th ray of a cell, if that ray starts above the surface.
-  void aim(std::uint32_t cell, std::uint32_t sample) {
-    Ray ray;
-    std::uint64_t key = 0;
-    if (!directions.aim(cell, sample, ray, key)) return;
-    rays.push_back(ray);
-    keys.push_back(key);
-    cells.push_back(cell);
-  }
-  void shoot(const IncomingRadiance& incoming, GatherCounts& counts) {
-    radiance.resize(rays.size());
-    distance.resize(rays.size());
-    sources.resize(rays.size());
-    incoming(rays, keys, radiance, distance, counts, sources);
-  }
-};
-
-}  // namespace
+bool GatherRays::aim(const GatherDirections& directions, std::uint32_t cell, std::uint32_t draw) {
+  Ray ray;
+  std::uint64_t key = 0;
+  if (!directions.aim(cell, draw, ray, key)) return false;
+  rays.push_back(ray);
+  keys.push_back(key);
+  cells.push_back(cell);
+  return true;
+}
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                          const GatherOptions& options)
@@ -89,57 +66,45 @@ float FinalGather::distance(const SurfacePoint& from, Vec3 normal, GatherCounts&
   return met > 0 ? float(met / inverse) : INFINITY;
 }
 
+void FinalGather::follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot, GatherCounts& counts) const {
+  shot.radiance.resize(shot.rays.size());
+  shot.distance.resize(shot.rays.size());
+  shot.sources.resize(shot.rays.size());
+  incoming_(shot.rays, shot.keys, shot.radiance, shot.distance, counts, shot.sources);
+  const Bsdf bsdf = incoming_.bsdf_at(from, normal);
+  if (!(bsdf.has_specular() && bsdf.has_diffuse())) return;
+  for (std::size_t i = 0; i < shot.rays.size(); ++i) {
+    const float weight = bsdf.arrival_weight(dot(shot.rays[i].direction, normal));
+    shot.radiance[i] *= weight;
+    shot.sources[i].noise *= weight;
+  }
+}
+
 IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts,
                                      float ray_share) const {
   thread_local Hemisphere sky;
-  thread_local std::vector<std::uint8_t> further;
-  thread_local std::vector<Rgb> noise;  // by cell, of points
+  thread_local GatherRays shot;
   std::size_t halvings = 0;
   for (; halvings < kFewer && ray_share <= 0.5f; ++halvings) ray_share *= 2;
   const GatherStrata& strata = strata_[kFewer - halvings];
-  const std::vector<std::uint32_t>& order = strata.order;
-  Shots shots(from, normal, strata, options_.seed);
+  const std::uint64_t key = gather_key(from.position, normal, options_.seed);
+  const GatherDirections directions(from, normal, strata.rings, strata.sectors, key);
+  shot.clear();
+  for (const std::uint32_t c : strata.order) shot.aim(directions, c, 0);
+  follow(from, normal, shot, counts);
+
   sky.reset(strata.rings, strata.sectors);
   const float closest = closest_distance(from);
-  const Bsdf bsdf = incoming_.bsdf_at(from, normal);
-  const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
-  const auto shoot = [&] {
-    shots.shoot(incoming_, counts);
-    if (coated)
-      for (std::size_t i = 0; i < shots.rays.size(); ++i) {
-        const float weight = bsdf.arrival_weight(dot(shots.rays[i].direction, normal));
-        shots.radiance[i] *= weight, shots.sources[i].noise *= weight;
-      }
-  };
-
-  for (const std::uint32_t c : order) shots.aim(c, 0);
-  shoot();
-  noise.assign(sky.radiance.size(), Rgb(0.0f));
-  for (std::size_t i = 0; i < shots.rays.size(); ++i) {
-    sky.radiance[shots.cells[i]] = shots.radiance[i];
-    noise[shots.cells[i]] = shots.sources[i].noise;
-    sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);  // 0 if the ray meets nothing
+  Rgb points_noise{0.0f};
+  for (std::size_t i = 0; i < shot.rays.size(); ++i) {
+    sky.radiance[shot.cells[i]] = shot.radiance[i];
+    sky.inverse_distance[shot.cells[i]] = 1 / std::max(shot.distance[i], closest);  // 0 if the ray meets nothing
+    points_noise += shot.sources[i].noise * (kPi / float(strata.cells()));
   }
-  IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal);
+  IrradianceRecord record = gathered_record(sky, from, normal);
   record.radius_unclamped = distance(from, normal, counts);
-
-  // Sends further rays where light varies. The value of a cell becomes the mean over all of its rays.
-  sky.further_rays(further);
-  shots.clear();
-  for (const std::uint32_t c : order)
-    for (std::uint32_t sample = 1; sample <= further[c]; ++sample) shots.aim(c, sample);
-  shoot();
-  for (std::size_t c = 0; c < further.size(); ++c)
-    if (further[c] > 0) sky.radiance[c] *= 1 / float(1 + further[c]), noise[c] *= 1 / float(1 + further[c]);
-  for (std::size_t i = 0; i < shots.rays.size(); ++i) {
-    const std::uint32_t c = shots.cells[i];
-    sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
-    noise[c] += shots.sources[i].noise * (1 / float(1 + further[c]));
-  }
-  sky.irradiance_and_rotational_gradient(shots.directions.frame(), record);
-  const std::uint64_t key = gather_key(from.position, normal, options_.seed);
   record.noise = sky.noise(key);
-  for (const Rgb of_cell : noise) record.points_noise += of_cell * (kPi / float(noise.size()));
+  record.points_noise = points_noise;
   add_explicit(from, key, record, counts);
   return record;
 }

@@ -15,10 +15,24 @@ namespace tempolux {
 
 struct GatherOptions {
   std::uint64_t seed = 0;
-  /// Number of rays where light is uniform; rounded to M rings x N_phi sectors with N_phi about pi M.
+  /// Number of rays; rounded to M rings x N_phi sectors with N_phi about pi M.
   int rays = 500;
   const BrightPoints* bright = nullptr;  ///< points that are sampled explicitly, if any (bright_points.h)
   int bright_samples = 100;              ///< explicit samples per record
+};
+
+/// Rays from one place, at most one through each cell, and what arrives along them.
+struct GatherRays {
+  std::vector<Ray> rays;
+  std::vector<std::uint64_t> keys;  ///< of the random numbers at their hits
+  std::vector<std::uint32_t> cells;
+  std::vector<Rgb> radiance;    ///< W/m^2/sr
+  std::vector<float> distance;  ///< m; infinity: the ray meets nothing
+  std::vector<RadianceSource> sources;
+
+  void clear();
+  /// Adds the draw-th ray of a cell. False if that ray would start below the surface.
+  bool aim(const GatherDirections& directions, std::uint32_t cell, std::uint32_t draw);
 };
 
 /// Gathers the indirect light that arrives at surface points. Thread-safe.
@@ -27,13 +41,14 @@ class FinalGather {
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
   /// Irradiance at `from` over the hemisphere around `normal` (unit, on the lit side), with its gradients. Sends about
-  /// `rays` rays, one through each cell of equal weight, and more where light varies (hemisphere.h). Below a coat,
-  /// light is weighted by Bsdf::arrival_weight, as photons are: the coat reflects more of it at grazing angles.
-  /// radius_unclamped receives distance(); limit_radius computes the radius from it. Random numbers are keyed by the
-  /// position, so a record does not depend on other records. `noise` is Hemisphere::noise, whose mean square is above
-  /// the variance: place_records() measures by how much. ray_share in [1/8, 1]: the share of `rays` that the place
-  /// needs, rounded up to a power of two.
+  /// `rays` rays, one through each cell of equal weight (hemisphere.h). radius_unclamped receives distance();
+  /// limit_radius computes the radius from it. Random numbers are keyed by the position, so a record does not depend on
+  /// other records. `noise` is Hemisphere::noise, whose mean square is above the variance: place_records() measures by
+  /// how much. ray_share in [1/8, 1]: the share of `rays` that the place needs, rounded up to a power of two.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
+  /// Computes the light along the rays. Below a coat, light is weighted by Bsdf::arrival_weight, as photons are: the
+  /// coat reflects more of it at grazing angles.
+  void follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot, GatherCounts& counts) const;
   /// R [m], the harmonic mean distance of hits of cosine-distributed rays; infinite if all rays miss. Sends 64 rays,
   /// and 64 more at a time up to 512 until 8 have hit something; R then has a relative error of 1/3. These rays are
   /// independent of those that estimate light. If both were the same rays, a record whose rays happen to meet a small
@@ -48,9 +63,6 @@ class FinalGather {
   /// Adds GatherOptions::bright_samples explicit samples to a record of gather rays, if there are bright points. Random
   /// numbers are keyed by `key` = gather_key() of the record's place and normal.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
-
-  /// Estimates the radiance along gather rays.
-  const IncomingRadiance& incoming() const { return incoming_; }
 
  private:
   static constexpr int kDistanceRays = 64, kEnoughMet = 8;

@@ -114,43 +114,4 @@ Rgb Hemisphere::noise(std::uint64_t key) const {
   return Rgb(sum * (M_PI / double(std::max<std::size_t>(1, radiance.size()))));
 }
 
-void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
-  const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
-  counts.assign(M * N, 0);
-  // By cell: its own light, the sum of its own and the two neighbouring sectors', and the same for squares.
-  std::vector<double> light(M * N), three(M * N), three2(M * N);
-  double total = 0;
-  for (std::size_t c = 0; c < light.size(); ++c) {
-    light[c] = channel_sum(Rgbd(radiance[c]));
-    total += light[c];
-  }
-  const auto square = [](double x) { return x * x; };
-  const auto beside = [&](std::size_t j, std::size_t k) {
-    return std::pair(light[j * N + (k + N - 1) % N], light[j * N + (k + 1) % N]);
-  };
-  for (std::size_t j = 0; j < M; ++j)
-    for (std::size_t k = 0; k < N; ++k) {
-      const auto [left, right] = beside(j, k);
-      const std::size_t c = j * N + k;
-      three[c] = left + right + light[c];
-      three2[c] = square(left) + square(right) + square(light[c]);
-    }
-  for (std::size_t j = 0; j < M; ++j)
-    for (std::size_t k = 0; k < N; ++k) {
-      const auto [left, right] = beside(j, k);
-      const std::size_t c = j * N + k;
-      double sum = left + right, sum2 = square(left) + square(right), n = 2;
-      const auto add_ring = [&](std::size_t there) {
-        sum += three[there];
-        sum2 += three2[there];
-        n += 3;
-      };
-      if (j > 0) add_ring(c - N);
-      if (j + 1 < M) add_ring(c + N);
-      const double others = (total - light[c]) / double(M * N - 1);
-      const double deviation = std::sqrt(std::max(0.0, sum2 / n - square(sum / n)));
-      if (others > 0) counts[c] = std::uint8_t(std::min(double(kMostFurther), deviation / others + 0.5));
-    }
-}
-
 }  // namespace tempolux

@@ -36,8 +36,7 @@ class Hemisphere {
   ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
   ///                   + v_k- sum_j (sin t_j+ - sin t_j-) / min(r_jk, r_j,k-1) (L_jk - L_j,k-1) }
   ///
-  /// u_k: tangent at the middle of sector k. v_k-: tangent at its lower edge + 90 degrees. Call it while each cell
-  /// holds the radiance and distance of one ray: the mean of several rays in a cell that an edge cuts has no distance.
+  /// u_k: tangent at the middle of sector k. v_k-: tangent at its lower edge + 90 degrees.
   void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
   /// A number with a random sign whose mean square is at least the variance of the irradiance [W/m^2]:
@@ -48,14 +47,6 @@ class Hemisphere {
   /// N))^2 times the squared differences of the light that arrives in the two cells of each pair. `key`: of the
   /// random signs.
   Rgb noise(std::uint64_t key) const;
-
-  /// Number of further rays for each cell: the standard deviation of the cells around it (eight, five at the rims) over
-  /// the mean of all others, rounded, at most kMostFurther. More rays are sent where light varies [Neyman 1934]. A
-  /// cell's own ray has no influence on the number, so the mean over its rays is unbiased. If a bright ray caused
-  /// further rays in its own cell, bright cells would be corrected downwards and dark ones would stay, and light would
-  /// be lost.
-  void further_rays(std::vector<std::uint8_t>& counts) const;
-  static constexpr int kMostFurther = 8;
 
  private:
   std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }

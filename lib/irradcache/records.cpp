@@ -194,17 +194,6 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, f
   return result;
 }
 
-float RecordStore::expected_further_share(Vec3 position, Vec3 normal) const {
-  float weights = 0, further = 0;
-  any_near(options_.least_cosine, position, normal, [&](const Entry& entry) {
-    const float weight = weight_of(entry, entry.radius, options_.least_cosine, position, normal);
-    weights += weight;
-    further += weight * records_[entry.record].further_share;
-    return false;
-  });
-  return weights > 0 ? further / weights : 0;
-}
-
 float RecordStore::weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const {
   const Vec3 position = records_[record].position, normal = records_[record].normal;
   float sum = 0;

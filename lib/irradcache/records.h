@@ -23,7 +23,6 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
-  float further_share = 0;   ///< further rays per cell that the unevenness of its light calls for; not in files
   Clearance clearance;       ///< the record does not count outside of it; measured about `normal`
   std::uint32_t object = 0;  ///< the object it lies on
   /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (gathered_record.h); 0: unknown
@@ -87,8 +86,6 @@ class RecordStore {
   /// the top of the plate. A record is not valid either if an obstacle lies between (clearance). If no record is
   /// valid, records within the angle of kWideCosine are used.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
-  /// Weighted mean of further_share over the records that are valid at a place; 0 without any.
-  float expected_further_share(Vec3 position, Vec3 normal) const;
   /// Sum of the weights, at a record's own place, of the records added before it, except the marked ones (`marked` may
   /// be empty).
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;

@@ -1,7 +1,6 @@
 #include "lib/temporal/kept_hemisphere.h"
 
 #include <bit>
-#include <numeric>
 
 #include "lib/core/random.h"
 #include "lib/gather/gathered_record.h"
@@ -56,8 +55,7 @@ void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float dist
   keep_radiance(kept, cell, radiance);
 }
 
-IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units,
-                             float* further_share) {
+IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units) {
   thread_local Hemisphere sky;
   sky.reset(kept.record.rings, kept.record.sectors);
   const float closest = closest_distance(place);
@@ -66,15 +64,7 @@ IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& pla
     sky.radiance[c] = rgb_of(formats::decode_rgbe(sample.rgbe));
     if (sample.distance != 0) sky.inverse_distance[c] = 1 / std::max(units.decode(sample.distance), closest);
   }
-  const Frame frame(kept.normal());
-  IrradianceRecord made = record_of_first_rays(sky, frame, place, kept.normal());
-  sky.irradiance_and_rotational_gradient(frame, made);
-  if (further_share) {
-    thread_local std::vector<std::uint8_t> further;
-    sky.further_rays(further);
-    *further_share = float(std::accumulate(further.begin(), further.end(), 0u)) / float(further.size());
-  }
-  return made;
+  return gathered_record(sky, place, kept.normal());
 }
 
 void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record) {
@@ -88,7 +78,6 @@ void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record
   }
   record.radius = made.radius;
   record.radius_unclamped = made.radius_unclamped;
-  record.further_share = made.further_share;
   record.clearance_reach = made.clearance.reach;
   record.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(made.clearance.shares);
 }
@@ -105,7 +94,6 @@ IrradianceRecord result_of(const formats::RadsamplesRecord& record) {
   }
   made.radius = record.radius;
   made.radius_unclamped = record.radius_unclamped;
-  made.further_share = record.further_share;
   made.clearance = {record.clearance_reach, std::bit_cast<Clearance::Shares>(record.clearance)};
   return made;
 }

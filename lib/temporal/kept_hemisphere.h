@@ -55,10 +55,8 @@ void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio);
 void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
               bool may_anchor, SampleUnits units);
 
-/// Computes irradiance, gradients and unlimited radii from the samples alone. If asked for, `further_share` receives
-/// the number of further rays per cell that the unevenness of the light asks for.
-IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units,
-                             float* further_share = nullptr);
+/// Computes irradiance and gradients from the samples alone.
+IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units);
 
 /// keep_result copies a record's computed values into its file record; the other function copies them back.
 void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record);

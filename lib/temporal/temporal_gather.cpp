@@ -14,9 +14,6 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSteps = 15;  ///< numbers of strata: up to 9 times the rays, in steps of 2^(1/4), and one step more
-/// Step of 2^(1/4): with equally many rays noise is 9 % more, as with 19 % fewer rays (docs/methods/temporal.md)
-constexpr int kStepForEvenness = 1;
 constexpr int kFadingFrames = 4;
 constexpr float kLeastOfHidden = 1.0f / 64;  ///< share of the smallest radius, so that radii stay above 0
 constexpr std::uint32_t kAhead = 12;         ///< cells whose light is prefetched into the processor's cache
@@ -73,14 +70,11 @@ TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& 
       placement_(placement),
       options_(options),
       units_{diagonal},
-      gather_(scene.tracer, scene.lights, scene.lookup, gather) {
-  for (int step = 0; step < kSteps; ++step)
-    strata_.emplace_back(int(std::lround(double(gather.rays) * std::exp2(0.25 * step))));
-}
+      gather_(scene.tracer, scene.lights, scene.lookup, gather),
+      strata_(gather.rays) {}
 
 const GatherStrata& TemporalGather::strata_of(int rings, int sectors) const {
-  for (const GatherStrata& strata : strata_)
-    if (strata.rings == rings && strata.sectors == sectors) return strata;
+  if (strata_.rings == rings && strata_.sectors == sectors) return strata_;
   thread_local GatherStrata other;  // for a file that was made with another number of rays
   if (other.rings != rings || other.sectors != sectors) other = GatherStrata(rings, sectors);
   return other;
@@ -109,34 +103,20 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
 void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
                            const GatherStrata& strata, std::span<const std::uint8_t> marks,
                            GatherCounts& counts) const {
-  thread_local std::vector<Ray> rays;
-  thread_local std::vector<std::uint64_t> keys;
-  thread_local std::vector<std::uint32_t> cells;
-  thread_local std::vector<Rgb> radiance;
-  thread_local std::vector<float> distance;
-  thread_local std::vector<RadianceSource> sources;
-  rays.clear(), keys.clear(), cells.clear();
+  thread_local GatherRays shot;
+  shot.clear();
   for (const std::uint32_t c : strata.order) {
-    if (!is_traced(marks[c])) continue;
-    Ray ray;
-    std::uint64_t key = 0;
-    if (directions.aim(c, kept.draw_of(c), ray, key)) {
-      rays.push_back(ray), keys.push_back(key), cells.push_back(c);
-      continue;
-    }
+    if (!is_traced(marks[c]) || shot.aim(directions, c, kept.draw_of(c))) continue;
     kept.samples[c] = {{}, 0, formats::age_of(kept.samples[c])};
     kept.anchors[c] = kNone;
   }
-  radiance.resize(rays.size()), distance.resize(rays.size()), sources.resize(rays.size());
-  gather_.incoming()(rays, keys, radiance, distance, counts, sources);
-  const Bsdf bsdf = gather_.incoming().bsdf_at(place, kept.normal());
-  const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (coated) radiance[i] *= bsdf.arrival_weight(dot(rays[i].direction, kept.normal()));
-    const bool bright = is_bright(scene_, sources[i].point);
-    sources[i].partial |= bright;
-    keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], sources[i].point < scene_.anchored_points && !bright,
-             units_);
+  gather_.follow(place, kept.normal(), shot, counts);
+  for (std::size_t i = 0; i < shot.rays.size(); ++i) {
+    RadianceSource& source = shot.sources[i];
+    const bool bright = is_bright(scene_, source.point);
+    source.partial |= bright;
+    keep_ray(kept, shot.cells[i], shot.radiance[i], shot.distance[i], source,
+             source.point < scene_.anchored_points && !bright, units_);
   }
 }
 
@@ -157,9 +137,7 @@ bool TemporalGather::outlived(const SurfacePoint& place, const formats::Radsampl
 void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes,
                             GatherCounts& counts) const {
   const bool born = !changes;
-  float further = kept.record.further_share;
-  IrradianceRecord made = reconstruct(kept, place, units_, born ? &further : nullptr);
-  made.further_share = further;
+  IrradianceRecord made = reconstruct(kept, place, units_);
   made.radius_unclamped = kept.record.radius_unclamped / placement_.error_bound;
   if (born || near_a_mover(kept, *changes, made.radius_unclamped))
     made.radius_unclamped = gather_.distance(place, kept.normal(), counts);
@@ -178,7 +156,7 @@ void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& c
   finish(place_of(kept), kept, &changes, counts);
 }
 
-KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const {
+KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts) const {
   KeptHemisphere kept;
   formats::RadsamplesRecord& r = kept.record;
   const SurfacePoint& place = seen.surface;
@@ -191,17 +169,12 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share,
   r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set
                                                              : formats::SurfaceSet::dynamic_set;
   r.footprint = seen.footprint;
-  // Chooses as many cells as FinalGather::gather traces rays, so that each cell can be traced again alone.
-  // FinalGather's further rays go to cells with uneven light and reduce noise more than uniform rays do; one more
-  // step of cells makes up for this.
-  const double steps = kStepForEvenness + 4 * std::log2(1 + double(further_share));
-  const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
-  r.rings = std::uint16_t(strata.rings);
-  r.sectors = std::uint16_t(strata.sectors);
-  kept.samples.resize(strata.cells());
-  kept.anchors.assign(strata.cells(), kNone);
-  const std::vector<std::uint8_t> marks(strata.cells(), all);
-  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata, marks, counts);
+  r.rings = std::uint16_t(strata_.rings);
+  r.sectors = std::uint16_t(strata_.sectors);
+  kept.samples.resize(strata_.cells());
+  kept.anchors.assign(strata_.cells(), kNone);
+  const std::vector<std::uint8_t> marks(strata_.cells(), all);
+  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata_, marks, counts);
   finish(place, kept, nullptr, counts);
   return kept;
 }
@@ -357,7 +330,7 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
-    batch[slot] = birth(seen, store.expected_further_share(seen.surface.position, seen.normal), gathered);
+    batch[slot] = birth(seen, gathered);
     return result_of(batch[slot].record);
   };
   source.added = [&](std::size_t slot) {

@@ -95,7 +95,7 @@ class TemporalGather {
              const GatherStrata& strata, std::span<const std::uint8_t> marks, GatherCounts& counts) const;
   void finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes, GatherCounts& counts) const;
   void sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const;
-  KeptHemisphere birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const;
+  KeptHemisphere birth(const SeenPoint& seen, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;
   void fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;
@@ -106,7 +106,7 @@ class TemporalGather {
   TemporalOptions options_;
   SampleUnits units_;
   FinalGather gather_;
-  std::vector<GatherStrata> strata_;  ///< numbers of cells in steps of 2^(1/4)
+  GatherStrata strata_;  ///< of new records
 };
 
 }  // namespace tempolux

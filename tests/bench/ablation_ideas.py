@@ -51,8 +51,6 @@ IDEAS = (
     Idea("answers by cell", "which point answers in a cell of half a spacing is found once", "points",
          (("lib/irradcache/points.cpp", "  std::size_t slot = mix64(q.cell) & mask_;\n  for (", "  std::size_t slot = mix64(q.cell) & mask_;\n  if (mask_ > 0) return {search_cell(q.cell)};\n  for ("),)),
     # ---- records
-    Idea("further rays", "cells of the hemisphere get up to eight more rays where their neighbours are uneven", "cache",
-         (("lib/gather/hemisphere.cpp", "if (others > 0) counts[c] =", "if (others > 1e37) counts[c] ="),)),
     Idea("gradients", "records are extrapolated by their gradients", "cache",
          (("lib/gather/place_records.cpp", "  for (Vec3& g : record.translational) g *= float(kept);\n", "  record.translational = record.rotational = {};\n"),)),
     Idea("narrow angle", "records count within 10 degrees at the preset's error bound, not 20", "cache",

@@ -20,7 +20,8 @@
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
-#include "lib/gather/final_gather.h"
+#include "lib/gather/gather_directions.h"
+#include "lib/gather/incoming_radiance.h"
 #include "lib/gather/hemisphere.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/photon/photon_trace.h"
@@ -80,7 +81,7 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
 }
 
 /// Stratified cosine rays from points of the lit sides, those of one place one after the other, in the order in which
-/// FinalGather follows them.
+/// IncomingRadiance follows them.
 std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradiancePoint>& points,
                              const GatherStrata& strata, const Options& options) {
   std::vector<Ray> rays;
@@ -153,16 +154,15 @@ struct FurtherRays {
 };
 
 /// CPU seconds to gather along all rays, which are `each` for one place.
-double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, std::size_t each, GatherCounts& counts,
-                   double& sum) {
+double time_gather(const IncomingRadiance& incoming, const std::vector<Ray>& rays, std::size_t each,
+                   GatherCounts& counts, double& sum) {
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = mix64(i);
   std::vector<Rgb> radiance(each);
   std::vector<float> distance(each);
   const double start = cpu_seconds();
   for (std::size_t first = 0; first < rays.size(); first += each) {
-    gather.incoming()(std::span(rays).subspan(first, each), std::span(keys).subspan(first, each), radiance, distance,
-                      counts);
+    incoming(std::span(rays).subspan(first, each), std::span(keys).subspan(first, each), radiance, distance, counts);
     for (const Rgb& l : radiance) sum += double(l.g);
   }
   return cpu_seconds() - start;
@@ -193,21 +193,19 @@ void run(const Options& options) {
 
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene tree = bare_tree(frame, device);
-  GatherOptions gather_options;
-  gather_options.rays = options.rays;
   const PointLookup first_lookup(points, spacing, point_clearance(tracer));
   const GatherStrata strata(options.rays);
   const std::vector<Ray> rays = gather_rays(tracer, points, strata, options);
   double distance = 0, sum = 0;
   GatherCounts counts;
-  time_gather(FinalGather(tracer, lights, first_lookup, gather_options), rays, strata.cells(), counts, sum);
+  time_gather(IncomingRadiance(tracer, lights, first_lookup), rays, strata.cells(), counts, sum);
   const double per_ray = double(counts.rays) / double(rays.size());
   const FurtherRays further(tracer, lights, rays, double(counts.near_hits) / double(rays.size()),
                             double(counts.shadow_rays) / double(rays.size()));
   std::vector<double> bare, bare_first, with_lookup, filling, ratio, ratio_first;
   for (int repeat = 0; repeat < 5; ++repeat) {
     const PointLookup lookup(points, spacing, point_clearance(tracer));
-    const FinalGather gather(tracer, lights, lookup, gather_options);
+    const IncomingRadiance gather(tracer, lights, lookup);
     bare_first.push_back(time_bare(tree, rays, distance));
     bare.push_back(bare_first.back() + time_bare(tree, further.cosine, distance) +
                    time_bare_shadow(tree, further.shadow, distance));

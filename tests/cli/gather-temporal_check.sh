@@ -15,7 +15,7 @@ for f in 0 1 2 3 4; do
   photon-trace "$moving" --frame $f --photons 20k -o p.photons -q &&
   irradcache-build points "$moving" --frame $f --photons p.photons --point-count 1k -o p.000$f.irradpoints -q || bad "points of frame $f"
 done
-temporal() { gather-temporal final "$moving" -q --size 48x27 --rays 64 "$@"; }
+temporal() { gather-temporal final "$moving" -q --size 48x27 --rays 80 "$@"; }
 range() { folder=$1; shift; mkdir -p "$folder"; temporal --frames 0-4 --points p.####.irradpoints -o "$folder/s.####.radsamples" --cache "$folder/c.####.irradcache" "$@"; }
 
 # A range, each frame alone, and any number of threads: the same files.
@@ -50,7 +50,7 @@ cmp chain.radsamples range/s.0002.radsamples || bad 'in place: another file'
 photon-trace "$still" --photons 20k -o p.photons -q && irradcache-build points "$still" --photons p.photons --point-count 1k -o still.irradpoints -q || bad still
 for f in 0 1 2; do cp still.irradpoints still.$f.irradpoints; done
 mkdir still
-gather-temporal final "$still" -q --size 48x27 --rays 64 --frames 0-2 --points still.#.irradpoints -o still/s.#.radsamples --cache still/c.#.irradcache \
+gather-temporal final "$still" -q --size 48x27 --rays 80 --frames 0-2 --points still.#.irradpoints -o still/s.#.radsamples --cache still/c.#.irradcache \
   --stats still.json || bad 'what stands'
 [ "$(tempolux-info --digest still/s.* | cut -d' ' -f1 | sort -u | wc -l)" = 1 ] || bad 'what stands: other samples'
 [ "$(tempolux-info --digest still/c.* | cut -d' ' -f1 | sort -u | wc -l)" = 1 ] || bad 'what stands: other records'
@@ -58,11 +58,11 @@ gather-temporal final "$still" -q --size 48x27 --rays 64 --frames 0-2 --points s
 r = json.load(open("still.json"))["results"]
 assert all(r[name] == 0 for f in "12" for name in (f"update_rays.{f}", f"birth_rays.{f}"))' || bad 'what stands: rays'
 
-# Frames in which nothing changed are overlays of the one before: 200 of 1000 bytes a record and the points, the same digest, and as --previous as good.
+# Frames in which nothing changed are overlays of the one before: 200 of 1160 bytes a record (80 cells) and the points, the same digest, and as --previous as good.
 small() { [ $(($(wc -c <"$1") * 4)) -lt "$(wc -c <"$2")" ]; }
 small still/s.1.radsamples still/s.0.radsamples && small still/s.2.radsamples still/s.0.radsamples || bad "what stands: no overlays: $(ls -l still)"
 for f in 0 1; do
-  gather-temporal final "$still" -q --size 48x27 --rays 64 --frame 2 --points still.2.irradpoints --previous still/s.$f.radsamples -o from$f.radsamples \
+  gather-temporal final "$still" -q --size 48x27 --rays 80 --frame 2 --points still.2.irradpoints --previous still/s.$f.radsamples -o from$f.radsamples \
     --cache from.irradcache --depfile from$f.d || bad "from frame $f"
 done
 cmp from0.radsamples from1.radsamples || bad 'another file from an overlay than from its base'
@@ -78,7 +78,7 @@ small rest/s.0048.radsamples rest/s.0047.radsamples && small rest/s.0049.radsamp
 small rest/s.0046.radsamples rest/s.0045.radsamples && bad "an overlay of what moves: $(ls -l rest)"
 cp -r rest again
 rm again/s.0047.radsamples
-refuses 's.0047.radsamples: cannot open' gather-temporal final "$moving" -q --frame 49 --segment 60 --points p.0049.irradpoints --size 48x27 --rays 64 \
+refuses 's.0047.radsamples: cannot open' gather-temporal final "$moving" -q --frame 49 --segment 60 --points p.0049.irradpoints --size 48x27 --rays 80 \
   --previous again/s.0048.radsamples -o refused --cache refused.c
 
 # --high: samples hold the low part, explicit samples of bright points come on top in each frame. S2 has no bright spot: a limit so low that a third of the points have a

@@ -41,47 +41,5 @@ TEST(Hemisphere, NoiseHasTheVarianceOfTheIrradiance) {
   EXPECT_EQ(sky.noise(1).g, 0);
 }
 
-/// All cells on one side of a meridian are lit: only cells along the border get further rays. Next to the border three
-/// of eight neighbours are dark, and the mean of all cells is a half: sqrt(15/64) / (1/2) = 0.97, one further ray.
-/// Other cells get none.
-TEST(Hemisphere, FurtherRaysFallWhereLightIsUneven) {
-  constexpr int kRings = 10, kSectors = 30;
-  Hemisphere sky;
-  sky.reset(kRings, kSectors);
-  for (int j = 0; j < kRings; ++j)
-    for (int k = 0; k < kSectors / 2; ++k) sky.radiance[std::size_t(j * kSectors + k)] = Rgb(2.0f);
-  std::vector<std::uint8_t> counts;
-  sky.further_rays(counts);
-  for (int j = 0; j < kRings; ++j)
-    for (int k = 0; k < kSectors; ++k) {
-      const bool border = k % (kSectors / 2) == 0 || k % (kSectors / 2) == kSectors / 2 - 1;
-      EXPECT_EQ(int(counts[std::size_t(j * kSectors + k)]), border ? 1 : 0) << j << ' ' << k;
-    }
-  for (Rgb& l : sky.radiance) l = Rgb(0.3f);
-  sky.further_rays(counts);
-  for (const int count : counts) EXPECT_EQ(count, 0);
-}
-
-/// The number of a cell's further rays does not depend on the cell's own ray, but on the rays of other cells.
-TEST(Hemisphere, ACellsOwnRayHasNoSayInItsFurtherOnes) {
-  Hemisphere sky;
-  sky.reset(5, 16);
-  for (std::size_t c = 0; c < sky.radiance.size(); ++c) sky.radiance[c] = Rgb(float(mix64(c) % 100 < 15 ? 40 : 1));
-  std::vector<std::uint8_t> before, after;
-  sky.further_rays(before);
-  bool others = false;
-  for (std::size_t c = 0; c < sky.radiance.size(); ++c) {
-    const Rgb own = sky.radiance[c];
-    for (const float value : {0.0f, 7.0f, 1e5f}) {
-      sky.radiance[c] = Rgb(value);
-      sky.further_rays(after);
-      EXPECT_EQ(after[c], before[c]) << c << ' ' << value;
-      others |= after != before;
-    }
-    sky.radiance[c] = own;
-  }
-  EXPECT_TRUE(others);
-}
-
 }  // namespace
 }  // namespace tempolux
