@@ -117,8 +117,34 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
+/// By pixel how much of the spread light of a layer it gets: the median of the layer's light within kNear, plus the
+/// error that the pixel may have; 0 where the pixel gets none. The median ignores single bright samples and keeps the
+/// rims of surfaces.
+std::vector<double> weights_of(const SampledPixels& samples, const std::vector<Layers>& pixels,
+                               const std::vector<double>& errors, Layer layer) {
+  const int width = samples.width, height = samples.height;
+  std::vector<double> weight(pixels.size());
+  parallel_chunks(std::size_t(height), 1, [&](std::size_t row, std::size_t) {
+    std::vector<double> near;
+    for (int x = 0, y = int(row); x < width; ++x) {
+      const std::size_t pixel = row * std::size_t(width) + std::size_t(x);
+      if (!(pixels[pixel].coverage > 0) || !samples.takes_part(pixel)) continue;
+      near.clear();
+      for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
+        for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i) {
+          const double light = channel_mean(Rgbd(pixels[std::size_t(j) * std::size_t(width) + std::size_t(i)][layer]));
+          near.push_back(std::isfinite(light) ? std::max(0.0, light) : 0.0);
+        }
+      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
+      std::nth_element(near.begin(), middle, near.end());
+      if (std::isfinite(errors[pixel])) weight[pixel] = *middle + errors[pixel];
+    }
+  });
+  return weight;
+}
+
 /// Spreads `excess` (one level of one layer) as w blur(excess / blur(w)). Its sum is that of `excess` for any weights
-/// w, here 0 and 1.
+/// w.
 void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight,
             const std::vector<double>& blurred, std::vector<Layers>& pixels) {
   const int r = 1 << excess.front().level;
@@ -177,10 +203,9 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
 }
 
 std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels,
-                               const std::vector<double>& radiances) {
+                               const std::vector<double>& errors) {
   const int width = samples.width, last = last_level(width, samples.height);
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  const std::vector<double> errors = errors_of(samples, radiances);
   parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
     for (int x = 0; x < width; ++x)
       excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
@@ -208,7 +233,7 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
 
 std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels) {
   std::vector<std::size_t> found;
-  for (const Excess& excess : all_excess(samples, pixels, radiances_of(pixels)))
+  for (const Excess& excess : all_excess(samples, pixels, errors_of(samples, radiances_of(pixels))))
     if (excess.samples < kJudges && (found.empty() || found.back() != excess.pixel)) found.push_back(excess.pixel);
   return found;
 }
@@ -216,7 +241,8 @@ std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
   const int width = samples.width, height = samples.height;
   const std::vector<double> radiances = radiances_of(pixels);
-  std::vector<Excess> all = all_excess(samples, pixels, radiances);
+  const std::vector<double> errors = errors_of(samples, radiances);
+  std::vector<Excess> all = all_excess(samples, pixels, errors);
   if (all.empty()) return 0;
   const double light = std::accumulate(radiances.begin(), radiances.end(), 0.0);
   double moved = 0;
@@ -227,18 +253,17 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
       value = float(double(value) - e.radiance[c]);
     }
   }
-  std::vector<double> weight(pixels.size()), blurred;
-  for (std::size_t p = 0; p < pixels.size(); ++p) weight[p] = pixels[p].coverage > 0 && samples.takes_part(p) ? 1 : 0;
+  std::vector<double> weight, blurred;
   std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) {
-    return a.level != b.level ? a.level < b.level : a.layer < b.layer;
+    return a.layer != b.layer ? a.layer < b.layer : a.level < b.level;
   });
   for (std::size_t first = 0, end; first < all.size(); first = end) {
     for (end = first; end < all.size() && all[end].level == all[first].level && all[end].layer == all[first].layer;)
       ++end;
-    if (first == 0 || all[first].level != all[first - 1].level) {
-      blurred = weight;
-      blur(blurred, width, height, 1 << all[first].level);
-    }
+    const Layer layer = all[first].layer;
+    if (first == 0 || layer != all[first - 1].layer) weight = weights_of(samples, pixels, errors, layer);
+    blurred = weight;
+    blur(blurred, width, height, 1 << all[first].level);
     spread({all.data() + first, end - first}, width, height, weight, blurred, pixels);
   }
   return light > 0 ? moved / light : 0;

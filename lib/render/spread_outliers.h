@@ -58,9 +58,10 @@ struct SampledPixels {
 /// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the largest of
 /// three values: the error that the pixel may have, the light that the pixel's other samples (FurtherSamples
 /// included) show in that layer, and the light that the 24 pixels around show there. The rest is taken out of
-/// `pixels` (sums of parts) and spread over so many pixels around that it is below the allowed error in each. Pixels
-/// without a surface (coverage 0) receive none. The sum of a layer over the picture stays the same up to rounding.
-/// Returns the share of the picture's light that was spread.
+/// `pixels` (sums of parts) and spread over so many pixels around that it is below the allowed error in each where
+/// these show the same light. A pixel receives light in proportion to the median of the layer's light around it plus
+/// its allowed error; a pixel without a surface (coverage 0) receives none. The sum of a layer over the picture stays
+/// the same up to rounding. Returns the share of the picture's light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
 
 /// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.

@@ -94,6 +94,28 @@ TEST(SpreadOutliers, TwoSamplesDoNotConfirmEachOther) {
   EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
 }
 
+/// The left half of the picture is black, the right half shows 1, and 30 pixels there have a sample of 1000. Together
+/// they spread 30 x 249 over 96000 pixels: if all pixels got the same, each would get .08, and the black half would
+/// glow above the error .05. A pixel's weight is .05 in the black and 1.05 in the bright half. B changes by less than a
+/// tenth from a pixel of the rim to the next for boxes of 17 and more, so the black side of the rim gets at most 1.1 x
+/// .05 / 1.05 = .053 of what the bright side gets. Of the 25 pixels around
+/// a pixel at the rim 15 are on its own side, so the median is that of its side.
+TEST(SpreadOutliers, ABlackSurfaceDoesNotGlow) {
+  Even even(320, 300);
+  for (std::size_t p = 0; p < even.parts.size(); ++p)
+    if (p % 320 < 160) even.set(p, {Rgb(0.0f), Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)});
+  for (std::size_t i = 0; i < 30; ++i)
+    even.set((5 + 10 * i) * 320 + 190, {Rgb(1.0f), Rgb(1000.0f), Rgb(1.0f), Rgb(1.0f)});
+  const std::vector<Layers> before = even.sums(), pixels = even.spread();
+  for (std::size_t y = 0; y < 300; ++y) {
+    const float black = pixels[y * 320 + 159][Layer::indirect].g, bright = pixels[y * 320 + 160][Layer::indirect].g - 1;
+    ASSERT_GT(bright, 0.05f) << y;
+    ASSERT_LT(black, 0.053f * bright) << y;
+    for (std::size_t x = 0; x < 160; ++x) ASSERT_LT(pixels[y * 320 + x][Layer::indirect].g, kError) << x << ' ' << y;
+  }
+  EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(before, Layer::indirect, 1), 1e-6 * 96000);
+}
+
 /// In a corner, in a picture so small that all pixels are close to a border, next to pixels without a surface, and
 /// with errors that differ: the sum stays, and no light goes to pixels without a surface. A red sample gives no
 /// green.
