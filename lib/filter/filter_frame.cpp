@@ -39,32 +39,19 @@ class Candidates {
   /// Adds candidates from light that was collected from `frames` frames; the group's raw light is from one.
   void add(const BothHalves& collected, int frames) {
     const Plane variance = smoothed(group_.surfaces, group_.variance);
-    std::vector<BothHalves> fitted;
+    std::optional<BothHalves> fitted;
     const Surfaces& on = group_.surfaces;
-    if (scales_ > 0) fitted.push_back(fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance));
-    if (scales_ > 1) fitted.push_back(fit(on, fitted[0], &fitted[0], kLarge, variance));
+    if (scales_ > 0) fitted = fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance);
+    if (scales_ > 1) fitted = fit(on, *fitted, &*fitted, kLarge, variance);
     std::array<std::vector<ColourPlane>, 2> other;
-    for (std::size_t h = 0; h < 2 && !fitted.empty(); ++h)
-      other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted.back()[h]);
+    for (std::size_t h = 0; h < 2 && fitted; ++h)
+      other[h] = unmix(group_, h, collected[h], coverage_, frames, (*fitted)[h]);
     if (frames > 1) add_candidate(collected, other);
-    for (BothHalves& halves : fitted) {
-      for (std::size_t h = 0; h < 2; ++h) fill(fitted.back()[h], halves[h]);
-      add_candidate(halves, other);
-    }
+    if (fitted) add_candidate(*fitted, other);
   }
   const std::vector<Halves>& of(std::size_t layer) const { return of_layer_[layer]; }
 
  private:
-  /// Where a small window has no light, takes the light of the largest window.
-  void fill(const Light& largest, Light& light) const {
-    for_each_row(group_.surfaces.height, [&](int y) {
-      for (int x = 0; x < group_.surfaces.width; ++x)
-        for (std::size_t l = 0; l < light.layers.size() && light.weight.at(x, y) < kFewestPixels; ++l)
-          for (std::size_t c = 0; c < 3 && !light.layers[l][c].empty(); ++c)
-            light.layers[l][c].at(x, y) = largest.layers[l][c].at(x, y);
-    });
-  }
-
   void add_candidate(const BothHalves& light, const std::array<std::vector<ColourPlane>, 2>& other) {
     const Surfaces& on = group_.surfaces;
     const Plane none;
