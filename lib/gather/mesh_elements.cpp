@@ -93,21 +93,16 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of all samples with a width: flux over area under the kernel. `alike`: ln of irradiance for the bilateral
-/// filter's weights; may be empty.
+/// Irradiance of all samples with a width: flux over area under the kernel.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
-            const std::vector<float>& alike, Smoothed& result) {
+            Smoothed& result) {
   parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!(samples[i].width > 0)) continue;
       Rgbd flux{0.0};
       double area = 0, squares = 0;
       neighbours.around(samples[i], [&](std::uint32_t j) {
-        float w = weight(filter, samples[i], samples[j]);
-        if (w > 0 && !alike.empty()) {
-          const float difference = (alike[j] - alike[i]) / filter.range;
-          w *= std::exp(-0.5f * difference * difference);
-        }
+        const float w = weight(filter, samples[i], samples[j]);
         if (!(w > 0)) return;
         flux += samples[j].flux * double(w);
         area += double(w) * double(samples[j].area);
@@ -170,7 +165,7 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Sm
     }
     const Neighbours neighbours(joined.cubes, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach));
     Smoothed smoothed(joined.cubes.size());
-    smooth(joined.cubes, filter, neighbours, {}, smoothed);
+    smooth(joined.cubes, filter, neighbours, smoothed);
     for (const std::uint32_t i : which) {
       result.light[i] = smoothed.light[joined.of[i]];
       result.variance[i] = smoothed.variance[joined.of[i]];
@@ -375,14 +370,7 @@ void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const 
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (samples[i].area > 0) smoothed.light[i] = flux[i] * (1 / double(samples[i].area));
   } else {
-    MeshFilter first = filter;
-    if (filter.kind == MeshFilter::Kind::bilateral) first.kind = MeshFilter::Kind::gaussian;
-    smooth_all(samples, first, smoothed);
-    if (filter.kind == MeshFilter::Kind::bilateral) {
-      std::vector<float> alike;
-      for (const Rgbd& e : smoothed.light) alike.push_back(float(std::log(std::max(1e-30, (e.r + e.g + e.b) / 3))));
-      smooth(samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, smoothed);
-    }
+    smooth_all(samples, filter, smoothed);
     put_right(samples, elements, smoothed.light);
   }
   put_light(smoothed.light, elements);
