@@ -47,65 +47,62 @@ struct Smoothed {
   std::vector<double> variance;  ///< (W/m^2)^2
 };
 
-/// Samples by cubes of space that are as wide as the filter.
+/// Samples by material and by cubes of space that are as wide as the filter.
 class Neighbours {
  public:
-  Neighbours(const std::vector<Sample>& samples, float reach) : samples_(samples), per_m_(1 / reach) {
-    for (std::size_t i = 0; i < samples.size(); ++i) cubes_[key(cube(samples[i].position))].push_back(std::uint32_t(i));
+  Neighbours(const std::vector<Sample>& samples, float reach) : per_m_(1 / reach) {
+    for (std::size_t i = 0; i < samples.size(); ++i) cubes_[cube(samples[i])].push_back(std::uint32_t(i));
   }
   template <class Visit>
-  void around(Vec3 position, const Visit& visit) const {
-    const auto at = cube(position);
+  void around(const Sample& sample, const Visit& visit) const {
+    const Cube at = cube(sample);
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z) {
-          const std::array<std::int64_t, 3> there{at[0] + x, at[1] + y, at[2] + z};
-          const auto found = cubes_.find(key(there));
+          const auto found = cubes_.find({at[0] + x, at[1] + y, at[2] + z, at[3]});
           if (found == cubes_.end()) continue;
-          for (const std::uint32_t i : found->second)
-            if (cube(samples_[i].position) == there) visit(i);  // different cubes may share a key
+          for (const std::uint32_t i : found->second) visit(i);
         }
   }
 
  private:
-  std::array<std::int64_t, 3> cube(Vec3 p) const {
-    return {std::int64_t(std::floor(p.x * per_m_)), std::int64_t(std::floor(p.y * per_m_)),
-            std::int64_t(std::floor(p.z * per_m_))};
+  using Cube = std::array<std::int64_t, 4>;  ///< place in space, material
+  struct Hash {
+    std::size_t operator()(const Cube& c) const {
+      std::uint64_t key = 0;
+      for (const std::int64_t number : c) key = mix64(key + std::uint64_t(number));
+      return key;
+    }
+  };
+  Cube cube(const Sample& s) const {
+    const Vec3 p = s.position * per_m_;
+    return {std::int64_t(std::floor(p.x)), std::int64_t(std::floor(p.y)), std::int64_t(std::floor(p.z)), s.material};
   }
-  static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
-    return mix64(mix64(mix64(std::uint64_t(c[0])) + std::uint64_t(c[1])) + std::uint64_t(c[2]));
-  }
-  const std::vector<Sample>& samples_;
   float per_m_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cubes_;
+  std::unordered_map<Cube, std::vector<std::uint32_t>, Hash> cubes_;
 };
 
-/// Weight of a neighbour from its position alone; 0: it does not count.
+/// Weight of a neighbour of the same material from its position alone; 0: it does not count.
 float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   const float width = a.width;
   const Vec3 d = b.position - a.position;
-  if (a.material != b.material || dot(a.normal, b.normal) < kSameWay || std::abs(dot(d, a.normal)) > width) return 0;
+  if (dot(a.normal, b.normal) < kSameWay || std::abs(dot(d, a.normal)) > width) return 0;
   if (filter.kind == MeshFilter::Kind::box)
     return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= width ? 1.0f : 0.0f;
   const float d2 = dot(d, d) / (width * width);
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of all samples with a width: flux over area under the kernel. `alike`: ln of irradiance for the bilateral
-/// filter's weights; may be empty.
+/// Irradiance of all samples with a width: flux over area under the kernel.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
-            const std::vector<float>& alike, Smoothed& result) {
+            Smoothed& result) {
   parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!(samples[i].width > 0)) continue;
       Rgbd flux{0.0};
       double area = 0, squares = 0;
-      neighbours.around(samples[i].position, [&](std::uint32_t j) {
-        float w = weight(filter, samples[i], samples[j]);
-        if (w > 0 && !alike.empty()) {
-          const float difference = (alike[j] - alike[i]) / filter.range;
-          w *= std::exp(-0.5f * difference * difference);
-        }
+      neighbours.around(samples[i], [&](std::uint32_t j) {
+        const float w = weight(filter, samples[i], samples[j]);
         if (!(w > 0)) return;
         flux += samples[j].flux * double(w);
         area += double(w) * double(samples[j].area);
@@ -168,7 +165,7 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Sm
     }
     const Neighbours neighbours(joined.cubes, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach));
     Smoothed smoothed(joined.cubes.size());
-    smooth(joined.cubes, filter, neighbours, {}, smoothed);
+    smooth(joined.cubes, filter, neighbours, smoothed);
     for (const std::uint32_t i : which) {
       result.light[i] = smoothed.light[joined.of[i]];
       result.variance[i] = smoothed.variance[joined.of[i]];
@@ -373,14 +370,7 @@ void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const 
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (samples[i].area > 0) smoothed.light[i] = flux[i] * (1 / double(samples[i].area));
   } else {
-    MeshFilter first = filter;
-    if (filter.kind == MeshFilter::Kind::bilateral) first.kind = MeshFilter::Kind::gaussian;
-    smooth_all(samples, first, smoothed);
-    if (filter.kind == MeshFilter::Kind::bilateral) {
-      std::vector<float> alike;
-      for (const Rgbd& e : smoothed.light) alike.push_back(float(std::log(std::max(1e-30, (e.r + e.g + e.b) / 3))));
-      smooth(samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, smoothed);
-    }
+    smooth_all(samples, filter, smoothed);
     put_right(samples, elements, smoothed.light);
   }
   put_light(smoothed.light, elements);

@@ -20,11 +20,10 @@ namespace tempolux {
 inline constexpr float kSameWay = 0.866f;
 
 struct MeshFilter {
-  enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
+  enum class Kind : std::uint8_t { none, box, gaussian };
   Kind kind = Kind::gaussian;
   /// m: half the box's edge, or the Gaussian's standard deviation; 0: such that about 256 photons count.
   double width = 0;
-  float range = 0.5f;  ///< bilateral filter: standard deviation of ln irradiance
 };
 
 struct MeshOptions {
@@ -113,9 +112,8 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements);
 /// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area,
 /// both weighted by the same kernel around the element. An element counts only if it faces the same way (normals
 /// within 30 degrees), lies within a width of the element's plane and has the same material. So no light is lost at
-/// edges, and none spreads around corners. The bilateral filter also weights by the difference of irradiance after a
-/// Gaussian of the same width. Each object keeps its total flux. `widths` [m]: the width of each element, 0 where no
-/// light arrives; empty: the filter's width everywhere.
+/// edges, and none spreads around corners. Each object keeps its total flux. `widths` [m]: the width of each element, 0
+/// where no light arrives; empty: the filter's width everywhere.
 void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 

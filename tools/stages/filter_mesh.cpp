@@ -58,7 +58,7 @@ int filter_mesh(int argc, char** argv) {
                    "count alone, by elements that all frames of the segment share: for gather-temporal density");
   app.add_option("--filter", options.filter, "how elements are smoothed")
       ->capture_default_str()
-      ->check(CLI::IsMember({"none", "box", "gaussian", "bilateral"}))
+      ->check(CLI::IsMember({"none", "box", "gaussian"}))
       ->excludes(counts);
   app.add_option(
          "--filter-width", options.count.mesh.filter.width,
@@ -72,10 +72,9 @@ int filter_mesh(int argc, char** argv) {
     if (frames.size() > 1 && !has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example m.####.meshirrad");
     using Kind = MeshFilter::Kind;
-    options.count.mesh.filter.kind = options.filter == "none"        ? Kind::none
-                                     : options.filter == "box"       ? Kind::box
-                                     : options.filter == "bilateral" ? Kind::bilateral
-                                                                     : Kind::gaussian;
+    options.count.mesh.filter.kind = options.filter == "none"  ? Kind::none
+                                     : options.filter == "box" ? Kind::box
+                                                               : Kind::gaussian;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);
     StaticTree standing;
