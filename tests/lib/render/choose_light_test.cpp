@@ -61,13 +61,24 @@ TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   EXPECT_EQ(way(ways, IndirectMethod::records).pixel_error, 1);
 }
 
-/// A filter that leaves 1/2.4 of the samples' squared error leaves that of records: they get 2.4^(1/2) times the rays.
-TEST(WaysToLight, AFilterHelpsSamplesAlone) {
-  const std::vector<Way> ways = ways_to_light(example(), {1e6, 0, 500}, false);
-  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1 / 2.4, 1e-12);
+/// A filter leaves its share of the samples' error and of a map's, and all of the error of records, which then get more
+/// rays: with a quarter of .1 left, k = sqrt(W / (1e5 x .025)).
+TEST(WaysToLight, AFilterLeavesShares) {
+  RoughFrame rough = example();
+  rough.path.all.left = 0.5;
+  rough.gather.other.left = 0.25;
+  rough.gather.other_without_caustic.left = 0.125;
+  rough.map_error = 1;
+  rough.map_left = 0.75;
+  const std::vector<Way> ways = ways_to_light(rough, {1e6, 0, 500}, true);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.05, 1e-12);
   const Way records = way(ways, IndirectMethod::records);
-  EXPECT_EQ(records.rays, int(std::lround(std::sqrt((6e7 + kPoints) / 1e4 * 2.4))));
-  EXPECT_NEAR(records.error, 0.1 / 2.4 + 1.0 / records.rays, 1e-12);
+  EXPECT_EQ(records.rays, int(std::lround(std::sqrt((6e7 + kPoints) / 2.5e3))));
+  EXPECT_NEAR(records.error, 0.025 + 1.0 / records.rays, 1e-12);
+  const Way map = way(ways, IndirectMethod::records, true);
+  EXPECT_NEAR(map.error, 0.0125 + 0.75 + 1.0 / map.rays, 1e-12);
+  EXPECT_NEAR(way(ways_to_light(rough, kOrder, true), IndirectMethod::records, true).error, 1.1 + 1.0 / 64, 1e-12)
+      << "without a filter nothing is taken away";
 }
 
 /// Ways that were not measured are reported as lower bounds ("at least").
