@@ -23,15 +23,17 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   const LightNoise& noise = records ? (map ? effort.other_without_caustic : effort.other)
                             : map   ? effort.without_caustic
                                     : effort.all;
-  const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, noise.variance / wanted);
+  const double left = order.filtered ? rough.path.other.left : 1,
+               variance = noise.variance * (order.filtered && left > 0 ? noise.left / left : 1);
+  const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, variance / wanted);
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
   if (map || method != IndirectMethod::paths)
     fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
-  Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted * noise.left : wanted};
-  if (rough.wanted_of > 0 && noise.variance > rough.wanted_of)
-    way.pixel_error = error_for_variance(noise.variance / rough.wanted_of);
+  Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted * left};
+  if (rough.wanted_of > 0 && variance > rough.wanted_of)
+    way.pixel_error = error_for_variance(variance / rough.wanted_of);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += order.filtered ? rough.map_error * rough.map_left : rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);

@@ -61,24 +61,27 @@ TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {
   EXPECT_EQ(way(ways, IndirectMethod::records).pixel_error, 1);
 }
 
-/// A filter leaves its share of the samples' error and of a map's, and all of the error of records, which then get more
-/// rays: with a quarter of .1 left, k = sqrt(W / (1e5 x .025)).
+/// A filter leaves 1/4 of the light that all ways sample alike and 1/2 of whole paths' noise: these get twice the
+/// samples to leave as much. The error of records stays, so they get more rays: k = sqrt(W / (1e5 x .025)). 3/4 of a
+/// map's error stay.
 TEST(WaysToLight, AFilterLeavesShares) {
   RoughFrame rough = example();
+  rough.wanted_of = 1;
   rough.path.all.left = 0.5;
-  rough.gather.other.left = 0.25;
-  rough.gather.other_without_caustic.left = 0.125;
+  rough.path.other.left = rough.gather.other.left = 0.25;
   rough.map_error = 1;
   rough.map_left = 0.75;
   const std::vector<Way> ways = ways_to_light(rough, {1e6, 0, 500}, true);
-  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.05, 1e-12);
-  const Way records = way(ways, IndirectMethod::records);
+  const Way paths = way(ways, IndirectMethod::paths), records = way(ways, IndirectMethod::records),
+            map = way(ways, IndirectMethod::paths, true);
+  EXPECT_NEAR(paths.work, 1e7 * samples(2 * 2), 1);
+  EXPECT_NEAR(paths.error, 0.025, 1e-12);
+  EXPECT_NEAR(paths.pixel_error, std::pow(2 * 2, -9.0 / 14), 1e-12);
   EXPECT_EQ(records.rays, int(std::lround(std::sqrt((6e7 + kPoints) / 2.5e3))));
   EXPECT_NEAR(records.error, 0.025 + 1.0 / records.rays, 1e-12);
-  const Way map = way(ways, IndirectMethod::records, true);
-  EXPECT_NEAR(map.error, 0.0125 + 0.75 + 1.0 / map.rays, 1e-12);
-  EXPECT_NEAR(way(ways_to_light(rough, kOrder, true), IndirectMethod::records, true).error, 1.1 + 1.0 / 64, 1e-12)
-      << "without a filter nothing is taken away";
+  EXPECT_NEAR(map.error, 0.025 + 0.75, 1e-12);
+  EXPECT_NEAR(way(ways_to_light(rough, kOrder, true), IndirectMethod::paths, true).error, 1.1, 1e-12)
+      << "without a filter";
 }
 
 /// Ways that were not measured are reported as lower bounds ("at least").
