@@ -81,6 +81,7 @@ SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const 
   double squares = 0;
   for (const SeenFlux& one : seen) {
     pilot.mean += one.radiance;
+    pilot.photons += one.radiance > 0;
     squares += one.radiance * one.radiance;
     cells[one.cell] += one.radiance;
   }

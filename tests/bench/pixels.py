@@ -9,9 +9,13 @@ LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
 
 
 def planes(image, layer=""):
-    """R, G, B of the picture or of a layer of it."""
-    prefix = layer + "." if layer else ""
-    return [image.channels[prefix + c] for c in "RGB"]
+    """R, G, B of the picture or of a layer of it. A file without R, G, B has the picture as the sum of its layers."""
+    if layer or "R" in image.channels:
+        return [image.channels[(layer and layer + ".") + c] for c in "RGB"]
+    found = [planes(image, name) for name in (*LAYERS, "volume") if name + ".R" in image.channels]
+    if not found:
+        raise SystemExit("no channels R, G, B and no layers: render with --channels RGBA or layers")
+    return [[sum(values) for values in zip(*planes_of)] for planes_of in zip(*found)]
 
 
 def mean(image, layer=""):

@@ -15,6 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
+import pixels
 from seen import Seen
 
 
@@ -24,11 +25,11 @@ def main():
     parser.add_argument("--worst", action="store_true", help="also the share of the squared error in the worst percent of the pixels")
     parser.add_argument("pictures", nargs="+")
     options = parser.parse_args()
-    seen = Seen(*([exr.read(file).channels[c] for c in "RGB"] for file in options.reference))
+    seen = Seen(*(pixels.planes(exr.read(file)) for file in options.reference))
     noise = seen.halves_differ()
     for file in options.pictures:
         image = exr.read(file)
-        planes = [image.channels[c] for c in "RGB"]
+        planes = pixels.planes(image)
         error = seen.error(planes)
         line = f"{error:8.3f}  {file}"
         if options.worst:
