@@ -109,14 +109,17 @@ class Choice {
     });
   }
 
-  /// Computes the neighbourhood means of an estimate, scaled and summed over colours.
-  template <class Estimate>
-  Plane around(const Estimate& estimate) const {
-    Plane values = Plane::unset(near_.width(), near_.height());
+  /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
+  template <class Term>
+  Plane around(const Term& term, Plane* square = nullptr) const {
+    Plane values(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
-      values.at(x, y) = counts_[p] ? (estimate(p, 0) + estimate(p, 1) + estimate(p, 2)) * scale_[p] : 0;
+      if (counts_[p]) values.at(x, y) = (term(p, 0) + term(p, 1) + term(p, 2)) * scale_[p];
     });
-    return near_.mean(values);
+    Plane mean = near_.mean(values);
+    for_each_pixel([&](std::size_t, int x, int y) { values.at(x, y) *= values.at(x, y); });
+    if (square) *square = near_.mean(values);
+    return mean;
   }
 
   /// The share of each candidate in the best candidate, by pixel.
@@ -150,35 +153,15 @@ class Choice {
           for_each_pixel(
               [&](std::size_t p, int x, int y) { mixed[p] += shares[k].at(x, y) * (candidates_[k].*half)[c][p]; });
       }
-    std::array<Plane, 3> own;
-    for (Plane& plane : own) plane = Plane(near_.width(), near_.height());
-    for_each_pixel([&](std::size_t p, int x, int y) {
-      const Estimate e = estimate(p);
-      own[0].at(x, y) = e.gain;
-      own[1].at(x, y) = e.square;
-      own[2].at(x, y) = e.apart;
+    gain_ = around(
+        [&](std::size_t p, std::size_t c) {
+          const float apart = raw_.a[c][p] - raw_.b[c][p];
+          return (apart - (best_.a[c][p] - best_.b[c][p])) * apart / 4;
+        },
+        &square_);
+    apart_ = around([&](std::size_t p, std::size_t c) {
+      return squared(best_.a[c][p] + best_.b[c][p] - raw_.a[c][p] - raw_.b[c][p]) / 4;
     });
-    gain_ = near_.mean(own[0]);
-    square_ = near_.mean(own[1]);
-    apart_ = near_.mean(own[2]);
-  }
-
-  /// Terms of one pixel, or their means: V - C, its square, and (F - M)^2; all scaled and summed over colours.
-  struct Estimate {
-    float gain = 0, square = 0, apart = 0;
-  };
-  Estimate estimate(std::size_t p) const {
-    Estimate e;
-    if (!counts_[p]) return e;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float a = raw_.a[c][p], b = raw_.b[c][p], f = best_.a[c][p], g = best_.b[c][p];
-      e.gain += (squared(a - b) - (f - g) * (a - b)) / 4;
-      e.apart += squared(f + g - a - b) / 4;
-    }
-    e.gain *= scale_[p];
-    e.apart *= scale_[p];
-    e.square = squared(e.gain);
-    return e;
   }
 
   /// The share w. Inside surfaces the gain may be a standard error larger than estimated: the neighbourhood counts as
@@ -224,7 +207,7 @@ class Choice {
   float dark_;
   std::vector<float> scale_;
   Halves best_;
-  Plane gain_, square_, apart_;  ///< neighbourhood means of Estimate
+  Plane gain_, square_, apart_;  ///< neighbourhood means of V - C, its square and (F - M)^2
   Plane share_;                  ///< w, by pixel
 };
 
