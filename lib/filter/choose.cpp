@@ -9,10 +9,9 @@
 namespace tempolux {
 namespace {
 
-constexpr int kAround = 3;  ///< pixels
-constexpr int kWindow = (2 * kAround + 1) * (2 * kAround + 1);
-constexpr float kDark = 0.02f;      ///< darkest light that counts, over the layer's mean
-constexpr float kOwnLight = 0.25f;  ///< share of a pixel's own difference from its surroundings in its scale
+constexpr int kAround = 3;          ///< pixels
+constexpr float kDark = 0.02f;      ///< darkest light that counts, over the mean of the picture
+constexpr float kOwnLight = 0.25f;  ///< share of the light by which a pixel exceeds its surroundings in its level
 /// 1 / sum of the squared weights of Neighbourhood::mean, the number of equally weighted pixels with the same variance.
 /// Summing n equal values twice gives n (2 n^2 + 1) / 3 / n^4 for the sum of squared weights.
 constexpr float kEqualPixels = [] {
@@ -46,14 +45,15 @@ Plane box_sums(const Plane& values, int width, int height) {
 
 class Choice {
  public:
-  Choice(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark)
+  Choice(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around,
+         const PictureLight& picture)
       : raw_(raw),
         candidates_(candidates),
         near_(around),
+        picture_(picture),
         width_(std::size_t(around.width())),
         count_(around.count()),
         counts_(count_, 1),
-        dark_(dark),
         share_(around.width(), around.height()) {
     for (std::size_t p = 0; p < count_; ++p)
       for (std::size_t c = 0; c < 3; ++c)
@@ -61,7 +61,6 @@ class Choice {
   }
 
   Halves run() {
-    take_scale();
     take_best();
     for_each_pixel([&](std::size_t p, int x, int y) {
       const float w = share(p, x, y);
@@ -91,30 +90,12 @@ class Choice {
     });
   }
 
-  /// Computes each pixel's scale: 1 / (mean light of the neighbourhood + kOwnLight x the larger difference of the
-  /// pixel's two halves from this mean)^2.
-  void take_scale() {
-    Plane light(near_.width(), near_.height());
-    for_each_pixel([&](std::size_t p, int x, int y) {
-      for (std::size_t c = 0; c < 3 && counts_[p]; ++c) light.at(x, y) += (raw_.a[c][p] + raw_.b[c][p]) / 6;
-    });
-    light = box_sums(light, near_.width(), near_.height());
-    scale_.assign(count_, 0.0f);
-    for_each_pixel([&](std::size_t p, int x, int y) {
-      const float around = light.at(x, y) / float(kWindow);
-      float a = 0, b = 0;
-      for (std::size_t c = 0; c < 3; ++c) a += raw_.a[c][p] / 3, b += raw_.b[c][p] / 3;
-      const float own = std::max(std::abs(a - around), std::abs(b - around));
-      if (counts_[p]) scale_[p] = 1 / squared(std::max(around, 0.0f) + dark_ + kOwnLight * own);
-    });
-  }
-
   /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
   template <class Term>
   Plane around(const Term& term, Plane* square = nullptr) const {
     Plane values(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
-      if (counts_[p]) values.at(x, y) = (term(p, 0) + term(p, 1) + term(p, 2)) * scale_[p];
+      if (counts_[p]) values.at(x, y) = (term(p, 0) + term(p, 1) + term(p, 2)) / squared(picture_.level.at(x, y));
     });
     Plane mean = near_.mean(values);
     for_each_pixel([&](std::size_t, int x, int y) { values.at(x, y) *= values.at(x, y); });
@@ -183,7 +164,7 @@ class Choice {
     for_each_pixel([&](std::size_t p, int x, int y) {
       float light = 0;
       for (std::size_t c = 0; c < 3; ++c) light += std::max(mean_of(best_.a[c][p], best_.b[c][p]), 0.0f) / 3;
-      if (share_.at(x, y) > 0) share_.at(x, y) *= light + dark_;
+      if (share_.at(x, y) > 0) share_.at(x, y) *= light + picture_.dark;
     });
     const Plane weights = sums(share_);
     for (const auto half : {&Halves::a, &Halves::b})
@@ -202,10 +183,9 @@ class Choice {
   const Halves& raw_;
   const std::vector<Halves>& candidates_;
   const Neighbourhood& near_;
+  const PictureLight& picture_;
   std::size_t width_, count_;
   std::vector<std::uint8_t> counts_;  ///< by pixel; 0: the pixel enters no estimate
-  float dark_;
-  std::vector<float> scale_;
   Halves best_;
   Plane gain_, square_, apart_;  ///< neighbourhood means of V - C, its square and (F - M)^2
   Plane share_;                  ///< w, by pixel
@@ -253,17 +233,32 @@ Plane Neighbourhood::mean(const Plane& values) const {
   return means;
 }
 
-Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark) {
-  return Choice(raw, candidates, around, dark).run();
+Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around,
+              const PictureLight& picture) {
+  return Choice(raw, candidates, around, picture).run();
 }
 
-float dark_of(const std::array<const std::vector<float>*, 3>& layer) {
+PictureLight::PictureLight(const Colours& picture, int width, int height, std::optional<float> dark_light) {
+  Plane light(width, height);
   double sum = 0;
-  std::size_t count = 0;
-  for (const std::vector<float>* values : layer)
-    for (const float v : *values)
-      if (std::abs(v) < kLargestLight) sum += double(v), ++count;
-  return std::max(kDark * float(sum / double(std::max<std::size_t>(1, count))), 1e-18f);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      for (const std::vector<float>& channel : picture) {
+        const float value = channel[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+        if (std::isfinite(value)) light.at(x, y) += std::clamp(value, 0.0f, kLargestLight) / 3;
+      }
+      sum += double(light.at(x, y));
+    }
+  dark = dark_light.value_or(std::max(kDark * float(sum / (double(width) * height)), 1e-18f));
+  level = Plane(width, height);
+  for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      float around = 0;
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) around += light.at(x + i, y + j) / 9;
+      level.at(x, y) = around + kOwnLight * std::max(light.at(x, y) - around, 0.0f) + dark;
+    }
+  });
 }
 
 }  // namespace tempolux

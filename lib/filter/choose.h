@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lib/filter/plane.h"
@@ -41,6 +42,17 @@ class Neighbourhood {
   Plane share_;  ///< 1 / number of pixels of the kind within 7 x 7
 };
 
+/// The light of the whole picture, all layers together, by which errors of a layer are judged.
+struct PictureLight {
+  /// The mean of the 3 x 3 pixels around, plus a quarter of what the pixel's own light exceeds this mean by, plus
+  /// `dark` [W/m^2/sr]; channel means. So a bright pixel does not decide for those around it.
+  Plane level;
+  float dark = 0;  ///< the light up to which a pixel counts as dark: 2 % of the mean over the picture [W/m^2/sr]
+  /// `picture`: R, G and B of the sum of all layers. dark_light: `dark` of the whole picture, of which this one is a
+  /// part.
+  PictureLight(const Colours& picture, int width, int height, std::optional<float> dark_light = {});
+};
+
 /// Mixes a raw layer and its filtered candidates so that the squared error is the least, for each pixel. Each half of
 /// the result is mixed from one half of the samples alone, with the same shares.
 ///
@@ -50,10 +62,9 @@ class Neighbourhood {
 ///     the covariance of both:   C = (f - g) (A - B) / 4
 ///     the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal
 ///     distribution, 1981].
-/// Each estimate is summed over colours, scaled, and averaged over the neighbourhood. The scale is 1 / square of (the
-/// mean light of the neighbourhood, at least `dark`, plus a quarter of the larger difference of the pixel's A and B
-/// from this mean). A pixel's own difference lowers its weight in all three estimates alike, so a single bright pixel
-/// does not decide for its neighbours, whether one half shows it or both.
+/// Each estimate is summed over colours, divided by the square of the picture's light at the pixel (PictureLight), and
+/// averaged over the neighbourhood. So errors count as they are seen: an error of a dark pixel counts more than the
+/// same error beside it in the light. The divisor is the same for all three estimates.
 ///
 /// The candidate with the least error is taken; the shares of candidates are averaged over the neighbourhood, too
 /// [Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012]. The result is w F + (1 - w)
@@ -65,9 +76,7 @@ class Neighbourhood {
 /// half that is not finite, or too bright for squares in float32, enters no estimate. Its result is M, or the last
 /// candidate if M is not finite. All planes have one element per pixel; `candidates` is not empty. Thread-safe; the
 /// same result for any number of threads.
-Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);
-
-/// The light up to which a layer counts as dark: 2 % of its mean over the picture [W/m^2/sr].
-float dark_of(const std::array<const std::vector<float>*, 3>& layer);
+Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around,
+              const PictureLight& picture);
 
 }  // namespace tempolux

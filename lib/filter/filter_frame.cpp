@@ -95,6 +95,13 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
   return raw;
 }
 
+/// R, G and B of all layers together; of the picture itself if it has no layers.
+Colours picture_of(const LayerSums& layers, const Image& image) {
+  if (!layers[0].empty()) return layers;
+  const auto whole = image.rgb("");
+  return {*whole[0], *whole[1], *whole[2]};
+}
+
 }  // namespace
 
 WindowLight::WindowLight(const Image& image, bool alone) : width(image.width), height(image.height), light(image) {
@@ -111,12 +118,7 @@ struct FrameFilter::State {
       collectors;  ///< for the matte layers, by half; light of mirrors has no flow of its own
   RemainingNoise remaining;
 
-  float dark(const Image& image, const std::string& layer) const {
-    if (const auto found = options.dark.find(layer); found != options.dark.end()) return found->second;
-    return dark_of(image.rgb(layer));
-  }
-
-  void filter_group(std::size_t g, const Coverage& coverage, Image& image) {
+  void filter_group(std::size_t g, const Coverage& coverage, const PictureLight& picture, Image& image) {
     const LightGroup& group = *middle.light.group(g);
     const Surfaces& on = group.surfaces;
     Candidates candidates(group, coverage, options.scales);
@@ -129,8 +131,7 @@ struct FrameFilter::State {
     const Neighbourhood around(std::move(kinds), on.width, on.height);
     for (std::size_t l = 0; l < group.layers.size(); ++l) {
       if (candidates.of(l).empty() || group.raw[0].layers[l][0].empty()) continue;
-      const Halves raw = raw_halves(image, group, l),
-                   chosen = choose(raw, candidates.of(l), around, dark(image, group.layers[l]));
+      const Halves raw = raw_halves(image, group, l), chosen = choose(raw, candidates.of(l), around, picture);
       remaining.add(raw, chosen);
       for (std::size_t c = 0; c < 3; ++c)
         put_mean(chosen, c, float_channel(image, channel_name(group.layers[l], c))->values);
@@ -149,8 +150,9 @@ struct FrameFilter::State {
     if (added != before + after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
     const LayerSums raw = sum_layers(image);
     const Coverage coverage(image);
+    const PictureLight picture(picture_of(raw, image), image.width, image.height, options.dark);
     for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
-      if (middle.light.group(g)) filter_group(g, coverage, image);
+      if (middle.light.group(g)) filter_group(g, coverage, picture, image);
     renew_picture(raw, sum_layers(image), image);
     leave_numbers(image);
   }
@@ -194,8 +196,9 @@ RemainingError FrameFilter::remaining_error() const { return state_->remaining.e
 namespace {
 
 /// Distance in pixels from which other pixels affect a pixel: the windows of both fits, two for smoothing and the
-/// one-surface test, the windows of unmix() and resolve(), and ten times the window of choose().
-constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 10 * 3; }
+/// one-surface test, the windows of unmix() and resolve(), ten times the window of choose(), and one for the light of
+/// the picture.
+constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 10 * 3 + 1; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
   Image out{width, height, {}, {}, {}, {}};
@@ -220,10 +223,7 @@ Image cut_out(const Image& image, int left, int top, int width, int height) {
 Image filter_alone(Image image, const FilterOptions& options) {
   constexpr int kWide = 480, kHigh = 270;
   FilterOptions of_tile = options;
-  for (const char* layer : {"", "emission", "specular", "direct", "caustic", "indirect"})
-    if (holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) &&
-        holds(image, channel_name(layer, 2)))
-      of_tile.dark[layer] = dark_of(image.rgb(layer));
+  of_tile.dark = PictureLight(picture_of(sum_layers(image), image), image.width, image.height).dark;
   Image out{image.width, image.height, {}, {}, {}, {}};
   RemainingError remaining_error;
   for (int top = 0; top < image.height; top += kHigh)

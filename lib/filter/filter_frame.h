@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +19,8 @@ inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge
 inline constexpr int kMostScales = 2;
 
 struct FilterOptions {
-  int scales = kMostScales;           ///< 1: small windows only; 0: filter in time only
-  std::map<std::string, float> dark;  ///< dark_of() the whole picture by layer (choose.h); empty: of the given image
+  int scales = kMostScales;   ///< 1: small windows only; 0: filter in time only
+  std::optional<float> dark;  ///< PictureLight::dark of the whole picture; empty: of the given image
 };
 
 /// A frame of a window: its light, and the first fits of its matte light.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -29,12 +30,13 @@ Colours noise(unsigned seed, float sigma) {
 }
 
 const Neighbourhood kInside(std::vector<std::uint8_t>(kCount, 1), kSide, kSide);
-constexpr float kDark = 0.02f;
 
 /// The mixture.
 Colours chosen(const Halves& raw, const std::vector<Halves>& candidates) {
-  const Halves halves = choose(raw, candidates, kInside, kDark);
-  Colours colours = halves.a;
+  Colours colours = raw.a;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t p = 0; p < kCount; ++p) colours[c][p] = mean_of(raw.a[c][p], raw.b[c][p]);
+  const Halves halves = choose(raw, candidates, kInside, PictureLight(colours, kSide, kSide));
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t p = 0; p < kCount; ++p) colours[c][p] = mean_of(halves.a[c][p], halves.b[c][p]);
   return colours;
@@ -103,11 +105,12 @@ TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   EXPECT_NEAR(squared_error(out[0], 1) / (double(sigma) * double(sigma) / 2), 0.49, 0.06);
 }
 
-/// One pixel of 30 times the light in both halves, among pixels whose noise is .5 of the light. The mean around it is
-/// 1 + 29 / 49 = 1.6, so its (F - M)^2 is 841 / (1.6 + .25 x 28.4)^2 = 11 of the scale, of which the window's middle
-/// counts 1 / 49: .23. V = .125 / 1.6^2 = .05 of the scale gives the share .05 / (.05 + .23) = .18, and (1 - .18)^2 =
-/// .67 of the noise remains at most. Without the pixel's own light in its scale its (F - M)^2 would be 330, and .99 of
-/// the noise would remain.
+/// One pixel of 30 times the light in both halves, among pixels whose noise is .5 of the light. The mean of the 3 x 3
+/// pixels around it is 1 + 29 / 9 = 4.2, so its level is 4.2 + .25 x 25.8 = 10.7 and its (F - M)^2 is 841 / 10.7^2
+/// = 7.4, of which the window's middle counts 1 / 49: .15. V = .125 of the other pixels, of which eight count 1 / 4.2^2
+/// each, is .1 in the mean. The share .1 / (.1 + .15) = .4 leaves (1 - .4)^2 = .36 of the noise; what the bright pixel
+/// loses adds less than .2. Without the pixel's own light in its level its (F - M)^2 would be 48, the share .1, and .8
+/// of the noise would remain.
 TEST(Choose, ABrightPixelDoesNotKeepTheNoiseAroundIt) {
   const float sigma = 0.5f;
   Halves raw{noise(10, sigma), noise(11, sigma)};
@@ -122,6 +125,30 @@ TEST(Choose, ABrightPixelDoesNotKeepTheNoiseAroundIt) {
         after += std::pow(double(out[0][p]) - 1, 2);
       }
   EXPECT_LT(after, 0.75 * before);
+}
+
+/// A layer with a sharp step from .002 to 1. The light has no noise; noise of eight times the dark light lies in the
+/// dark, where other layers add .05. The candidate is a ramp over the step, 7 pixels wide, which is .43 at the last
+/// dark pixel. Dark pixels have V = .016^2 / 2 = 1.3e-4 and a level of about .07: V is .03 of its square. The ramp's (F
+/// - M)^2 is up to .43^2 at the step, at a level of .4, and .29^2 beside it, at a level of .07: above 1 in the mean. So
+/// w is about .01, and the last dark pixel gets .01 x .43 = .004 of light beside its own .002. If the mean of the layer
+/// over 7 x 7 pixels were the level, dark pixels far from the step would decide for w, and the last dark pixel would
+/// get .11.
+TEST(Choose, AStepOfLightDoesNotGlowIntoTheDark) {
+  const Colours first = noise(12, 8), second = noise(13, 8);
+  Halves raw{constant(1), constant(1)}, ramp = raw;
+  Colours picture = constant(1);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t p = 0; p < kCount; ++p) {
+      const float x = float(p % kSide) - kSide / 2;
+      if (x < 0) raw.a[c][p] = 0.002f * first[c][p], raw.b[c][p] = 0.002f * second[c][p];
+      ramp.a[c][p] = ramp.b[c][p] = std::clamp((x + 4) / 7, 0.001f, 1.0f);
+      picture[c][p] = mean_of(raw.a[c][p], raw.b[c][p]) + 0.05f;
+    }
+  const Halves out = choose(raw, {ramp}, kInside, PictureLight(picture, kSide, kSide));
+  double light = 0;
+  for (std::size_t y = 0; y < kSide; ++y) light += double(out.a[1][y * kSide + kSide / 2 - 1]) / kSide;
+  EXPECT_LT(light, 0.01);
 }
 
 TEST(Choose, ACandidateThatFiltersNothingChangesNothing) {
