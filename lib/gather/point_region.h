@@ -22,9 +22,9 @@ struct TrianglePiece {
 };
 
 /// Cuts the triangles of a surface into pieces and returns the pieces whose middles lie in one of up to 32 spheres
-/// (scene space), in the order of the triangles. A triangle is one piece at first. A piece that overlaps a sphere and
-/// is longer than a quarter of the sphere's radius is cut into four. So the outline of the returned pieces differs from
-/// the spheres' outline by at most this length. The result depends on the surface and the spheres alone.
+/// (scene space), in the order of the triangles. A triangle is one piece at first. A piece that crosses the outline of
+/// a sphere and is longer than a quarter of the sphere's radius is cut into four, down to 2^-20 of its triangle. So the
+/// returned pieces follow the outlines of the spheres. The result depends on the surface and the spheres alone.
 std::vector<TrianglePiece> pieces_in(const Surface& surface, std::span<const AimSphere> spheres);
 
 /// Chooses the spheres in which irradiance points are placed among the spheres around what cameras see: those with
