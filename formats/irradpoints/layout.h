@@ -33,7 +33,8 @@ inline constexpr std::array<Kind, 3> kKinds{
 /// kinds in this order.
 unsigned kinds_of(std::string_view list);
 
-/// Number of bytes of one point in a block with these kinds and columns.
+/// Number of bytes of one point in a block with these kinds and columns. `kinds` and `columns` are sets of bits. The
+/// sum counts `columns` as a number, which is right while noise is the only column: a second column needs its own term.
 constexpr std::size_t point_size(unsigned kinds, std::uint32_t columns) {
   return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1) + columns);
 }

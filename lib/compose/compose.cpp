@@ -98,9 +98,10 @@ void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bo
                   point.albedo * (weight * share.of_rays(q))});
 }
 
-/// Direct light scattered towards the eye. Places along the slices are drawn in proportion to the light scattered from
-/// them, and weighed by the ratio of the extinction there to the linear one. `whole`: share of the light from behind
-/// that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be added.
+/// Radiance of the light that comes directly from lights and is scattered towards the eye. Places on the ray are drawn
+/// in proportion to extinction x transmittance, with the extinction that is linear within a slice. The weight of a
+/// place is the medium's extinction divided by this linear extinction. `whole`: share of the light behind the slices
+/// that the slices scatter or absorb. `sent_on`: receives the rays whose radiance the caller must add.
 Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray,
                   const std::vector<Slice>& slices, float whole, int samples, const PixelRandom& random,
                   std::vector<SentOn>& sent_on, RayCounts& counts) {

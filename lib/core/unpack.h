@@ -48,7 +48,7 @@ inline constexpr std::uint32_t kUnpackVersion = 1;
 /// Its limits follow from the sizes. Memory: 256 MiB, twice the packed and 20 times the unpacked bytes of the largest
 /// piece (Draco takes most: 6 times, for a sphere of 10^6 triangles with normals and texture coordinates; about 12
 /// times with 16-bit indices and positions only). Processor time: 20 s, and one second per unpacked MB (Draco is the
-/// slowest: 65 MB per second). Never more memory than memory_that_fits.
+/// slowest: 65 MB per second). The memory limit is never above memory_that_fits().
 ///
 /// Throws InputError "PLACE: WHAT; REMEDY" for the first piece that the child cannot unpack or on which it dies, or if
 /// the program is missing; ResourceError if it cannot be started.

@@ -46,7 +46,8 @@ struct IncomingRadiance::Further {
   /// stored.
   bool sees_lamps = false;
   float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered it
-  /// The high part was sampled explicitly at the ray's start, so its end contributes the rest only.
+  /// True if the bright points were sampled explicitly at the ray's start: the ray's hit then contributes the remaining
+  /// share alone.
   bool bright_sampled = false;
 
   LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }

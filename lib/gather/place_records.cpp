@@ -39,8 +39,8 @@ struct Glimpse {
   }
 };
 
-/// Pixels at edges: both pixels of each pair of neighbours, right or below, that are parted, and pixels seen by
-/// choice.
+/// Pixels at edges. If two pixels that share a side show different surfaces (parted_from), both are edge pixels. A
+/// pixel whose path chose one of several directions at a surface (SeenPoint::by_choice) is an edge pixel, too.
 std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int width, int height) {
   std::vector<std::uint8_t> edge(glimpses.size());
   for (int y = 0; y < height; ++y)

@@ -21,10 +21,10 @@ struct TrianglePiece {
   std::uint32_t spheres = 0;  ///< bit k: sphere k holds its middle
 };
 
-/// The pieces of a surface's triangles whose middles lie in one of up to 32 spheres (scene space), in the order of the
-/// triangles. A piece is a triangle, or a quarter of a piece that is longer than a quarter of the radius of a sphere
-/// that overlaps it, so the pieces follow the outline of the spheres to that accuracy. Depends on the surface and the
-/// spheres alone.
+/// Cuts the triangles of a surface into pieces and returns the pieces whose middles lie in one of up to 32 spheres
+/// (scene space), in the order of the triangles. A triangle is one piece at first. A piece that crosses the outline of
+/// a sphere and is longer than a quarter of the sphere's radius is cut into four, down to 2^-20 of its triangle. So the
+/// returned pieces follow the outlines of the spheres. The result depends on the surface and the spheres alone.
 std::vector<TrianglePiece> pieces_in(const Surface& surface, std::span<const AimSphere> spheres);
 
 /// Chooses the spheres in which irradiance points are placed among the spheres around what cameras see: those with

@@ -29,8 +29,9 @@ class SignedDensity {
   };
   /// m: largest radius of a disc; by default PointDensity::kSparser times the photons' own radius.
   float max_radius() const { return options_.max_radius; }
-  /// The change by the photons closer than `radius` (m; 0: the largest radius) in the ellipsoid 1 : 1 / kFlattening.
-  /// Empty if there are none. `random`: as for PointDensity::estimate at the same place.
+  /// The change by the photons in an ellipsoid around the position. `radius` is its radius along the surface (m; 0: the
+  /// largest radius); its radius along the normal is 1 / kFlattening of this. Empty if the ellipsoid holds no photon.
+  /// `random`: as for PointDensity::estimate at the same place.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random) const {
     Area area;
     return at(position, normal, radius, random, area);

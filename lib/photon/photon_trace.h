@@ -71,12 +71,12 @@ struct PhotonBatch : FluxBalance {  ///< sums over all paths; with by_path see b
 /// accordingly.) For a matte flat surface this is the arriving flux. n_s of a normal map is the normal at its finest
 /// level, which gather rays use, too (RayCone).
 ///
-/// Pixels, however, see caustic light through photons, with a normal averaged over what they do not resolve. So where
-/// directions are stored (stores_directions) caustic photons carry flux x |wi.n_v| / |wi.n_g|, n_v being the normal
-/// without the map, and the reader applies map and coat (received_share). Inside glass the flux is divided by the
-/// squared index of refraction (bsdf.h). Light that solids absorb counts as absorbed. On a surface of alpha mode BLEND
-/// only a share alpha of the photons is recorded, with the flux divided by alpha. Russian roulette keeps the flux of a
-/// path about constant without bias.
+/// A pixel looks up caustic photons itself, and its normal is the mean of the normal map over the pixel's footprint. So
+/// where directions are stored (stores_directions) a caustic photon carries flux x |wi.n_v| / |wi.n_g|, where n_v is
+/// the normal without the map, and the reader applies the map and the coat (received_share). Inside glass the flux is
+/// divided by the squared index of refraction (bsdf.h). Light that solids absorb counts as absorbed. On a surface of
+/// alpha mode BLEND only a share alpha of the photons is recorded, with the flux divided by alpha. Russian roulette
+/// keeps the flux of a path about constant without bias.
 ///
 /// In media (SceneFrame::media) a photon flies by null collisions under the media's majorants, raised to ten tentative
 /// collisions per mean crossing of their box; random numbers are keyed by (seed, i, bounce, step). At each tentative

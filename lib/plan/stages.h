@@ -14,7 +14,7 @@ struct StageInfo {
   std::string_view folder;     ///< in OUT, holds its files
   std::string_view extension;  ///< extension of the file that later stages read
   std::string_view tool;       ///< the program that runs
-  std::string_view work;       ///< phases of its stats whose time grows with the work
+  std::string_view work;  ///< phases of its stats whose time grows with the work; "": no stats, the estimate omits it
 };
 
 namespace stage {

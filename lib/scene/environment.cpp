@@ -13,7 +13,8 @@
 namespace tempolux {
 namespace {
 
-/// Keeps sums over the sphere, areas and probabilities below float32's largest number, 3.4e38.
+/// W/m^2/sr: largest radiance of a map. Products of radiance, solid angle, area and 1 / probability then stay below
+/// float32's largest number, 3.4e38.
 constexpr double kMostRadiance = 1e30;
 
 std::string pixel_place(std::size_t pixel, int width) {

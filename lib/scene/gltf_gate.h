@@ -36,7 +36,8 @@ struct GatedImage {
 struct PointerChannel {
   std::size_t animation = 0;
   int sampler = -1;
-  std::string pointer;  ///< such as "/materials/2/pbrMetallicRoughness/roughnessFactor"; "": missing
+  /// The animated property, such as "/materials/2/pbrMetallicRoughness/roughnessFactor"; "": the file names none.
+  std::string pointer;
 };
 
 /// A file that passed the gate.

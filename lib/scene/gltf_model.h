@@ -23,7 +23,7 @@ std::string one_line(std::string text, std::size_t length);
 /// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.
 std::string place_of(const char* array, std::size_t index, const std::string& name = {});
 
-struct Gated;
+struct Gated;  // gltf_gate.h
 
 /// State of importing one scene from tinygltf's model.
 struct Import {

@@ -137,7 +137,9 @@ struct Camera {
   double z_near_m = 0, z_far_m = 0;  ///< far 0: none. Not used: nothing is clipped
 };
 
-/// KHR_lights_punctual. Shines along the node's -Z; the node's scale has no effect.
+/// A light of KHR_lights_punctual. It shines along the node's -Z; the node's scale has no effect. Light sampling,
+/// emission of photons and flux use the same falloff (SpotProfile in lib/light/punctual.h). A member that changes the
+/// light must enter lights_hash(), else files of the old light are reused.
 struct PunctualLight {
   enum class Kind { point, spot, directional };
   std::string name;

@@ -1,5 +1,5 @@
-// lib/temporal/kept_files.h -- the .radsamples files of a range of frames: written as whole files and overlays of them,
-// found again, and checked against a frame (formats/radsamples/radsamples.md).
+// lib/temporal/kept_files.h -- writes the .radsamples files of a range of frames as whole files and overlays, reads the
+// file of an earlier frame, and checks that the frame can follow from it (formats/radsamples/radsamples.md).
 #pragma once
 
 #include <array>

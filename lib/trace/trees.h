@@ -155,8 +155,9 @@ struct Tracer::Impl {
   }
 
   void build(Tree& tree, std::size_t first, std::size_t last);
-  /// Offset of rays that start on an instance. Rays hit an instance in its own space, where rounding errors are scaled
-  /// by the transform; the transform's translation is rounded, too.
+  /// m: distance from an instance at which rays that leave the instance start, so that they do not hit it again by
+  /// rounding. Embree intersects an instance in the instance's own space. The transform to scene space scales the
+  /// rounding errors of this space, and its translation is rounded, too.
   float instance_offset(const Surface& surface) const;
   SurfacePoint point_of(const Hit& hit) const;
 

@@ -52,7 +52,7 @@ class SceneInput {
   Scene scene_;
   TimeOptions time_;
   std::optional<VolumeInput> volumes_;
-  std::optional<int> bounds_of_;  ///< frame whose media are in the segment's bounds
+  std::optional<int> bounds_of_;  ///< frame whose media the segment's bounds enclose; empty: none yet
   std::unique_ptr<SegmentScene> segment_;
   std::optional<EmissionTable> emission_;
   bool warned_range_ = false;

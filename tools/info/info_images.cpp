@@ -80,7 +80,7 @@ Facts cause_facts(const Image& image, const std::string& path) {
   return facts;
 }
 
-/// A mask in the colours of its causes, any other image by its layer.
+/// The picture of an image: a mask has one colour for each cause; any other image shows the layer of `preview`.
 Picture picture_of(const std::string& path, const Image& image, const PreviewOptions& preview) {
   if (preview.layer.empty() && !image.find("R") && is_why_mask(image)) return why_picture(image, whys_in(image, path));
   return named(path, [&] { return make_picture(image, preview); });

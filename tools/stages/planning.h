@@ -27,7 +27,7 @@ class PlanFolder {
   explicit PlanFolder(std::string path);
 
   Inputs& inputs() { return inputs_; }
-  /// True if the folder's plan is of this wish and none of its inputs has changed.
+  /// True if the folder holds a plan that was made for this wish, and none of the plan's inputs has changed since.
   bool up_to_date(const std::string& wish);
   /// The decisions for a segment: those of an earlier plan with the same key, else those of `decide`, which are stored
   /// for later plans.

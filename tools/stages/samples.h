@@ -14,9 +14,11 @@ namespace tempolux::tools {
 /// their files, and how often each stage runs in the full plan.
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish);
 
-/// Estimates the cost of the full plan after make has made the samples, from each stage's mean cost in both. The time
-/// to start and to load the scene is constant; work and bytes follow the power law of the picture's width through the
-/// two samples, times photons, rays and cameras. Throws InputError if the folder does not hold the samples.
+/// Estimates the cost of the full plan. make must have made both plans of write_samples() before. A stage's CPU time
+/// has a fixed part (start, loading the scene) and the work of its phases (StageInfo::work). Work and bytes per command
+/// are extrapolated to the full picture width by a power law through the means of the two sizes, and multiplied by the
+/// ratios of photons, rays and cameras. A stage without statistics is left out. Throws InputError if the folder does
+/// not hold the samples.
 std::vector<StageEstimate> estimate_from(const std::string& folder);
 
 }  // namespace tempolux::tools
