@@ -42,7 +42,7 @@ say() {
   passed=$(($(date +%s) - BEGAN))
   left=
   [ "$passed" -lt 10 ] || left=$(sed '$d' "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
-    '$1 > .02 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
+    '$1 > .1 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
   [ -z "$left" ] || left=", about $(clock "$left") left"
   echo "[$((n))/$TOTAL] $(clock "$passed")$left: $(in_words "$1")"
 }
@@ -72,7 +72,15 @@ count() { sed -n "s/^$1 := //p" plan.mk | wc -w; }
 
 of() { [ "$1" = 1 ] && echo "1 $2" || echo "$1 $2s"; }   # of 3 frame -> 3 frames
 
-begin() { echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" command) to run (V=1 shows them)"; }
+# How the frames get their indirect light, as the plan chose; plan.json says why.
+ways() {
+  sed -n 's/.*"indirect": "\([a-z]*\)".*/\1/p' plan.json | sort -u | paste -sd+ - |
+    sed 's/+/ and /; s/^/; indirect light by /; s/paths/camera paths/; s/gather\>/gathering/'
+}
+
+begin() {
+  echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" command) to run (V=1 shows them)$(ways)"
+}
 
 # The largest share of the pixels in which a viewer sees noise, in percent, if `make measure` has measured pictures of
 # this plan; else nothing.
@@ -105,7 +113,7 @@ end() {
       END {
         printf "%s: %.*f CPU s in all, %.1f a frame", shown, cpu < 10, cpu, cpu / frames
         last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
-        if (counted[last]) printf "; noise %.1f of 255 brightness steps", noise[last] / counted[last]
+        if (counted[last]) printf "; noise, without bias, %.1f of 255 brightness steps", noise[last] / counted[last]
         if (last == "raw") printf " before the filter"
         if (seen != "") printf "; a viewer sees noise in %s %% of the pixels (make measure)", seen
         printf "%s; look at %s/sheet.png\n", audit == "" ? "" : "; " audit, out

@@ -125,7 +125,9 @@ const FileType& type_of(const std::string& path) {
   if (path == "-") return kPhotons;  // the reader of photons reports any error
   const std::size_t first = head.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && head.substr(first).starts_with(kJson.magic)) return kJson;
-  if (head.starts_with("glTF")) throw InputError(path + ": a scene; scene-plan says what is in it");
+  if (head.starts_with("glTF"))
+    throw InputError(
+        path + ": a scene, which is not listed here; scene-plan SCENE -o FOLDER writes what moves to FOLDER/plan.json");
   throw InputError(path + ": not a file we know; it is none of our formats, no image and no JSON");
 }
 
