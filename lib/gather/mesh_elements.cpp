@@ -35,9 +35,9 @@ struct Sample {
   Vec3 position, normal;
   Rgbd flux{0.0};  ///< W
   float area = 0;
-  float width = 0;  ///< m: width of the filter around it
-  std::uint32_t material = 0;
-  double squares = 0;  ///< W^2: variance of the flux's luminance
+  float width = 0;          ///< m: width of the filter around it
+  std::uint32_t group = 0;  ///< samples share light only within a group: a material, inside or outside of solids
+  double squares = 0;       ///< W^2: variance of the flux's luminance
 };
 
 /// Irradiance by sample, and the variance of its luminance.
@@ -47,7 +47,7 @@ struct Smoothed {
   std::vector<double> variance;  ///< (W/m^2)^2
 };
 
-/// Samples by material and by cubes of space that are as wide as the filter.
+/// Samples by group and by cubes of space that are as wide as the filter.
 class Neighbours {
  public:
   Neighbours(const std::vector<Sample>& samples, float reach) : per_m_(1 / reach) {
@@ -66,7 +66,7 @@ class Neighbours {
   }
 
  private:
-  using Cube = std::array<std::int64_t, 4>;  ///< place in space, material
+  using Cube = std::array<std::int64_t, 4>;  ///< place in space, group
   struct Hash {
     std::size_t operator()(const Cube& c) const {
       std::uint64_t key = 0;
@@ -76,13 +76,13 @@ class Neighbours {
   };
   Cube cube(const Sample& s) const {
     const Vec3 p = s.position * per_m_;
-    return {std::int64_t(std::floor(p.x)), std::int64_t(std::floor(p.y)), std::int64_t(std::floor(p.z)), s.material};
+    return {std::int64_t(std::floor(p.x)), std::int64_t(std::floor(p.y)), std::int64_t(std::floor(p.z)), s.group};
   }
   float per_m_;
   std::unordered_map<Cube, std::vector<std::uint32_t>, Hash> cubes_;
 };
 
-/// Weight of a neighbour of the same material from its position alone; 0: it does not count.
+/// Weight of a neighbour of the same group from its position alone; 0: it does not count.
 float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   const float width = a.width;
   const Vec3 d = b.position - a.position;
@@ -116,7 +116,7 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
 }
 
 /// Elements that are joined because the filter does not resolve them: those in one cube of this edge [m] with the
-/// same orientation and material.
+/// same orientation and group.
 struct Joined {
   std::vector<Sample> cubes;
   std::vector<std::uint32_t> of;  ///< by element: the index of its cube
@@ -126,12 +126,12 @@ Joined join(const std::vector<Sample>& samples, float edge) {
   Joined joined;
   for (const Sample& s : samples) {
     const auto code = formats::encode_normal({s.normal.x, s.normal.y, s.normal.z});
-    std::uint64_t key = mix64(std::uint64_t(s.material) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 |
+    std::uint64_t key = mix64(std::uint64_t(s.group) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 |
                               std::uint64_t(code[1] >> kNormalBits));
     for (int c = 0; c < 3; ++c)
       key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
     const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
-    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material, 0});
+    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.group, 0});
     joined.of.push_back(found->second);
     Sample& cube = joined.cubes[found->second];
     cube.position = cube.position + s.position * s.area;
@@ -202,16 +202,32 @@ double kept_share(double energy, double variance) {
   return energy > 0 ? std::max(0.0, 1 - 0.45 * variance / energy) : 0;
 }
 
-std::vector<Sample> samples_of(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
+/// True if the first surface above the place shows its back: the place is inside a solid, where no light arrives.
+bool inside_solid(const Tracer& tracer, Vec3 place, Vec3 normal) {
+  const float above = max_component(abs(place)) * 0x1p-18f;  // the largest rounding error
+  Hit hit;
+  return tracer.intersect({place + normal * above, normal, above}, hit) &&
+         dot(tracer.surface_point(hit).normal_geometric, normal) > 0;
+}
+
+std::vector<Sample> samples_of(const Tracer& tracer, std::span<const Rgbd> flux, const MeshFilter& filter,
                                std::span<const float> widths, const std::vector<formats::MeshElement>& elements) {
   std::vector<Sample> samples(elements.size());
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    const formats::MeshElement& e = elements[i];
-    const auto n = formats::decode_normal(e.normal);
-    samples[i] = {
-        {e.position[0], e.position[1], e.position[2]},    {float(n[0]), float(n[1]), float(n[2])}, flux[i], e.area,
-        widths.empty() ? float(filter.width) : widths[i], frame.surfaces[e.surface].material,      0};
-  }
+  parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const formats::MeshElement& e = elements[i];
+      const auto n = formats::decode_normal(e.normal);
+      const Vec3 position{e.position[0], e.position[1], e.position[2]}, normal{float(n[0]), float(n[1]), float(n[2])};
+      const std::uint32_t material = tracer.frame().surfaces[e.surface].material;
+      samples[i] = {position,
+                    normal,
+                    flux[i],
+                    e.area,
+                    widths.empty() ? float(filter.width) : widths[i],
+                    2 * material + inside_solid(tracer, position, normal),
+                    0};
+    }
+  });
   return samples;
 }
 
@@ -362,9 +378,9 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements) {
   elements.resize(kept);
 }
 
-void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
+void smooth_elements(const Tracer& tracer, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements) {
-  const std::vector<Sample> samples = samples_of(frame, flux, filter, widths, elements);
+  const std::vector<Sample> samples = samples_of(tracer, flux, filter, widths, elements);
   Smoothed smoothed(samples.size());
   if (filter.kind == MeshFilter::Kind::none) {
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -376,10 +392,10 @@ void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const 
   put_light(smoothed.light, elements);
 }
 
-void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double width, std::span<const float> widths,
+void smooth_by_scales(const Tracer& tracer, const MeshFlux& flux, double width, std::span<const float> widths,
                       std::vector<formats::MeshElement>& elements) {
   const MeshFilter filter{MeshFilter::Kind::gaussian, width};
-  std::vector<Sample> samples = samples_of(frame, flux.mean, filter, widths, elements);
+  std::vector<Sample> samples = samples_of(tracer, flux.mean, filter, widths, elements);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].squares = flux.squares[i];
   const auto widen = [&] {
     for (Sample& s : samples) s.width *= 2;

@@ -111,10 +111,11 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements);
 
 /// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area,
 /// both weighted by the same kernel around the element. An element counts only if it faces the same way (normals
-/// within 30 degrees), lies within a width of the element's plane and has the same material. So no light is lost at
-/// edges, and none spreads around corners. Each object keeps its total flux. `widths` [m]: the width of each element, 0
-/// where no light arrives; empty: the filter's width everywhere.
-void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter,
+/// within 30 degrees), lies within a width of the element's plane, has the same material and lies, as the element does,
+/// outside or inside of solids: inside if the first surface above it shows its back. So no light is lost at edges, none
+/// spreads around corners, and the dark back of a wall's other face takes none. Each object keeps its total flux.
+/// `widths` [m]: the width of each element, 0 where no light arrives; empty: the filter's width everywhere.
+void smooth_elements(const Tracer& tracer, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 
 /// Flux by element.
@@ -128,7 +129,7 @@ struct MeshFlux {
 /// smooth part and two finer bands. Each place keeps the share signal / (signal + noise) of each band [Wiener]:
 /// signal + noise is the mean square of the band around the place, and noise follows from `flux.squares`. Each object
 /// keeps its total flux.
-void smooth_by_scales(const SceneFrame& frame, const MeshFlux& flux, double width, std::span<const float> widths,
+void smooth_by_scales(const Tracer& tracer, const MeshFlux& flux, double width, std::span<const float> widths,
                       std::vector<formats::MeshElement>& elements);
 
 }  // namespace tempolux

@@ -77,7 +77,7 @@ double best_kernel(const Tracer& tracer, std::span<const formats::Photon> a, std
   const std::vector<Rgbd> flux = flux_of(tracer, {a, b}, cuts, elements);
   std::array<std::vector<Vec2>, kKernels.size()> smoothed;
   for (std::size_t k = 0; k < kKernels.size(); ++k) {
-    smooth_elements(frame, flux, {MeshFilter::Kind::gaussian, width_of(kKernels[k])}, {}, elements);
+    smooth_elements(tracer, flux, {MeshFilter::Kind::gaussian, width_of(kKernels[k])}, {}, elements);
     for (const formats::MeshElement& e : elements) smoothed[k].push_back({e.irradiance[0], e.irradiance[1]});
   }
   return least_of(errors_of(elements, flux, smoothed));

@@ -7,7 +7,8 @@ static    a room in which nothing moves: error of the elements over frames in th
 alarms    the same room: share of windows that close early
 period    a room whose lamp changes by 30 % with a period of 60 and 240 frames: photons saved at equal error
 events    a lamp switched, a block put elsewhere, a block born: elements whose window reaches across
-equal     S2, S5, a furnished room: 25 k photons a frame with windows against 33 times as many in one frame, and against 25 k without windows
+equal     S2, S5, a furnished room: 25 k photons a frame with windows against 33 times as many in one frame, and against 25 k without windows:
+          without blur by elements, smoothed by pictures
 preview   METHOD=preview against QUALITY=draft: CPU seconds, seen error and flicker over a range of frames
 
 The error of an element is that of sums / area / frames, without the filter in space, against a map of many photons; the mean over area of its square, divided by the
@@ -197,7 +198,8 @@ def equal():
     frames, first = options.frames or 8, 20      # in the middle of the segment, where windows are whole
     few = min(3, frames)                         # frames with a reference
     span, judged = f"{first}-{first + frames - 1}", f"{first}-{first + few - 1}"
-    print("| scene | error, windows | one frame of 845 k | one frame of 25 k | flicker, windows / 25 k |\n|---|---:|---:|---:|---:|")
+    print("| scene | error of elements, windows | one frame of 845 k | of 25 k | error of pictures, windows | 845 k | 25 k | flicker, windows / 25 k |")
+    print("|---|---:|---:|---:|---:|---:|---:|---:|")
     for name in options.scenes.split(","):
         file, words = scene_of(name)
         words = ("--segment", 48, *words)
@@ -208,9 +210,15 @@ def equal():
             own = "p.####.photons"
             if kind != "few":
                 own = f"{kind}.####.photons"
-                run(folder, "photon-trace", file, "--frames", span if kind == "many" else judged, "--photons", count, "--seed", 7, "--kinds", "indirect", "-o", own, *words)
+                run(folder, "photon-trace", file, "--frames", span if kind == "many" else judged, "--photons", count, "--seed", 7 if kind == "many" else 8, "--kinds", "indirect", "-o", own, *words)
             width = mesh.read_meshirrad(options.work / folder / "windows.0020.meshirrad").header["filter"].split()[1]   # the same blur for all
             run(folder, "st-filter", "mesh", file, "--filter-width", width, "--cell", 2 * float(width), "--frames", span if kind != "true" else judged, "--photons", own, *words, "-o", f"{kind}.####.meshirrad")
+        for kind in ("many", "p", "true"):   # the same elements, no blur
+            run(folder, "gather-temporal", "density", file, "--frames", judged, "--photons", f"{kind}.####.photons", "--reach", 0, "--filter-width", width,
+                *words, "-o", f"one-{kind}.####.meshirrad")
+
+        def element_error(kind):
+            return rms(error(elements(folder, f"{kind}.{f:04}.meshirrad"), elements(folder, f"one-true.{f:04}.meshirrad")) for f in range(first, first + few))
         shown = {}
         for kind in ("windows", "many", "few", "true"):
             run(folder, "frame-render", file, "--frames", span if kind != "true" else judged, "--size", options.size, "--meshirrad", f"{kind}.####.meshirrad", *words,
@@ -222,7 +230,8 @@ def equal():
 
         def flicker(kind):
             return rms((b - a) - (d - c) for x, y, t, u in zip(shown[kind], shown[kind][1:], shown["true"], shown["true"][1:]) for a, b, c, d in zip(x, y, t, u))
-        print(f"| {name} | {error_of('windows'):.4f} | {error_of('many'):.4f} | {error_of('few'):.4f} | {flicker('windows') / flicker('few'):.2f} |", flush=True)
+        print(f"| {name} | " + " | ".join(f"{100 * element_error(kind):.2f} %" for kind in ("windows", "one-many", "one-p")), end=" ")
+        print(f"| {error_of('windows'):.4f} | {error_of('many'):.4f} | {error_of('few'):.4f} | {flicker('windows') / flicker('few'):.2f} |", flush=True)
 
 
 def preview():

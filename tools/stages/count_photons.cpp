@@ -102,13 +102,11 @@ void add_count_options(CLI::App& app, CountOptions& options) {
       ->check(number_between(0));
 }
 
-CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame,
-                             StaticTree& standing) {
+CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const Tracer& tracer) {
+  const SceneFrame& frame = tracer.frame();
   tool.stats().phase("read photons");
   const std::string name = frame_name(options.photons, frame.frame);
   const formats::PhotonMap map = read_map(tool, name, frame, options);
-  tool.stats().phase("build");
-  const Tracer tracer(frame, standing);
   tool.stats().phase("count", true);
   SegmentFrames segment(input, frame);
   CountedPhotons counted;

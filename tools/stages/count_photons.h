@@ -25,8 +25,7 @@ struct CountedPhotons {
 };
 /// Counts the photons of a frame over all its elements; for windows, over the sides that photons reach. Adds their
 /// number to stats.
-CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame,
-                             StaticTree& standing);
+CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const Tracer& tracer);
 
 /// Writes a file and adds its number of elements to stats.
 void write_mesh(Tool& tool, const formats::MeshirradFile& file, Output& output);

@@ -31,12 +31,13 @@ void make_texture(Tool& tool, SceneInput& input, const Options& options, int num
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  auto [file, mesh] = count_photons(tool, input, options.count, frame, standing);
+  const Tracer tracer(frame, standing);
+  auto [file, mesh] = count_photons(tool, input, options.count, tracer);
   file.header.history += tool.history_line(number);
   if (!options.count.for_windows) {
     tool.stats().phase("filter", true);
     file.header.filter = filter_text(mesh.filter, options.filter);
-    smooth_elements(frame, flux_of(file), mesh.filter, {}, file.elements);
+    smooth_elements(tracer, flux_of(file), mesh.filter, {}, file.elements);
     leave_out_dark(file.elements);
   }
   write_mesh(tool, file, output);

@@ -32,8 +32,8 @@ struct Counted {
 class Counts {
  public:
   /// `range`: the requested frames, ascending.
-  Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range)
-      : tool_(tool), input_(input), options_(options), range_(range) {
+  Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range, StaticTree& standing)
+      : tool_(tool), input_(input), options_(options), range_(range), standing_(standing) {
     if (!options.count.photons.empty() || (options.counts.size() == 1 && has_frame_pattern(options.counts[0]))) return;
     for (const std::string& name : options.counts) {
       std::shared_ptr<Counted> counted = read(name);
@@ -69,7 +69,7 @@ class Counts {
   }
   std::shared_ptr<Counted> make(int number) {
     const SceneFrame frame = input_.at(number);
-    return keep(count_photons(tool_, input_, options_.count, frame, standing_).file);
+    return keep(count_photons(tool_, input_, options_.count, Tracer(frame, standing_)).file);
   }
   std::shared_ptr<Counted> read(const std::string& name) {
     tool_.stats().phase("read counts");
@@ -95,7 +95,7 @@ class Counts {
   SceneInput& input_;
   const Options& options_;
   const std::vector<int>& range_;
-  StaticTree standing_;
+  StaticTree& standing_;
   bool named_ = false;  ///< true if counts are given as a list of names, not as a pattern or photons
   std::map<int, std::shared_ptr<const Counted>> kept_;
 };
@@ -111,10 +111,12 @@ void check_alike(const Counted& here, const Counted& other) {
                      " differ in scene, cell or kinds; count all frames of a segment with the same options");
 }
 
-void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts& counts, int number) {
+void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts& counts, StaticTree& standing,
+                  int number) {
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
+  const Tracer tracer(frame, standing);
   std::size_t at = 0;
   const auto found = counts.around(frame, at);
   const Counted& here = *found[at];
@@ -148,7 +150,7 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
   for (Rgbd& flux : light.flux.mean) flux *= here.header.unit;
   for (double& squares : light.flux.squares) squares *= here.header.unit * here.header.unit;
   file.header.filter = "gaussian " + formats::text_of(window_options.width);
-  smooth_by_scales(frame, light.flux, window_options.width, light.widths, file.elements);
+  smooth_by_scales(tracer, light.flux, window_options.width, light.widths, file.elements);
   double frames = 0, lit = 0;
   for (const formats::MeshElement& e : file.elements)
     if (e.photons > 0) frames += 1 + e.before + e.after, ++lit;
@@ -204,9 +206,10 @@ int photon_windows(int argc, char** argv) {
     options.count.frames = 2 * options.window.reach + 1;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);
-    Counts counts(tool, input, options, frames);
+    StaticTree standing;
+    Counts counts(tool, input, options, frames, standing);
     for (const int& frame : frames) {
-      make_windows(tool, input, options, counts, frame);
+      make_windows(tool, input, options, counts, standing, frame);
       tool.progress(double(&frame - frames.data() + 1) / double(frames.size()));
     }
     return exit_ok;

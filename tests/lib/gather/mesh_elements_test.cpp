@@ -18,14 +18,13 @@ namespace tempolux {
 namespace {
 
 /// The elements that receive light through the filter, in the order of the file.
-std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums,
-                                                const MeshFilter& filter) {
-  std::vector<formats::MeshElement> elements = all_elements(frame, sums.cuts());
+std::vector<formats::MeshElement> light_texture(const Tracer& tracer, const MeshSums& sums, const MeshFilter& filter) {
+  std::vector<formats::MeshElement> elements = all_elements(tracer.frame(), sums.cuts());
   put_sums(sums, elements);
   std::vector<Rgbd> flux;
   for (const formats::MeshElement& e : elements)
     flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * sums.unit());
-  smooth_elements(frame, flux, filter, {}, elements);
+  smooth_elements(tracer, flux, filter, {}, elements);
   leave_out_dark(elements);
   return elements;
 }
@@ -42,7 +41,7 @@ class LightTexture : public testing::Test {
   template <class Irradiance>
   std::vector<formats::Photon> photons(const Irradiance& irradiance) {
     std::vector<formats::Photon> photons;
-    for (const formats::MeshElement& e : light_texture(room_.frame(), full(), {MeshFilter::Kind::none, 1})) {
+    for (const formats::MeshElement& e : light_texture(*tracer_, full(), {MeshFilter::Kind::none, 1})) {
       const Vec3 p{e.position[0], e.position[1], e.position[2]};
       formats::Photon& photon = photons.emplace_back();
       photon.position = e.position;
@@ -77,7 +76,7 @@ class LightTexture : public testing::Test {
   std::vector<formats::MeshElement> texture(const std::vector<formats::Photon>& photons, const MeshFilter& filter) {
     MeshSums sums(*tracer_, cuts_, 1e-12);
     sums.add(photons, {});
-    return light_texture(room_.frame(), sums, filter);
+    return light_texture(*tracer_, sums, filter);
   }
 
   test::HandMadeScene room_;
@@ -183,8 +182,8 @@ TEST_F(LightTexture, ScalesRemoveNoise) {
   const auto even = [](float) { return 450.0; };
   std::vector<formats::MeshElement> elements = all_elements(room_.frame(), cuts_), coarse = elements;
   const MeshFlux flux = scattered(elements, even);
-  smooth_by_scales(room_.frame(), flux, 0.1, {}, elements);
-  smooth_elements(room_.frame(), flux.mean, {MeshFilter::Kind::gaussian, 0.4}, {}, coarse);
+  smooth_by_scales(*tracer_, flux, 0.1, {}, elements);
+  smooth_elements(*tracer_, flux.mean, {MeshFilter::Kind::gaussian, 0.4}, {}, coarse);
   EXPECT_LT(rms(elements, even), std::numbers::sqrt2 * rms(coarse, even));
   double kept = 0, wanted = 0;  // irradiance is rounded to float32, errors of 2^-25 that are independent
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -200,10 +199,33 @@ TEST_F(LightTexture, ScalesKeepWhereLightVaries) {
   const auto step = [](float x) { return x < 0 ? 4.5e6 : 1.8e7; };
   std::vector<formats::MeshElement> elements = all_elements(room_.frame(), cuts_), narrow = elements;
   const MeshFlux flux = scattered(elements, step);
-  smooth_by_scales(room_.frame(), flux, 0.1, {}, elements);
-  smooth_elements(room_.frame(), flux.mean, {MeshFilter::Kind::gaussian, 0.1}, {}, narrow);
+  smooth_by_scales(*tracer_, flux, 0.1, {}, elements);
+  smooth_elements(*tracer_, flux.mean, {MeshFilter::Kind::gaussian, 0.1}, {}, narrow);
   for (std::size_t i = 0; i < elements.size(); ++i)
     EXPECT_NEAR(elements[i].irradiance[0] / narrow[i].irradiance[0], 1, 0.01);
+}
+
+/// A plate of .1 m that light meets from above alone. Its lower face has a back side in the plate, which faces up like
+/// the upper face and lies within a width of it. No light arrives there. The kernel must leave it out: the irradiance
+/// on top is 1, not 1 / (1 + exp(-.5 (.1/.3)^2)) = .51.
+TEST(LightTextures, BacksOfSolidsTakeNoLight) {
+  test::HandMadeScene plate;
+  plate.add_box({-1, 0, -1}, {1, 0.1f, 1}, test::matte(Rgb(0.5f)));
+  const Tracer tracer(plate.frame());
+  std::vector<formats::MeshElement> elements = all_elements(plate.frame(), MeshCuts(0.2, {&plate.frame()}));
+  const auto on_top = [](const formats::MeshElement& e) {
+    return e.position[1] > 0.099f && formats::decode_normal(e.normal)[1] > 0.9;
+  };
+  std::vector<Rgbd> flux;
+  for (const formats::MeshElement& e : elements) flux.push_back(Rgbd(on_top(e) ? double(e.area) : 0.0));
+  smooth_elements(tracer, flux, {MeshFilter::Kind::gaussian, 0.3}, {}, elements);
+  int count = 0;
+  for (const formats::MeshElement& e : elements)
+    if (on_top(e)) {
+      EXPECT_NEAR(e.irradiance[1], 1, 1e-5);
+      ++count;
+    }
+  EXPECT_GT(count, 0);
 }
 
 TEST_F(LightTexture, WidthsFollowFromThePhotons) {

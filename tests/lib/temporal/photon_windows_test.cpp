@@ -197,7 +197,7 @@ TEST_F(CollectWindows, KeepPower) {
   for (const formats::MeshElement& e : elements) ASSERT_EQ(e.before + e.after, 32);
   EXPECT_NEAR(channel(light.flux), wanted, 1e-9 * wanted);
   // The filter in space keeps it, too: irradiance is rounded to float32, errors of 2^-25 that are independent.
-  smooth_by_scales(room_.frame(), light.flux, 0.5, light.widths, elements);
+  smooth_by_scales(Tracer(room_.frame()), light.flux, 0.5, light.widths, elements);
   double smoothed = 0;
   for (const formats::MeshElement& e : elements) smoothed += double(e.irradiance[1]) * double(e.area);
   EXPECT_NEAR(smoothed, wanted, 1e-8 * wanted);
