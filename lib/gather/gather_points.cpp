@@ -44,6 +44,7 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
   const PlacedPoints placed = place_points(frame, options);
   const auto own_points = std::ranges::find_if(placed.points, [&](const auto& p) { return moving.contains(p.object); });
   const auto static_count = std::size_t(own_points - placed.points.begin());
+  if (points.points.empty()) points.spacing = placed.spacing;  // nothing stands still: any spacing fits
   if (static_count != points.points.size() || placed.spacing != points.spacing)
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
                      std::to_string(points.points.size()) + ", not " + std::to_string(static_count) +

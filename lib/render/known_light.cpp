@@ -1,6 +1,7 @@
 #include "lib/render/known_light.h"
 
 #include "lib/gather/mesh_light.h"
+#include "lib/material/inside.h"
 #include "lib/render/localised_light.h"
 #include "lib/render/shading.h"
 
@@ -43,15 +44,19 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
   Hit hit;
   tracer.intersect(ray, hit);
   float distance = 0;
+  Rgb passed(1.0f);
+  Inside inside;
   for (std::uint32_t mirrors = 0; hit.surface != kNone; ++mirrors) {
     SurfacePoint point = tracer.surface_point(hit);
     distance += hit.t;
     const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(distance));
     const ShadingPoint shading(point, -ray.direction, material);
+    const bool front = dot(point.normal_geometric, ray.direction) < 0;
+    passed *= inside.transmittance_to(tracer.frame().materials, point.material, front, hit.t);
     if (shading.bsdf.has_diffuse()) {
       // Size of a pixel at the hit: the angle between the rays of neighbouring pixels times the length of the path.
       const float step = view.pixel_size(distance);
-      return SeenPoint{point, shading.normal, step, mirrors > 0};
+      return SeenPoint{point, shading.normal, step, mirrors > 0, passed};
     }
     if (mirrors + 1 == kMirrorsInARow) break;
     // u = 0.5 chooses the lobe that has more than half of the light.
@@ -59,6 +64,8 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
     const Vec2 within = look.random ? look.random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};
     const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, lobe, within);
     if (is_black(next.weight)) break;
+    passed *= next.weight;
+    if (is_solid_glass(material)) inside.scatter(point.material, front, next.transmitted);
     ray = spawn_ray(point, shading.frame.to_world(next.wi));
     hit = {};
     tracer.intersect(ray, hit);

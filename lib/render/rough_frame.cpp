@@ -365,15 +365,16 @@ MissedLight missed_light(const SeenPhotons& photons, double found, double sample
 
 /// Compares paths with photons: the light that paths miss, and the error that a map of caustic photons would have.
 void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
-  const double allowed2 = picture.levels.picture * picture.levels.picture;
-  if (!(allowed2 > 0)) return;
   const auto seen = [&](formats::PathKind kind) { return see_photons(picture.scene, picture.view, photons, kind); };
-  const SeenPhotons caustics = seen(formats::PathKind::caustic);
+  const SeenPhotons caustics = seen(formats::PathKind::caustic), indirect = seen(formats::PathKind::indirect);
+  // If paths find no light at all, the picture is as bright as photons show.
+  const double level = picture.levels.picture > 0 ? picture.levels.picture : caustics.mean + indirect.mean,
+               allowed2 = level * level;
+  if (!(allowed2 > 0)) return;
   const double samples = kSamples * double(paths.size());
   rough.missed_caustic =
       missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
-  rough.missed = missed_light(seen(formats::PathKind::indirect),
-                              mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
+  rough.missed = missed_light(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
   rough.map_error = kMapError2 * caustics.square / allowed2;
   // The spots of a map are as wide as the footprint of its photons, so that fewer of them lie in the filter's window.
   const double pixels = double(picture.view.width()) * picture.view.height(),

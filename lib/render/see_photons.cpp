@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
+#include "lib/core/sobol.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
 #include "lib/gather/footprint_density.h"
+#include "lib/render/known_light.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
 namespace {
 
 constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture over which the mean square is taken
+constexpr std::size_t kLooks = 4096;      ///< camera rays that follow mirrors and glass
 /// Share of the ray's length: if the hit of a camera ray is farther from the photon than this, the camera does not
 /// see the photon.
 constexpr float kSame = 1e-3f;
@@ -34,7 +38,15 @@ double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std:
 struct SeenFlux {
   double radiance = 0;
   std::size_t cell = 0;
+  double noise = 0;  ///< through mirrors and glass: the same sum with the random signs of light paths
 };
+
+/// x, y: place in the picture, in [0, 1).
+std::size_t cell_at(double x, double y) {
+  const auto cell = [](double at, int cells) { return std::size_t(std::min(cells - 1.0, at * cells)); };
+  return cell(y, kRows) * kColumns + cell(x, kColumns);
+}
+
 /// Contribution of photon i: flux x rho / pi x picture_share if the camera sees it, else 0. Nothing is blurred, so the
 /// sum over photons is unbiased.
 SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const PhotonView& photons, std::size_t i) {
@@ -62,9 +74,45 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const Photo
     flux *=
         received_share(wi, normal, {shading.normal_geometric, shading.facing(smooth), shading.normal, &shading.bsdf});
   }
-  const auto cell = [](double x, int size, int cells) { return std::size_t(std::min(cells - 1.0, x / size * cells)); };
   return {double(channel_mean(albedo * flux)) / kPi * picture_share(view, point, normal, *at),
-          cell((*at)[1], view.height(), kRows) * kColumns + cell((*at)[0], view.width(), kColumns)};
+          cell_at((*at)[0] / view.width(), (*at)[1] / view.height())};
+}
+
+/// The light of a place that camera ray i of kLooks reaches through mirrors and glass, by a density of photons.
+SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, std::optional<SeenPoint>& seen,
+                     Vec2 u) {
+  if (!seen) return {};
+  const Vec3 normal = seen->surface.normal_geometric;
+  const bool front = dot(normal, seen->normal) > 0;
+  const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
+  const Bsdf bsdf(material, front);
+  const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
+  float smooth_over = 0;
+  Rgb noise(0.0f);
+  const LitSurface lit{front ? normal : -normal, seen->normal, seen->normal, &bsdf};
+  const Rgb irradiance = density.estimate(seen->surface.position, lit, smooth_over, &noise);
+  return {channel_mean(weight * irradiance), cell_at(u.x, u.y), channel_mean(weight * noise)};
+}
+
+std::vector<SeenFlux> all_behind(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
+                                 formats::PathKind kind) {
+  const auto at = [](std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); };
+  std::vector<std::optional<SeenPoint>> places(kLooks);
+  parallel_chunks(kLooks, 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Look look{at(i).x * float(view.width()), at(i).y * float(view.height()), PathRandom(kLooks, i)};
+      places[i] = seen_through(scene.tracer, view, look);
+      if (places[i] && !places[i]->by_choice) places[i].reset();
+    }
+  });
+  std::vector<SeenFlux> behind;
+  if (std::ranges::none_of(places, [](const auto& place) { return place.has_value(); })) return behind;
+  const FootprintDensity density(scene.tracer, photons, {.asked = 8}, kind_bit(kind));
+  behind.resize(density.empty() ? 0 : kLooks);
+  parallel_chunks(behind.size(), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) behind[i] = seen_behind(scene, density, places[i], at(i));
+  });
+  return behind;
 }
 
 }  // namespace
@@ -76,16 +124,25 @@ SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const 
     for (std::size_t i = first; i < last; ++i)
       if (photons.photons[i].kind == kind) seen[i] = seen_flux(scene, view, photons, i);
   });
+  const std::vector<SeenFlux> behind = all_behind(scene, view, photons, kind);
   SeenPhotons pilot;
-  std::vector<double> cells(kRows * kColumns, 0.0);
-  double squares = 0;
+  std::vector<double> cells(kRows * kColumns, 0.0), noise(kRows * kColumns, 0.0);
+  double squares = 0, through = 0, squares_behind = 0;
   for (const SeenFlux& one : seen) {
     pilot.mean += one.radiance;
     pilot.photons += one.radiance > 0;
     squares += one.radiance * one.radiance;
     cells[one.cell] += one.radiance;
   }
-  pilot.mean_error = std::sqrt(squares);
+  for (const SeenFlux& one : behind) {
+    through += one.radiance;
+    cells[one.cell] += one.radiance;
+    noise[one.cell] += one.noise;
+  }
+  for (const double cell : noise) squares_behind += cell * cell;
+  pilot.mean += through;
+  pilot.mean_error = std::sqrt(squares + squares_behind);
+  if (squares_behind > 0) pilot.photons += through * through / squares_behind;  // as many of equal flux
   for (const double cell : cells) pilot.square += cell * cell * double(cells.size());
   return pilot;
 }

@@ -96,6 +96,12 @@ class HandMadeScene {
     light.node = std::uint32_t(frame_.lights.size());
     frame_.lights.push_back(light);
   }
+  /// A sun without size that shines along `travel`, unit.
+  void add_sun(Vec3 travel, Rgb irradiance) {
+    add_point_light({}, irradiance);
+    frame_.lights.back().light.kind = PunctualLight::Kind::directional;
+    frame_.lights.back().direction = travel;
+  }
   /// Returns the finished frame, static surfaces first.
   const SceneFrame& frame() {
     frame_.surfaces = fixed_;

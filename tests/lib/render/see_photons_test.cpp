@@ -6,6 +6,7 @@
 #include "lib/render/choose_light.h"
 #include "lib/render/pilot_photons.h"
 #include "tests/support/frames.h"
+#include "tests/support/materials.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -23,10 +24,9 @@ struct Pilots {
   RoughFrame rough;
   std::vector<Way> ways;
 };
-/// A wall 4 m wide at z = 0, seen whole by an orthographic camera of 3.2 x 1.8 m, and a floor in front of it.
-Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
+/// A wall 4 m wide at z = 0, of which an orthographic camera sees 3.2 x 1.8 m.
+Pilots pilots_of(test::HandMadeScene& scene) {
   scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, test::matte(Rgb(0.5f)));
-  scene.add_quad({-4, 0, 8}, {8, 0, 8}, {8, 0, 0}, {-4, 0, 0}, floor);
   const SceneFrame frame = scene.frame();
   const EmissionTable table = build_emission_table(std::span(&frame, 1));
   const Tracer tracer(frame);
@@ -43,6 +43,12 @@ Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
   return {see_photons({tracer, lights}, view, photons, formats::PathKind::caustic),
           see_photons({tracer, lights}, view, photons, formats::PathKind::indirect), rough,
           ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
+}
+
+/// The same with a floor in front of the wall.
+Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
+  scene.add_quad({-4, 0, 8}, {8, 0, 8}, {8, 0, 0}, {-4, 0, 0}, floor);
+  return pilots_of(scene);
 }
 
 /// A point lamp of I = 1 W/sr, 2 m before the wall at the camera's height, over a mirror: its mirror image lights the
@@ -76,6 +82,25 @@ TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
   const auto [photons, indirect, rough, ways] = pilots_of(scene, mirror(0.6f));
   EXPECT_GT(photons.mean, 0);
   EXPECT_EQ(rough.missed_caustic.square, 0) << "both find the same light";
+}
+
+/// A sun without size, E = 1 W/m^2, shines at right angles through a slab of smooth glass, through which the camera
+/// sees the wall. A face reflects R = (n - 1)^2 / (n + 1)^2 = .04. With all reflections between its faces, the slab
+/// transmits T = (1 - R) / (1 + R) [Stokes 1862], once on the way to the wall and once to the camera: the radiance is
+/// rho / pi E T^2. The wall's border is farther from the picture than a footprint is wide. 4096 camera rays of which
+/// T pass err by (T (1 - T) / 4096)^1/2 = .4 %; the photons' own error is measured.
+TEST(SeePhotons, TheSunIsSeenThroughASlabOfGlass) {
+  test::HandMadeScene scene;
+  scene.add_box({-1, -1, 1}, {5, 5, 1.1f}, test::glass(0));
+  scene.add_sun({0, 0, -1}, Rgb(1.0f));
+  const auto [photons, indirect, rough, ways] = pilots_of(scene);
+  const double transmitted = 0.96 / 1.04, expected = 0.5 / M_PI * transmitted * transmitted;
+  EXPECT_LT(photons.mean_error / expected, 0.05);
+  EXPECT_NEAR(photons.mean, expected, 4 * (photons.mean_error + 0.004 * expected));
+  EXPECT_EQ(rough.radiance, 0) << "no path finds any light";
+  const double level = photons.mean + indirect.mean;
+  EXPECT_GT(rough.missed_caustic.square, 0.5 * photons.square / (level * level));
+  EXPECT_TRUE(ways.front().map);
 }
 
 TEST(SeePhotons, WithoutMirrorsThereIsNoneToFind) {
