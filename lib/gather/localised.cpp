@@ -19,8 +19,6 @@ constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor,
 /// would hold 3 photons with a standard deviation of 3.5 %, which a viewer sees as flicker (docs/methods/dynamic.md).
 constexpr float kWider = 7;
 
-constexpr InterpolationOptions kInfluenceStore{.least_cosine = 0, .only_read = true};
-
 constexpr float kAny = std::numeric_limits<float>::min();  ///< any positive weight reaches this sum
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
@@ -65,7 +63,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                                const InfluenceThresholds& thresholds)
-    : store_(kInfluenceStore), above_(kInfluenceStore), below_(kInfluenceStore), thresholds_(thresholds) {
+    : store_(true), above_(true), below_(true), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
