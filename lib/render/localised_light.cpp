@@ -29,9 +29,6 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
 }
 
 std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading) const {
-  // Every valid record of updated_ is one of influence_, too. If none of them is above the lower threshold, f is 0.
-  if (!moving_.contains(surface.object) && !influence_.is_above_low(surface.position, shading))
-    if (const std::optional<Rgb> updated = updated_.irradiance(surface.position, shading)) return updated;
   const float share = gathered_share(surface, shading);
   Rgb sum{0.0f};
   if (share < 1) {
