@@ -23,10 +23,8 @@ constexpr float kLift = 1e-4f;  ///< share of a radius: largest error at the rim
 constexpr float kAlmost = 0.999999f;
 constexpr int kMostHalvings = 6;  ///< of a footprint's radius, if hardly any of the footprint is surface
 constexpr std::size_t kLeavesAtOnce = 16;
-constexpr float kSamePlane = 0.999999f, kGolden = 0.6180340f;
 /// Probes that must arrive if a footprint is not a whole disc. Their noise equals that of one photon among k.
 constexpr int kAreaProbes = 16;
-enum : std::uint8_t { kUnknown, kWhole, kNotWhole };
 
 }  // namespace
 
@@ -75,7 +73,6 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
       leaf.narrow2[lane] = radius < kAlmost * options_.max_radius ? (radius + margin) * (radius + margin) : -1;
     }
   });
-  leaf_whole_ = std::make_unique<std::atomic<std::uint8_t>[]>(leaves);
   build_tree();
 }
 
@@ -178,47 +175,13 @@ FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const
   return extent;
 }
 
-/// True if all footprints of a leaf lie in one whole disc. Tests spokes of that disc and one spoke of each footprint,
-/// because where photons are dense three rays per photon are cheaper than a test of each footprint.
-bool FootprintDensity::leaf_whole(std::size_t number) const {
-  std::atomic<std::uint8_t>& known = leaf_whole_[number];
-  const std::uint8_t before = known.load(std::memory_order_relaxed);
-  if (before != kUnknown) return before == kWhole;
-  const bool whole = measure_leaf(number);
-  known.store(whole ? kWhole : kNotWhole, std::memory_order_relaxed);
-  return whole;
-}
-
-bool FootprintDensity::measure_leaf(std::size_t number) const {
-  const auto first = std::uint32_t(number * kLeaf), last = std::uint32_t(std::min((number + 1) * kLeaf, index_.size()));
-  const Vec3 normal = normal_of(first);
-  Vec3 middle{0, 0, 0};
-  for (std::uint32_t i = first; i < last; ++i) middle = middle + index_.position(i) * (1 / float(last - first));
-  float radius = 0;
-  for (std::uint32_t i = first; i < last; ++i) {
-    const Vec3 away = index_.position(i) - middle;
-    if (dot(normal_of(i), normal) < kSamePlane || std::abs(dot(away, normal)) > area_.offset()) return false;
-    radius = std::max(radius, std::sqrt(length2(away)) + outer_radius(i));
-  }
-  const float turn = PathRandom(0x6c656166ull, index_.source(first)).get1(0, Purpose::points);
-  if (!area_.whole(middle, normal, radius, turn, kLift * radius)) return false;
-  const Frame frame(normal);
-  for (std::uint32_t i = first; i < last; ++i) {
-    const float phi = 2 * kPi * kGolden * float(i);
-    const Vec3 outwards = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
-    if (!area_.whole_towards(index_.position(i), normal, outwards, outer_radius(i), kLift * outer_radius(i)))
-      return false;
-  }
-  return true;
-}
-
 /// Measures the area of a footprint. Makes the footprint smaller while it is mostly empty, as around a photon on a
 /// wire.
 FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   const Vec3 position = index_.position(photon), normal = normal_of(photon);
   const PathRandom random(0x666f6f74ull, index_.source(photon));
   float radius = outer_radius(photon);
-  if (radius < kThin * area_.offset() || leaf_whole(photon / kLeaf) ||
+  if (radius < kThin * area_.offset() ||
       area_.whole(position, normal, radius, random.get1(2, Purpose::points), kLift * radius))
     return Extent::of_whole_disc(radius);
   for (int i = 0; i <= kMostHalvings; ++i, radius /= 2) {

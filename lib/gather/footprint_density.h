@@ -142,8 +142,6 @@ class FootprintDensity {
   bool scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   Extent extent_of(std::uint32_t photon) const;
   Extent measure(std::uint32_t photon) const;
-  bool leaf_whole(std::size_t leaf) const;
-  bool measure_leaf(std::size_t leaf) const;
   float outer_radius(std::uint32_t photon) const;
   Vec3 normal_of(std::uint32_t photon) const;
 
@@ -156,7 +154,6 @@ class FootprintDensity {
   std::unique_ptr<Leaf[]> leaves_;   ///< in the order of the index; unused places hold NaN, which covers nothing
   BoxTree tree_;                     ///< over the boxes of footprints with their margins
   std::unique_ptr<std::atomic<Extent>[]> extents_;
-  std::unique_ptr<std::atomic<std::uint8_t>[]> leaf_whole_;
 };
 
 }  // namespace tempolux

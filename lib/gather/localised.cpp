@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "lib/core/parallel.h"
@@ -18,10 +17,6 @@ constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor,
 /// deviation is sqrt(150) / (50 x 7^2) = .5 % of the static light, about the noise of gather rays. The narrow disc
 /// would hold 3 photons with a standard deviation of 3.5 %, which a viewer sees as flicker (docs/methods/dynamic.md).
 constexpr float kWider = 7;
-
-constexpr InterpolationOptions kInfluenceStore{.least_cosine = 0, .only_read = true};
-
-constexpr float kAny = std::numeric_limits<float>::min();  ///< any positive weight reaches this sum
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -65,7 +60,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                                const InfluenceThresholds& thresholds)
-    : store_(kInfluenceStore), above_(kInfluenceStore), below_(kInfluenceStore), thresholds_(thresholds) {
+    : store_(true), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -82,17 +77,6 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
   }
   if (!records.empty()) least_ = kLeastShare * float(sum / double(records.size()));
   store_.add(pairs);
-  std::vector<IrradianceRecord> above, below;
-  for (const IrradianceRecord& pair : pairs) {
-    // The static irradiance counts here as it is, without least_. A mean of values raised to least_ may be larger
-    // than the mean raised to least_, so an interpolated influence may be above `low` although no record with a
-    // raised value is.
-    const Rgb light = pair.irradiance;
-    if (light.r > thresholds_.low * light.g) above.push_back(pair);
-    if (thresholds_.gathered_share(relative(light)) < 1) below.push_back(pair);
-  }
-  above_.add(above);
-  below_.add(below);
 }
 
 float InfluenceField::relative(Rgb pair) const {
@@ -103,13 +87,6 @@ float InfluenceField::relative(Rgb pair) const {
 float InfluenceField::at(Vec3 position, Vec3 normal) const {
   const std::optional<Rgb> found = store_.irradiance(position, normal);
   return found ? relative(*found) : INFINITY;
-}
-
-bool InfluenceField::is_above_low(Vec3 position, Vec3 normal) const { return above_.covers(position, normal, kAny); }
-
-float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
-  if (!below_.covers(position, normal, kAny)) return 1;
-  return is_above_low(position, normal) ? thresholds_.gathered_share(at(position, normal)) : 0;
 }
 
 }  // namespace tempolux

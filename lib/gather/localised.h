@@ -48,22 +48,15 @@ class InfluenceField {
   /// the static irradiance there. The static irradiance counts as at least a hundredth of the records' mean. Infinite
   /// where no record is valid.
   float at(Vec3 position, Vec3 normal) const;
-  /// True if a record above the lower threshold is valid there. If only records below it are valid, the share of E_y
-  /// is 0: the quotient of two weighted means is at most the largest quotient of single records. Most places have no
-  /// such record.
-  bool is_above_low(Vec3 position, Vec3 normal) const;
-  /// Share of E_y there: InfluenceThresholds::gathered_share(at()). 1 where no valid record is below the upper
-  /// threshold.
-  float gathered_share(Vec3 position, Vec3 normal) const;
+  /// Share of E_y there: InfluenceThresholds::gathered_share(at()).
+  float gathered_share(Vec3 position, Vec3 normal) const { return thresholds_.gathered_share(at(position, normal)); }
   const InfluenceThresholds& thresholds() const { return thresholds_; }
 
  private:
   /// Influence in the unit of the thresholds. pair: r is the influence, g the static irradiance, both in W/m^2.
   float relative(Rgb pair) const;
 
-  /// Stores of records whose irradiance holds such pairs (r influence, g static irradiance): all records, those above
-  /// the lower threshold, those below the upper one.
-  RecordStore store_, above_, below_;
+  RecordStore store_;  ///< records whose irradiance holds such pairs
   InfluenceThresholds thresholds_;
   float least_ = 0;  ///< W/m^2
 };

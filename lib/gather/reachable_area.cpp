@@ -80,29 +80,19 @@ ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tra
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
-/// whole_towards() with `start` (start_of) and `down` (depth_of, m), which are the same for all spokes.
-inline bool ReachableArea::whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift,
-                                      float down) const {
-  const Vec3 rim = start + normal * lift + outwards * radius;
-  Hit hit;
-  return reach_.free(start, rim) && tracer_.intersect({rim, -normal, 0, down, true}, hit) &&
-         stores_[tracer_.frame().surfaces[hit.surface].material];
-}
-
 bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn, float lift) const {
   const Frame frame(normal);
-  const Vec3 start = start_of(position, normal);
-  const float down = depth_of(radius, lift);
+  const Vec3 start = position + normal * (2 * offset());
+  const float down = 2 * offset() + lift + std::max(4 * offset(), kFlat * radius);
   for (int i = 0; i < kRim; ++i) {
     const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
-    if (!whole_from(start, normal, frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi), radius, lift, down))
+    const Vec3 rim = start + normal * lift + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * radius;
+    Hit hit;
+    if (!reach_.free(start, rim) || !tracer_.intersect({rim, -normal, 0, down, true}, hit) ||
+        !stores_[tracer_.frame().surfaces[hit.surface].material])
       return false;
   }
   return true;
-}
-
-bool ReachableArea::whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, float radius, float lift) const {
-  return whole_from(start_of(position, normal), normal, outwards, radius, lift, depth_of(radius, lift));
 }
 
 /// Area of the reachable surface in a column, over the column's cross section: the sum of 1 / cos of the surfaces'

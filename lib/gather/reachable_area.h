@@ -57,20 +57,12 @@ class ReachableArea {
   /// turned by `turn` in [0, 1), miss walls that cut off less than 0.4 % of the disc. `lift`: m above the plane at
   /// which spokes end, for normals with an error of lift / radius.
   bool whole(Vec3 position, Vec3 normal, float radius, float turn, float lift = 0) const;
-  /// Tests one of these places.
-  bool whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, float radius, float lift) const;
 
   /// 1 / reachable area [1/m^2], exact in the mean. 0 if none of kMostProbes * probes columns arrives; with the round
   /// kernel also if fewer than `probes` arrive, or none of the first quarter.
   double inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel, const PathRandom& random) const;
 
  private:
-  /// The start of rays along a disc, and the distance that they look down from its rim.
-  Vec3 start_of(Vec3 position, Vec3 normal) const { return position + normal * (2 * offset()); }
-  float depth_of(float radius, float lift) const {
-    return 2 * offset() + lift + std::max(4 * offset(), kFlat * radius);
-  }
-  bool whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift, float down) const;
   float column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const;
 
   const Tracer& tracer_;

@@ -141,31 +141,6 @@ TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
   EXPECT_NEAR(change.influence, 25, 4 * 25 / std::sqrt(196.0f));
 }
 
-TEST(Influence, ShareOfGatheringIsThatOfTheInfluenceEverywhere) {
-  // Records with influences on both sides of the thresholds, some isolated, some in the dark. The look-up that ends
-  // early agrees with the mean at every place. Places with no share, a part and all of E_y all occur.
-  const PathRandom random(1, 2);
-  std::vector<IrradianceRecord> records;
-  std::vector<float> influences;
-  for (std::uint32_t i = 0; i < 60; ++i) {
-    const Vec2 u = random.get2(i, Purpose::test), v = random.get2(i, Purpose::place);
-    records.push_back(record({20 * u.x, 0, 20 * u.y}, i % 4 == 0 ? 0 : 1 + v.x));
-    influences.push_back(v.y < 0.7f ? 0.05f * v.y : 0.9f * (v.y - 0.7f));
-    if (i % 4 == 0) influences.back() *= 0.01f;  // as large as the influence at the least irradiance
-  }
-  const InfluenceField field(records, influences, {});
-  int none = 0, all = 0, some = 0;
-  for (std::uint32_t i = 0; i < 4000; ++i) {
-    const Vec2 u = random.get2(i, Purpose::scatter), v = random.get2(i, Purpose::lobe);
-    const Vec3 at{20 * u.x, 0, 20 * u.y}, normal = normalize(Vec3{v.x - 0.5f, 1, v.y - 0.5f});
-    const float share = field.gathered_share(at, normal);
-    // A mean of ratios at the threshold may round to above it, by 1e-7: t^2 = 1e-11.
-    ASSERT_NEAR(share, field.thresholds().gathered_share(field.at(at, normal)), 1e-9f);
-    ++(share == 0 ? none : share == 1 ? all : some);
-  }
-  EXPECT_GT(std::min({none, all, some}), 50);
-}
-
 TEST(Influence, BesideADarkRecordTheMeanDecides) {
   // The mean irradiance is 100, so least_ is 1. Both records have relative influences below the threshold of .06:
   // .0594 / 1 and .1188 / 2. Halfway between them the means are .0891 and 1, and their quotient is above the
