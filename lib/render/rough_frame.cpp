@@ -211,8 +211,23 @@ SampleEffort effort_of(const Picture& picture, const Samples& samples, double ti
     }
     return LightNoise(roots * roots, roots > 0 ? roots_left / roots : 1);
   };
-  return {work, of([](const Sample& s) { return s.sum(); }), of([](const Sample& s) { return s.other + s.indirect; }),
-          of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
+  const auto lost = [&](const PartOfLight& light) {
+    double above = 0;
+    for (const auto& some : samples) {
+      std::array<double, kSamples> values;
+      std::ranges::transform(some, values.begin(), light);
+      std::ranges::sort(values, std::greater());
+      above += std::max(0.0, values[0] - std::max(values[1], times * picture.levels.white));
+    }
+    return above > 0 ? above / (kSamples * double(samples.size()) * picture.levels.picture) : 0;
+  };
+  return {work,
+          of([](const Sample& s) { return s.sum(); }),
+          of([](const Sample& s) { return s.other + s.indirect; }),
+          of([](const Sample& s) { return s.other + s.caustic; }),
+          of([](const Sample& s) { return s.other; }),
+          lost([](const Sample& s) { return s.caustic; }),
+          lost([](const Sample& s) { return s.indirect; })};
 }
 
 /// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
@@ -393,6 +408,7 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   rough.gather.work = Work::kRay * (1 + seen);
   rough.gather.all = rough.path.other;
   rough.gather.without_caustic = rough.path.other_without_caustic;
+  rough.gather.lost_caustic = rough.gather.lost_indirect = 0;
   rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
 }
 
