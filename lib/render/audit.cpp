@@ -14,9 +14,7 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-/// Effective number of equal photons in view, and of equal paths that found light: an estimate from fewer gets no
-/// standard error.
-constexpr double kFewest = 32;
+constexpr double kFewest = 32;  ///< effective photons or paths: an estimate from fewer gets no standard error
 /// Largest share of one map or path in the sum of squares: above this the standard error is not known.
 constexpr double kMostOfOne = 0.5;
 /// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as two camera

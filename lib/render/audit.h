@@ -54,7 +54,7 @@ AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed
 /// the maps are independent and equally distributed, however the starts within one map are stratified. An estimate is
 /// not reported if one map or path holds more than half of its sum of squares, or if its photons or its paths' light
 /// count for fewer than 32 equal photons or paths, by (sum)^2 / sum of squares. Paths alone cannot know that a frame is
-/// too bright: they may miss light that is met by one path in thousands.
+/// too bright: they may miss rare light.
 class FrameAudit {
  public:
   static constexpr std::size_t kMaps = 32;

@@ -211,23 +211,19 @@ SampleEffort effort_of(const Picture& picture, const Samples& samples, double ti
     }
     return LightNoise(roots * roots, roots > 0 ? roots_left / roots : 1);
   };
-  const auto lost = [&](const PartOfLight& light) {
+  const auto lost = [&](double Sample::*layer) {
     double above = 0;
-    for (const auto& some : samples) {
-      std::array<double, kSamples> values;
-      std::ranges::transform(some, values.begin(), light);
-      std::ranges::sort(values, std::greater());
-      above += std::max(0.0, values[0] - std::max(values[1], times * picture.levels.white));
+    for (std::array<Sample, kSamples> some : samples) {
+      std::ranges::sort(some, std::greater(), layer);
+      above += std::max(0.0, some[0].*layer - std::max(some[1].*layer, times * picture.levels.white));
     }
     return above > 0 ? above / (kSamples * double(samples.size()) * picture.levels.picture) : 0;
   };
-  return {work,
-          of([](const Sample& s) { return s.sum(); }),
-          of([](const Sample& s) { return s.other + s.indirect; }),
-          of([](const Sample& s) { return s.other + s.caustic; }),
-          of([](const Sample& s) { return s.other; }),
-          lost([](const Sample& s) { return s.caustic; }),
-          lost([](const Sample& s) { return s.indirect; })};
+  SampleEffort effort{
+      work, of([](const Sample& s) { return s.sum(); }), of([](const Sample& s) { return s.other + s.indirect; }),
+      of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
+  effort.lost_caustic = lost(&Sample::caustic), effort.lost_indirect = lost(&Sample::indirect);
+  return effort;
 }
 
 /// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
