@@ -116,7 +116,7 @@ end() {
         if (counted[last]) printf "; noise, without bias, %.1f of 255 brightness steps", noise[last] / counted[last]
         if (last == "raw") printf " before the filter"
         if (seen != "") printf "; a viewer sees noise in %s %% of the pixels (make measure)", seen
-        printf "%s; look at %s/sheet.png\n", audit == "" ? "" : "; " audit, out
+        printf "; %s; look at %s/sheet.png\n", audit == "" ? "not audited" : audit, out
       }'
 }
 

@@ -14,9 +14,7 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr std::size_t kFewestPaths = 64;  ///< paths that found light: an estimate from fewer gets no standard error
-/// Effective number of equal photons in view: an estimate from fewer gets no standard error.
-constexpr double kFewestSplats = 32;
+constexpr double kFewest = 32;  ///< effective photons or paths: an estimate from fewer gets no standard error
 /// Largest share of one map or path in the sum of squares: above this the standard error is not known.
 constexpr double kMostOfOne = 0.5;
 /// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as two camera
@@ -127,7 +125,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
     std::size_t pixel = 0;
     bool counts = false;
     std::array<double, kLayerCount> layer{};
-    std::array<bool, kLayerCount> met{};
+    std::array<double, kLayerCount> found{};
   };
   std::vector<Difference> differences(count);
   const std::uint64_t seed = mix64(effort.seed ^ kEyeKey);
@@ -149,9 +147,10 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
           trace_eye_path(scene, ray, hit, random, options.known, rays, view_.cone(), effort_of(0)).sum();
       const Layers found = trace_eye_path(scene, ray, hit, random, nullptr, rays, view_.cone(), effort_of(0)).sum();
       difference.counts = true;
-      for (std::size_t l = 0; l < kLayerCount; ++l) difference.met[l] = !is_black(found.value[l]);
-      for (std::size_t l = 0; l < kLayerCount; ++l)
-        difference.layer[l] = channel_mean(Rgbd(shown.value[l])) - channel_mean(Rgbd(found.value[l]));
+      for (std::size_t l = 0; l < kLayerCount; ++l) {
+        difference.found[l] = channel_mean(Rgbd(found.value[l]));
+        difference.layer[l] = channel_mean(Rgbd(shown.value[l])) - difference.found[l];
+      }
     }
   });
   for (const Difference& difference : differences) {
@@ -160,9 +159,10 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
       Sums& sums = sums_[part];
       ++sums.path_count;
       for (std::size_t l = 0; l < kLayerCount; ++l) {
-        const double d = difference.layer[l];
+        const double d = difference.layer[l], found = difference.found[l];
         sums.paths[l] += d;
-        sums.met[l] += difference.met[l];
+        sums.found[l] += found;
+        sums.found_square[l] += found * found;
         sums.paths_square[l] += d * d;
         sums.paths_largest[l] = std::max(sums.paths_largest[l], d * d);
       }
@@ -185,7 +185,7 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   Estimate by_splats;
   double sum = 0;
   for (const float map : sums.splats[layer]) sum += double(map);
-  if (sum > 0 && sum * sum >= kFewestSplats * sums.splats_square[layer]) {
+  if (sum > 0 && sum * sum >= kFewest * sums.splats_square[layer]) {
     double square = 0, largest = 0;
     for (const float map : sums.splats[layer]) {
       const double off = double(map) - sum / kMaps, off2 = off * off;
@@ -201,12 +201,14 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   }
   const double m = double(sums.path_count);
   // With equal random numbers both ways sample the same direct light: a difference of 0 is no measurement.
-  if (sums.paths_square[layer] > 0 && sums.met[layer] >= kFewestPaths &&
+  if (sums.paths_square[layer] > 0 && sums.found[layer] * sums.found[layer] >= kFewest * sums.found_square[layer] &&
       sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
     entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m -
                                                                       sums.paths[layer] * sums.paths[layer] / (m * m)) /
                                                     (m - 1))};
-  entry.bias = joined(by_splats, entry.paths);
+  // Light that no path met has no part in the variance of paths. So paths alone cannot know that a frame is too bright.
+  const bool unmet = !by_splats.known() && entry.paths.value > kAuditErrors * entry.paths.error;
+  entry.bias = joined(by_splats, unmet ? Estimate{} : entry.paths);
   return entry;
 }
 

@@ -52,8 +52,9 @@ AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed
 ///
 /// The standard error of the photons' estimate is that of the mean of kMaps photon maps. Each map has its own seed, so
 /// the maps are independent and equally distributed, however the starts within one map are stratified. An estimate is
-/// not reported if one map or path holds more than half of its sum of squares, or if its photons count for fewer than
-/// 32 equal photons, by (sum)^2 / sum of squares.
+/// not reported if one map or path holds more than half of its sum of squares, or if its photons or its paths' light
+/// count for fewer than 32 equal photons or paths, by (sum)^2 / sum of squares. Paths alone cannot know that a frame is
+/// too bright: they may miss rare light.
 class FrameAudit {
  public:
   static constexpr std::size_t kMaps = 32;
@@ -84,7 +85,7 @@ class FrameAudit {
     std::array<double, kLayerCount> splats_square{};  ///< sum of the squares of the single photons' contributions
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
-    std::array<std::size_t, kLayerCount> met{};  ///< number of paths that found light
+    std::array<double, kLayerCount> found{}, found_square{};  ///< light that paths found
   };
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;

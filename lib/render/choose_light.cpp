@@ -38,6 +38,8 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (map) way.error += order.filtered ? rough.map_error * rough.map_left : rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);
   if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
+  const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);
+  way.error += lost * lost;
   if (records) {
     const double ray = rough.records * rough.record_ray;
     const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;

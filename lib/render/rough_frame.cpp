@@ -211,8 +211,19 @@ SampleEffort effort_of(const Picture& picture, const Samples& samples, double ti
     }
     return LightNoise(roots * roots, roots > 0 ? roots_left / roots : 1);
   };
-  return {work, of([](const Sample& s) { return s.sum(); }), of([](const Sample& s) { return s.other + s.indirect; }),
-          of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
+  const auto lost = [&](double Sample::*layer) {
+    double above = 0;
+    for (std::array<Sample, kSamples> some : samples) {
+      std::ranges::sort(some, std::greater(), layer);
+      above += std::max(0.0, some[0].*layer - std::max(some[1].*layer, times * picture.levels.white));
+    }
+    return above > 0 ? above / (kSamples * double(samples.size()) * picture.levels.picture) : 0;
+  };
+  SampleEffort effort{
+      work, of([](const Sample& s) { return s.sum(); }), of([](const Sample& s) { return s.other + s.indirect; }),
+      of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
+  effort.lost_caustic = lost(&Sample::caustic), effort.lost_indirect = lost(&Sample::indirect);
+  return effort;
 }
 
 /// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
@@ -394,6 +405,7 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   rough.gather.work = Work::kRay * (1 + seen);
   rough.gather.all = rough.path.other;
   rough.gather.without_caustic = rough.path.other_without_caustic;
+  rough.gather.lost_caustic = rough.gather.lost_indirect = 0;
   rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
 }
 

@@ -41,6 +41,10 @@ struct SampleEffort {
   double work = 0;                          ///< shadow rays
   LightNoise all, without_caustic;          ///< all light, and all but layer caustic
   LightNoise other, other_without_caustic;  ///< all light but layer indirect, likewise
+  /// Light of layers caustic and indirect that one sample of a place alone brings, as far as it is above white. It
+  /// shows in lone white pixels, and all other pixels lack it. A share of the picture's light: the root of a squared
+  /// error.
+  double lost_caustic = 0, lost_indirect = 0;
 };
 
 /// Light that photons show and paths miss with certainty.

@@ -11,7 +11,7 @@ The chain is run as Makefile.example runs it (`make OUT/frames/NNNN.exr`), all p
 16, 64, ... samples until it is better, which gives its curve. Both are judged against the halves of a reference, which is kept in
 OUT/every/reference and grows until its noise is below half of the chain's seen error, or until --reference-cpu.
 
-Columns. Seen error, blobs, grain: seen.py. Noise said: what the raw frame knows, before the filter. Paths' CPU: what
+Columns. Seen error, blobs, grain: seen.py. Noise said: what the frame itself says, after the filter: as in make's last line. Paths' CPU: what
 path tracing takes for the chain's seen error, read off between the samples measured; speed-up: that over the chain's CPU; `~` beyond
 the curve, `?` the reference is not converged. Layers: chain / reference - 1 in percent of the picture, with three standard errors;
 `!` significant and above 1 % of the picture, or 1.5 % of a layer that is 5 % of the picture. Audit: what the frame says of its layers.

@@ -52,7 +52,7 @@ class Side:
         return after.children_user - before.children_user + after.children_system - before.children_system
 
     def chain(self, seed, quality="final", channels=CHANNELS, keep=None, variables=None):
-        """(picture, CPU seconds, those of each stage, what frame-render says of the frame); `keep`: a file that the frame is moved to, None:
+        """(picture, CPU seconds, those of each stage, what frame-render and the filter say of the frame); `keep`: a file that the frame is moved to, None:
         then the picture is read and the frame removed. `variables`: further ones of Makefile.example."""
         case = self.case
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -62,7 +62,7 @@ class Side:
             CAMERA=case.camera, CHANNELS=",".join(channels), TIME=" ".join(map(str, case.shared)), QUALITY=quality,
             RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}", ENVIRONMENT=case.environment and case.environment.resolve(), **(variables or {})))
         stages = pipeline.cpu_of(self.folder)
-        said = {name: value for stats in pipeline.stats_of(self.folder, ("frames",)) if stats["tool"] == "frame-render" for name, value in stats["results"].items()}
+        said = {name: value for stats in pipeline.stats_of(self.folder, ("frames",)) if stats["tool"] in ("frame-render", "st-filter") for name, value in stats["results"].items()}
         image = shutil.move(frame, keep) if keep else exr.read(frame)
         shutil.rmtree(self.folder)
         return image, cpu, stages, said

@@ -7,6 +7,7 @@
 
 #include "tests/support/closed_box.h"
 #include "tests/support/frames.h"
+#include "tests/support/chain.h"
 
 namespace tempolux {
 namespace {
@@ -187,6 +188,35 @@ TEST(FrameAudit, PathsSayWhatIsMissing) {
   EXPECT_TRUE(is_biased(*missing));
   // With the same random numbers both ways sample the same direct light: their agreement is no measurement.
   EXPECT_FALSE(find(entries, Layer::direct, "picture"));
+}
+
+/// Known light of three times the flux. Paths find less, but light that paths never meet would look the same, so paths
+/// alone report nothing. Photons confirm it: two thirds of the indirect light are too much, up to the blur of the
+/// density estimate, which loses light at corners.
+TEST(FrameAudit, PathsAloneDoNotSayTooBright) {
+  const test::Cornell c;
+  PhotonOptions traced;
+  traced.photon_count = 50'000;
+  std::vector<formats::Photon> photons = test::photons_of(PhotonTracer(c.tracer, c.lights, traced));
+  for (formats::Photon& photon : photons)
+    for (float& flux : photon.flux) flux *= 3;
+  const PhotonLight light(c.tracer, photons, {}, {});
+  KnownLight known;
+  known.photons = &light;
+  FrameOptions options;
+  options.samples = 4;
+  options.known = &known;
+  const RenderedFrame bright = render_frame(c.render_scene(), c.view, options);
+  const std::vector<std::uint32_t> objects(kPixels, 0);
+  FrameAudit audit(c.view, bright, objects, {});
+  audit.add_paths(c.render_scene(), options, {.eye_paths = 20'000});
+  EXPECT_FALSE(find(audit.entries(), Layer::indirect, "picture"));
+  audit.add_photons(c.tracer, c.lights, {.photon_paths = 50'000, .seed = 1});
+  const std::vector<AuditEntry> entries = audit.entries();
+  const AuditEntry* const found = find(entries, Layer::indirect, "picture");
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->of_layer(), 2, 0.3);
+  EXPECT_TRUE(is_biased(*found));
 }
 
 }  // namespace

@@ -51,6 +51,21 @@ TEST(WaysToLight, CostAndErrAsDerived) {
   EXPECT_EQ(ways.front().method, IndirectMethod::records);
 }
 
+/// Light that lone samples bring is lacking in the other pixels: the error of .5 of the picture's light is .25. Paths
+/// lack both layers, unless a map shows caustic light; records lack caustic light alone.
+TEST(WaysToLight, LackWhatLoneSamplesBring) {
+  RoughFrame rough = example();
+  rough.path.lost_caustic = 0.2;
+  rough.path.lost_indirect = 0.3;
+  rough.gather.lost_caustic = 0.1;
+  const std::vector<Way> ways = ways_to_light(rough, kOrder, true);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1 + 0.25, 1e-12);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths, true).error, 0.1 + 0.09, 1e-12);
+  const Way records = way(ways, IndirectMethod::records), with_map = way(ways, IndirectMethod::records, true);
+  EXPECT_NEAR(records.error - 1.0 / records.rays, 0.1 + 0.01, 1e-12);
+  EXPECT_NEAR(with_map.error - 1.0 / with_map.rays, 0.1, 1e-12);
+}
+
 /// Samples n ~ (sigma / e)^(7/8) leave variance^(1 - 7/16) e^(7/8) of noise: twice the variance gives equal noise if e
 /// is multiplied by 2^-(9/14). Records leave no indirect light to the samples, so their frames keep the wish's error.
 TEST(WaysToLight, NoisierSamplesNeedAFinerPixelError) {

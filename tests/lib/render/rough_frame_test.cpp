@@ -46,6 +46,23 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_GE(rough.samples, 4);
   EXPECT_EQ(rough.map_error, 0) << "nothing is caustic";
   EXPECT_EQ(rough.missed_caustic.square, 0);
+  EXPECT_LT(rough.path.lost_indirect, 0.016) << "less than the wish's error";
+}
+
+/// A lamp of 30 cm above a black board shines at the ceiling from 3 cm. Nearly all light of the room comes from the
+/// spot there. A path from a wall meets the spot, of .1 m^2, with a chance of cos cos A / (pi d^2) = .5 .1 / (8 pi) =
+/// 1/500. It brings 500 times the picture's mean, of which a white pixel of n samples shows at most n (.1 / .18) means:
+/// less than .07 for n = 60.
+TEST(RoughFrame, OneSampleInHundredsMeetsTheLight) {
+  test::HandMadeScene scene;
+  scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
+  scene.add_quad({1.85f, 3.97f, 1.85f}, {1.85f, 3.97f, 2.15f}, {2.15f, 3.97f, 2.15f}, {2.15f, 3.97f, 1.85f},
+                 test::matte(Rgb(0.0f), Rgb(5000.0f)));
+  scene.add_quad({1.8f, 3.965f, 1.8f}, {2.2f, 3.965f, 1.8f}, {2.2f, 3.965f, 2.2f}, {1.8f, 3.965f, 2.2f},
+                 test::matte(Rgb(0.0f)));  // lamps shine to both sides
+  const RoughFrame rough = rough_of(scene.frame());
+  EXPECT_LT(rough.samples, 60);
+  EXPECT_GT(rough.path.lost_indirect, 0.5);
 }
 
 /// The camera sees one wall alone: a plane is fitted to 15 x 15 pixels, which leaves 3 / 225 of their variance. If each
