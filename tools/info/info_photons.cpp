@@ -1,4 +1,4 @@
-// tools/info/info_photons.cpp -- tempolux-info on .photons: facts, difference, export.
+// tools/info/info_photons.cpp -- tempolux-info on .photons: facts, export.
 #include <array>
 #include <bit>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 #include "formats/photons/summary.h"
 #include "lib/image/statistics.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
 namespace {
@@ -19,17 +19,15 @@ using namespace formats;
 
 constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume", "tentative"};
 
-std::string column_names(std::uint32_t columns) {
-  std::string names;
-  if (columns & column_direction) names = "direction";
-  if (columns & column_albedo) names += names.empty() ? "albedo" : ",albedo";
-  return names.empty() ? "none" : names;
-}
-
 /// The header without history and identity.
 Facts header_facts(const PhotonHeader& header) {
-  Facts facts = {{"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
-                 {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
+  Facts facts = {{"map", header.map},
+                 {"kinds", header.kinds},
+                 {"columns", column_names({{header.columns & column_direction, "direction"},
+                                           {header.columns & column_albedo, "albedo"}})},
+                 {"origin_m", header.origin},
+                 {"groups", header.group_count},
+                 {"emitted_paths", header.emitted_count}};
   if (!header.part.empty()) facts["part"] = header.part;
   if (header.pilots > 0) facts["pilots_of_a_group"] = header.pilots;
   if (!header.base_name.empty()) {
@@ -124,8 +122,7 @@ Facts photon_facts(const std::string& path) {
   PhotonReader reader(path);
   const PhotonSummary summary = summarise(reader);
   const PhotonTotals& totals = reader.totals();
-  Facts facts = {{"file", path}, {"type", "photons"}, {"history", lines_of(reader.header().history)}};
-  facts["identity"] = identity_facts(reader.header().identity);
+  Facts facts = start_of(path, "photons", reader.header().history, reader.header().identity);
   facts.update(header_facts(reader.header()));
   facts["photons"] = totals.photon_count;
   if (summary.all.count > 0) {
@@ -144,24 +141,6 @@ Facts photon_facts(const std::string& path) {
     facts["by_object"].push_back(line);
   }
   facts["digest"] = reader.digest();
-  return facts;
-}
-
-Facts photon_difference(const std::string& a, const std::string& b) {
-  PhotonReader reader_a(a), reader_b(b);
-  const PhotonDifference records = compare(reader_a, reader_b);
-  const auto compared = [](const std::string& path, const PhotonReader& reader) {
-    const PhotonHeader& header = reader.header();
-    Facts facts = {{"history", lines_of(header.history)}, {"identity", identity_facts(header.identity)}};
-    facts.update(header_facts(header));
-    facts["photons"] = reader.totals().photon_count;
-    facts.update(total_facts(reader.totals()));
-    return ComparedFile{path, reader.digest(), facts};
-  };
-  const ComparedFile of_a = compared(a, reader_a), of_b = compared(b, reader_b);
-  Facts facts = difference_of_headers("photons", of_a, of_b);
-  add_record_difference(records, {"largest_flux_difference_W", records.largest_flux}, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 

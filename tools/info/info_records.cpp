@@ -1,4 +1,4 @@
-// tools/info/info_records.cpp -- tempolux-info on .irradpoints and .irradcache: facts, difference, export.
+// tools/info/info_records.cpp -- tempolux-info on .irradpoints and .irradcache: facts, export.
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -7,19 +7,13 @@
 #include "formats/irradcache/summary.h"
 #include "formats/irradpoints/summary.h"
 #include "lib/image/statistics.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
 #include "tools/info/point_table.h"
 
 namespace tempolux::tools {
 namespace {
 
 using namespace formats;
-
-/// nullptr if there are no numbers.
-Facts spread_facts(const Spread& spread) {
-  if (spread.count == 0) return nullptr;
-  return {{"min", spread.min}, {"max", spread.max}, {"mean", spread.mean()}};
-}
 
 Facts channel_facts(const std::array<Spread, 3>& channels) {
   Facts facts = {{"min", Facts::array()}, {"max", Facts::array()}, {"mean", Facts::array()}};
@@ -52,17 +46,11 @@ Facts header_facts(const IrradpointsHeader& header) {
   return facts;
 }
 
-std::string column_names(std::uint32_t columns) {
-  std::string names;
-  if (columns & column_influence) names = "influence";
-  if (columns & column_update) names += names.empty() ? "update" : ",update";
-  if (columns & column_clearance) names += names.empty() ? "clearance" : ",clearance";
-  if (columns & column_noise) names += names.empty() ? "noise" : ",noise";
-  return names.empty() ? "none" : names;
-}
-
 Facts header_facts(const IrradcacheHeader& header) {
-  return {{"columns", column_names(header.columns)},
+  return {{"columns", column_names({{header.columns & column_influence, "influence"},
+                                    {header.columns & column_update, "update"},
+                                    {header.columns & column_clearance, "clearance"},
+                                    {header.columns & column_noise, "noise"}})},
           {"origin_m", header.origin},
           {"rays", header.rays},
           {"error_bound", header.error_bound},
@@ -83,27 +71,10 @@ Facts total_facts(const IrradcacheTotals& totals) {
 }
 
 template <class File>
-Facts start_of(const std::string& path, const char* type, const File& file) {
-  Facts facts = {{"file", path}, {"type", type}, {"history", lines_of(file.header.history)}};
-  facts["identity"] = identity_facts(file.header.identity);
+Facts file_facts(const std::string& path, const char* type, const File& file) {
+  Facts facts = start_of(path, type, file.header.history, file.header.identity);
   facts.update(header_facts(file.header));
   facts.update(total_facts(file.totals));
-  return facts;
-}
-
-template <class File>
-Facts difference(const std::array<std::string, 2>& names, const char* type, const File& a, const File& b) {
-  const auto compared = [](const std::string& path, const File& file) {
-    Facts facts = {{"history", lines_of(file.header.history)}, {"identity", identity_facts(file.header.identity)}};
-    facts.update(header_facts(file.header));
-    facts.update(total_facts(file.totals));
-    return ComparedFile{path, digest_of(file), facts};
-  };
-  const ComparedFile of_a = compared(names[0], a), of_b = compared(names[1], b);
-  const RecordDifference records = compare(a, b);
-  Facts facts = difference_of_headers(type, of_a, of_b);
-  add_record_difference(records, {"largest_irradiance_difference_W_m2", records.largest_irradiance}, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 
@@ -133,7 +104,7 @@ std::array<float, 3> all_kinds(const IrradiancePointRecord& point) {
 Facts irradpoints_facts(const std::string& path) {
   const IrradpointsFile file = load_irradpoints(path);
   const IrradpointsSummary summary = summarise(file);
-  Facts facts = start_of(path, "irradpoints", file);
+  Facts facts = file_facts(path, "irradpoints", file);
   const auto add_kind = [&](const char* name, const IrradianceShare& share) {
     if (("," + file.header.kinds + ",").find(std::string(",") + name + ",") == std::string::npos) return;
     facts["by_kind"][name] = {{"irradiance_W_m2", channel_facts(share.irradiance)}, {"flux_W", share.flux}};
@@ -151,7 +122,7 @@ Facts irradpoints_facts(const std::string& path) {
 Facts irradcache_facts(const std::string& path) {
   const IrradcacheFile file = load_irradcache(path);
   const IrradcacheSummary summary = summarise(file);
-  Facts facts = start_of(path, "irradcache", file);
+  Facts facts = file_facts(path, "irradcache", file);
   facts["irradiance_W_m2"] = channel_facts(summary.irradiance);
   facts["radius_m"] = spread_facts(summary.radius);
   facts["radius_unclamped_m"] = spread_facts(summary.radius_unclamped);
@@ -159,14 +130,6 @@ Facts irradcache_facts(const std::string& path) {
   add_census(summary.records, "records", facts);
   facts["digest"] = digest_of(file);
   return facts;
-}
-
-Facts irradpoints_difference(const std::string& a, const std::string& b) {
-  return difference({a, b}, "irradpoints", load_irradpoints(a), load_irradpoints(b));
-}
-
-Facts irradcache_difference(const std::string& a, const std::string& b) {
-  return difference({a, b}, "irradcache", load_irradcache(a), load_irradcache(b));
 }
 
 void export_irradpoints(const std::string& path, const std::string& format, Output& output) {
