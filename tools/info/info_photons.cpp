@@ -1,9 +1,6 @@
 // tools/info/info_photons.cpp -- tempolux-info on .photons: facts, export.
 #include <array>
-#include <bit>
-#include <cstdio>
-#include <cstring>
-#include <limits>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +8,7 @@
 #include "formats/photons/summary.h"
 #include "lib/image/statistics.h"
 #include "tools/info/info_facts.h"
+#include "tools/info/point_table.h"
 
 namespace tempolux::tools {
 namespace {
@@ -66,56 +64,6 @@ Facts group_facts(const std::vector<GroupFlux>& ledger) {
   return facts;
 }
 
-std::string ply_header(std::uint64_t count) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment photons; flux in W, positions in m\n";
-  text += "element vertex " + std::to_string(count) + "\n";
-  for (const char* name : {"x", "y", "z"}) text += std::string("property double ") + name + "\n";
-  for (const char* name : {"nx", "ny", "nz", "flux_r", "flux_g", "flux_b"})
-    text += std::string("property float ") + name + "\n";
-  text += "property ushort object\n";
-  for (const char* name : {"kind", "bounce", "red", "green", "blue"})
-    text += std::string("property uchar ") + name + "\n";
-  return text + "end_header\n";
-}
-
-/// Appends one vertex in the layout of the PLY header above, little-endian.
-void append_vertex(std::string& to, const std::array<double, 3>& position, const Photon& photon, double white) {
-  static_assert(std::endian::native == std::endian::little);
-  const auto put = [&to](const auto& value) {
-    char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);
-    to.append(bytes, sizeof value);
-  };
-  put(position);
-  put(decode_normal(photon.normal));
-  put(photon.flux);
-  put(photon.object);
-  put(photon.kind);
-  put(photon.bounce);
-  put(point_color(photon.flux, white));
-}
-
-/// Appends a photon of a block with the file's columns.
-void append_row(std::string& to, const std::array<double, 3>& position, const PhotonBlock& block, std::size_t i,
-                std::uint32_t columns) {
-  const Photon& photon = block.photons[i];
-  const auto normal = decode_normal(photon.normal);
-  char text[400];
-  const int length = std::snprintf(
-      text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u", position[0], position[1], position[2],
-      double(photon.flux[0]), double(photon.flux[1]), double(photon.flux[2]), double(normal[0]), double(normal[1]),
-      double(normal[2]), unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
-  to.append(text, std::size_t(length));
-  const auto add = [&](double value) {
-    to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value)));
-  };
-  if (columns & column_direction)
-    for (const float w : decode_normal(block.directions[i])) add(double(w));
-  if (columns & column_albedo)
-    for (std::size_t c = 0; c < 3; ++c) add(block.albedos[i][c] / 255.0);
-  to += '\n';
-}
-
 }  // namespace
 
 Facts photon_facts(const std::string& path) {
@@ -145,36 +93,40 @@ Facts photon_facts(const std::string& path) {
 }
 
 void export_photons(const std::string& path, const std::string& format, Output& output) {
-  const bool ply = format == "ply";
   double white = 0;
-  std::string text;
-  if (ply) {  // PLY needs the count and the brightest photon first, so the file is read twice
+  std::uint64_t count = 0;
+  if (format == "ply") {  // PLY needs the count and the brightest photon first, so the file is read twice
     if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
     PhotonReader first(path, {.digest = false});
     const PhotonSummary summary = summarise(first);
-    white = summary.largest_flux;
-    text = ply_header(summary.all.count);
+    white = summary.largest_flux, count = summary.all.count;
   }
   PhotonReader reader(path, {.digest = false});
   const std::array<double, 3> origin = reader.header().origin;
-  const std::uint32_t columns = reader.header().columns;
-  if (!ply)
-    text = std::string("x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce") +
-           (columns & column_direction ? ",wi_x,wi_y,wi_z" : "") +
-           (columns & column_albedo ? ",albedo_r,albedo_g,albedo_b" : "") + "\n";
+  const bool directions = format == "csv" && reader.header().columns & column_direction,
+             albedos = format == "csv" && reader.header().columns & column_albedo;
+  std::vector<PointTable::Column> columns{PointTable::channels("flux", "W"),
+                                          {{"object"}, "", "ushort"},
+                                          {{"kind"}, "", "uchar", {std::begin(kKindNames), std::end(kKindNames)}},
+                                          {{"bounce"}, "", "uchar"}};
+  if (directions) columns.push_back({{"wi_x", "wi_y", "wi_z"}, ""});
+  if (albedos) columns.push_back(PointTable::channels("albedo", ""));
+  PointTable table(format, output, count, "photons; flux in W, positions in m", columns);
   PhotonBlock block;
-  while (reader.read_block(block)) {
+  while (reader.read_block(block))
     for (std::size_t i = 0; i < block.photons.size(); ++i) {
       const Photon& photon = block.photons[i];
-      std::array<double, 3> position = origin;
-      for (std::size_t c = 0; c < 3; ++c) position[c] += double(photon.position[c]);
-      if (ply) append_vertex(text, position, photon, white);
-      else append_row(text, position, block, i, columns);
+      for (std::size_t c = 0; c < 3; ++c) table.add(origin[c] + double(photon.position[c]));
+      table.add(decode_normal(photon.normal));
+      table.add(photon.flux);
+      table.add(photon.object);
+      table.add(double(photon.kind));
+      table.add(photon.bounce);
+      if (directions) table.add(decode_normal(block.directions[i]));
+      for (std::size_t c = 0; albedos && c < 3; ++c) table.add(block.albedos[i][c] / 255.0);
+      table.end_row(point_color(photon.flux, white));
     }
-    output.write(text.data(), text.size());
-    text.clear();
-  }
-  output.write(text.data(), text.size());
+  table.finish();
 }
 
 }  // namespace tempolux::tools

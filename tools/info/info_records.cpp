@@ -78,15 +78,22 @@ Facts file_facts(const std::string& path, const char* type, const File& file) {
   return facts;
 }
 
+const PointTable::Column kObjectColumn{{"object"}, "", "ushort"},
+    kSetColumn{{"set"}, "", "uchar", {"static", "dynamic"}};
+
 /// Adds the first columns of every row: position in world space, and normal.
 template <class Record, class Normal>
 void start_row(PointTable& table, const std::array<double, 3>& origin, const Record& record, const Normal& normal) {
   for (std::size_t c = 0; c < 3; ++c) table.add(origin[c] + double(record.position[c]));
-  for (const float n : normal) table.add(double(n));
+  table.add(normal);
 }
 
-void add_colour(PointTable& table, const std::array<float, 3>& irradiance, double white) {
-  for (const std::uint8_t c : point_color(irradiance, white)) table.add_colour(c);
+/// Adds the last columns of every row: object, surface set, and colour.
+template <class Record>
+void end_row(PointTable& table, const Record& record, const std::array<float, 3>& irradiance, double white) {
+  table.add(record.object);
+  table.add(double(record.set));
+  table.end_row(point_color(irradiance, white));
 }
 
 double largest(const std::array<float, 3>& irradiance) {
@@ -137,20 +144,19 @@ void export_irradpoints(const std::string& path, const std::string& format, Outp
   double white = 0;
   for (const IrradiancePointRecord& point : file.records) white = std::max(white, largest(all_kinds(point)));
   const bool noise = format == "csv" && file.header.columns & column_points_noise;
-  std::vector<PointTable::Column> columns{
-      {"direct", "W_m2", 3}, {"caustic", "W_m2", 3}, {"indirect", "W_m2", 3}, {"radius", "m", 1}};
-  if (noise) columns.push_back({"noise", "W_m2", 3});
+  std::vector<PointTable::Column> columns;
+  for (const char* kind : {"direct", "caustic", "indirect"}) columns.push_back(PointTable::channels(kind, "W_m2"));
+  columns.push_back({{"radius"}, "m"});
+  if (noise) columns.push_back(PointTable::channels("noise", "W_m2"));
+  columns.insert(columns.end(), {kObjectColumn, kSetColumn});
   PointTable table(format, output, file.records.size(), "irradiance points; irradiance in W/m^2, positions in m",
                    columns);
   for (const IrradiancePointRecord& point : file.records) {
     start_row(table, file.header.origin, point, decode_normal(point.normal));
-    for (const auto* irradiance : {&point.direct, &point.caustic, &point.indirect})
-      for (const float e : *irradiance) table.add(double(e));
+    for (const auto* irradiance : {&point.direct, &point.caustic, &point.indirect}) table.add(*irradiance);
     table.add(double(point.radius));
-    if (noise)
-      for (const float e : point.noise) table.add(double(e));
-    add_colour(table, all_kinds(point), white);
-    table.end_row(point.object, std::uint8_t(point.set));
+    if (noise) table.add(point.noise);
+    end_row(table, point, all_kinds(point), white);
   }
   table.finish();
 }
@@ -159,42 +165,37 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   const IrradcacheFile file = load_irradcache(path);
   double white = 0;
   for (const IrradianceCacheRecord& record : file.records) white = std::max(white, largest(record.irradiance));
-  std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
-  const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
-             update = csv && file.header.columns & column_update,
-             clearance = csv && file.header.columns & column_clearance,
-             noise = csv && file.header.columns & column_noise;
+  std::vector<PointTable::Column> columns{
+      PointTable::channels("irradiance", "W_m2"), {{"radius"}, "m"}, {{"radius_unclamped"}, "m"}};
+  const bool csv = format == "csv";
+  const auto has = [&](std::uint32_t column) { return csv && file.header.columns & column; };
   if (csv)
     for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
-      for (const char* channel : {"_r", "_g", "_b"})
-        for (const char* axis : {"_x", "_y", "_z"})
-          columns.push_back({std::string(gradient) + channel + axis, unit, 1});
-  if (influence) columns.push_back({"influence", "W_m2", 1});
-  if (update) columns.push_back({"update", "W_m2", 3});
-  if (clearance)
-    for (int k = 0; k < 16; ++k) columns.push_back({"clearance_" + std::to_string(k), "m", 1});
-  if (noise) columns.push_back({"noise", "W_m2", 3});
+      for (const std::string channel : {"_r", "_g", "_b"})
+        columns.push_back({{gradient + channel + "_x", gradient + channel + "_y", gradient + channel + "_z"}, unit});
+  if (has(column_influence)) columns.push_back({{"influence"}, "W_m2"});
+  if (has(column_update)) columns.push_back(PointTable::channels("update", "W_m2"));
+  if (has(column_clearance))
+    for (int k = 0; k < 16; ++k) columns.push_back({{"clearance_" + std::to_string(k)}, "m"});
+  if (has(column_noise)) columns.push_back(PointTable::channels("noise", "W_m2"));
+  columns.insert(columns.end(), {kObjectColumn, kSetColumn});
   PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
                    columns);
   for (const IrradianceCacheRecord& record : file.records) {
     start_row(table, file.header.origin, record, record.normal);
-    for (const float e : record.irradiance) table.add(double(e));
+    table.add(record.irradiance);
     table.add(double(record.radius));
     table.add(double(record.radius_unclamped));
     if (csv)
       for (const auto* gradients : {&record.rotational, &record.translational})
-        for (const auto& channel : *gradients)
-          for (const float g : channel) table.add(double(g));
-    if (influence) table.add(double(record.influence));
-    if (update)
-      for (const float e : record.update) table.add(double(e));
-    if (clearance)
+        for (const auto& channel : *gradients) table.add(channel);
+    if (has(column_influence)) table.add(double(record.influence));
+    if (has(column_update)) table.add(record.update);
+    if (has(column_clearance))
       for (std::size_t k = 0; k < 16; ++k)
         table.add(double(record.clearance_reach) * double(record.clearance[k]) / 255);
-    if (noise)
-      for (const float e : record.noise) table.add(double(e));
-    add_colour(table, record.irradiance, white);
-    table.end_row(record.object, std::uint8_t(record.set));
+    if (has(column_noise)) table.add(record.noise);
+    end_row(table, record, record.irradiance, white);
   }
   table.finish();
 }
