@@ -1,10 +1,9 @@
-// formats/record_statistics.h -- numbers, bounds, means and differences of records, for the summaries of several
+// formats/record_statistics.h -- numbers, bounds and means of records, for the summaries of several
 // formats.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -43,27 +42,6 @@ struct RecordCensus {
     ++by_set[std::size_t(record.set)];
     ++by_object[record.object];
     for (std::size_t c = 0; c < 3; ++c) position[c].add(origin[c] + double(record.position[c]));
-  }
-};
-
-/// Differences of two files, record by record in file order.
-struct RecordDifference {
-  std::uint64_t records = 0;    ///< number of compared records, as many as the shorter file has
-  std::uint64_t differing = 0;  ///< compared records with any different field
-  std::uint64_t first = 0;      ///< index of the first different record; only if differing > 0
-  std::array<double, 3> largest_position{}, largest_irradiance{};  ///< m, W/m^2: |a - b| by axis, by channel
-
-  /// Compares the next two records. `irradiance_of` gives the channels to compare.
-  template <class Record, class Irradiance>
-  void add(const Record& a, const Record& b, const Irradiance& irradiance_of) {
-    const std::uint64_t index = records++;
-    if (a == b) return;
-    if (differing++ == 0) first = index;
-    const auto in_a = irradiance_of(a), in_b = irradiance_of(b);
-    for (std::size_t c = 0; c < 3; ++c) {
-      largest_position[c] = std::max(largest_position[c], std::abs(double(a.position[c]) - double(b.position[c])));
-      largest_irradiance[c] = std::max(largest_irradiance[c], std::abs(double(in_a[c]) - double(in_b[c])));
-    }
   }
 };
 

@@ -3,7 +3,7 @@
 //     error-report manifest.json -o report
 //     error-report -o report --run 'scene=S2,curve=photon map,x=1000000' trace.json+render.json error.json
 //
-// Writes report.csv, report.md, error-SCENE.svg, error-SCENE.png and index.html into the folder. Runs are
+// Writes report.md, error-SCENE.svg, error-SCENE.png and index.html into the folder. Runs are
 // pairs of stats (formats/stats) and comparison (formats/comparison); manifest: formats/report/report.md.
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -33,7 +33,7 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_size(3)
       ->allow_extra_args(false)
       ->type_name("WHAT STATS COMPARISON");
-  tool.output_option(o.folder, "folder of report.csv, report.md, index.html, plots")->capture_default_str();
+  tool.output_option(o.folder, "folder of report.md, index.html, plots")->capture_default_str();
   app.add_option("--title", o.title, "title of the report")->type_name("TEXT");
   tool.common_options(0);
 }
@@ -82,7 +82,6 @@ int report(tools::Tool& tool, const Options& o) {
 
   tool.stats().phase("write");
   const std::string html = report_html(input, scenes, plots);
-  write(tools::Output(folder + "report.csv", tools::Output::Kind::text), report_csv(input));
   write(tools::Output(folder + "report.md", tools::Output::Kind::text), report_markdown(input, scenes, plots));
   for (const auto& [name, bytes] : plots) write(tools::Output(folder + name), bytes);
   write(std::move(page), html);

@@ -1,6 +1,6 @@
 // tempolux-info -- shows the content of files: facts, validity, digest, differences, pictures, points.
 //
-//     tempolux-info f.0012.photons
+//     tempolux-info f.0012.photons --scene room.glb
 //     tempolux-info --diff a.exr b.exr || echo they differ
 //     photon-trace room.glb -o - | tempolux-info - --export - | head
 //     tempolux-info --sheet all.png --layer indirect f.*.exr
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/error.h"
+#include "lib/scene/gltf_load.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 #include "tools/info/info_facts.h"
@@ -23,7 +24,7 @@ namespace {
 struct Request {
   std::vector<std::string> files;
   bool check = false, digest = false, diff = false, json = false, account = false;
-  std::string exported, png, sheet, exposure = "auto";
+  std::string exported, png, sheet, scene, exposure = "auto";
   tools::PictureOptions picture;
 };
 
@@ -48,10 +49,23 @@ int check_files(tools::Tool& tool, const Request& request) {
   return code;
 }
 
-int print_files(const Request& request) {
+/// Adds the names of objects beside their ids.
+void name_objects(const std::vector<std::string>& names, Facts& facts) {
+  if (!facts.contains("by_object")) return;
+  for (Facts& line : facts["by_object"])
+    if (const std::size_t id = line["object"]; id < names.size()) line["name"] = names[id];
+}
+
+int print_files(tools::Tool& tool, const Request& request) {
   Facts all = Facts::array();
+  std::vector<std::string> names;
+  if (!request.scene.empty()) {
+    tool.depends_on(request.scene);
+    names = load_gltf(request.scene).object_names;
+  }
   for (const std::string& file : request.files) {
-    const Facts facts = tools::facts_of(file, true);
+    Facts facts = tools::facts_of(file, true);
+    name_objects(names, facts);
     if (request.digest && !request.json) std::cout << facts["digest"].get<std::string>() << "  " << file << '\n';
     else if (request.digest) all.push_back({{"file", file}, {"digest", facts["digest"]}});
     else if (request.json) all.push_back(facts);
@@ -107,7 +121,7 @@ int answer(tools::Tool& tool, Request& request) {
     tools::export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);
     output.commit();
   } else {
-    return print_files(request);
+    return print_files(tool, request);
   }
   return tools::exit_ok;
 }
@@ -128,6 +142,9 @@ int main(int argc, char** argv) {
   CLI::Option* diff = app.add_flag("--diff", request.diff, "differences of two files; exit 1 if their data differ");
   CLI::Option* account =
       app.add_flag("--account", request.account, "bias of the light of several frames together, from their audits");
+  app.add_option("--scene", request.scene, "glTF scene of the files: its objects get their names beside their ids")
+      ->type_name("FILE")
+      ->excludes(check, digest, diff, account);
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* exported = tool.output_option(
       request.exported, "photons, irradiance points or records as points, .ply or .csv; - is CSV on standard output",

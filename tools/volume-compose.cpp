@@ -27,7 +27,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, photons, points, base, output, direct = "rays", filter = "gaussian";
+  std::string scene, photons, points, base, output, direct = "rays";
   MediaLight::Options light;
   ComposeOptions compose;
   bool half_float = false;
@@ -224,11 +224,8 @@ void add_options(tools::Tool& tool, Options& options) {
                  "edge of the cells in which photons are summed, m; 0: that of the finest voxel")
       ->capture_default_str()
       ->check(tools::number_between(0));
-  app.add_option("--filter", options.filter, "how cells are smoothed")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"none", "box", "gaussian", "bilateral"}));
-  app.add_option("--filter-width", options.light.filter.width,
-                 "cells: half a box's edge, or a Gaussian's standard deviation; 0: so wide that 256 photons count")
+  app.add_option("--filter-width", options.light.filter_width,
+                 "standard deviation of the Gaussian that smooths them, cells; 0: so wide that 256 photons count")
       ->capture_default_str()
       ->check(tools::number_between(0, 64));
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
@@ -250,11 +247,6 @@ int main(int argc, char** argv) {
     if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
     options.light.direct = options.direct == "photons";
     options.compose.sample_lights = !options.light.direct;
-    using Kind = FluenceFilter::Kind;
-    options.light.filter.kind = options.filter == "none"        ? Kind::none
-                                : options.filter == "box"       ? Kind::box
-                                : options.filter == "bilateral" ? Kind::bilateral
-                                                                : Kind::gaussian;
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
     StaticTree standing;

@@ -16,11 +16,4 @@ IrradcacheSummary summarise(const IrradcacheFile& file) {
   return summary;
 }
 
-RecordDifference compare(const IrradcacheFile& a, const IrradcacheFile& b) {
-  RecordDifference difference;
-  for (std::size_t i = 0; i < std::min(a.records.size(), b.records.size()); ++i)
-    difference.add(a.records[i], b.records[i], [](const auto& record) { return record.irradiance; });
-  return difference;
-}
-
 }  // namespace tempolux::formats

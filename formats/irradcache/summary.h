@@ -18,6 +18,4 @@ struct IrradcacheSummary {
 
 IrradcacheSummary summarise(const IrradcacheFile& file);
 
-RecordDifference compare(const IrradcacheFile& a, const IrradcacheFile& b);
-
 }  // namespace tempolux::formats

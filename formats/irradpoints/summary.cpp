@@ -13,13 +13,6 @@ IrradianceShare share_of(const IrradpointsFile& file, std::array<float, 3> Irrad
   return share;
 }
 
-std::array<double, 3> irradiance_of(const IrradiancePointRecord& point) {
-  std::array<double, 3> sum{};
-  for (std::size_t c = 0; c < 3; ++c)
-    sum[c] = double(point.direct[c]) + double(point.caustic[c]) + double(point.indirect[c]);
-  return sum;
-}
-
 }  // namespace
 
 IrradpointsSummary summarise(const IrradpointsFile& file) {
@@ -32,13 +25,6 @@ IrradpointsSummary summarise(const IrradpointsFile& file) {
   summary.caustic = share_of(file, &IrradiancePointRecord::caustic, file.totals.caustic);
   summary.indirect = share_of(file, &IrradiancePointRecord::indirect, file.totals.indirect);
   return summary;
-}
-
-RecordDifference compare(const IrradpointsFile& a, const IrradpointsFile& b) {
-  RecordDifference difference;
-  for (std::size_t i = 0; i < std::min(a.records.size(), b.records.size()); ++i)
-    difference.add(a.records[i], b.records[i], irradiance_of);
-  return difference;
 }
 
 }  // namespace tempolux::formats

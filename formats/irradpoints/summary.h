@@ -22,7 +22,4 @@ struct IrradpointsSummary {
 
 IrradpointsSummary summarise(const IrradpointsFile& file);
 
-/// Compares two files point by point; irradiance is the sum of all kinds.
-RecordDifference compare(const IrradpointsFile& a, const IrradpointsFile& b);
-
 }  // namespace tempolux::formats

@@ -28,15 +28,4 @@ struct PhotonSummary {
 /// Reads all remaining blocks. Throws as the reader does. Memory: one block.
 PhotonSummary summarise(PhotonReader& reader);
 
-/// Differences of two maps, photon by photon in file order.
-struct PhotonDifference {
-  std::uint64_t records = 0;    ///< number of compared photons, as many as the smaller map has
-  std::uint64_t differing = 0;  ///< compared photons with any different field, group or column
-  std::uint64_t first = 0;      ///< index of the first different photon; only if differing > 0
-  std::array<double, 3> largest_position{}, largest_flux{};  ///< m, W: largest |a - b| by axis, by channel
-};
-
-/// Reads both maps to the end. Throws as the readers do.
-PhotonDifference compare(PhotonReader& a, PhotonReader& b);
-
 }  // namespace tempolux::formats

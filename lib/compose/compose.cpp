@@ -222,7 +222,7 @@ bool MediaLight::has_rays() const {
 
 void MediaLight::finish() {
   volumes_.clear();
-  for (const FluenceSums& sums : sums_) volumes_.emplace_back(sums, options_.filter);
+  for (const FluenceSums& sums : sums_) volumes_.emplace_back(sums, options_.filter_width);
 }
 
 Rgb MediaLight::scattered(Vec3 point) const {

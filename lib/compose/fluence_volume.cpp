@@ -13,14 +13,13 @@ using Cell = std::array<float, 4>;
 constexpr float kWidest = 16;      ///< cells
 constexpr std::size_t kLine = 64;  ///< lines of cells that one task processes
 
-/// Weights of cells in a line around the centre; their sum is 1.
-std::vector<float> kernel(const FluenceFilter& filter, float width) {
-  const bool box = filter.kind == FluenceFilter::Kind::box;
-  const int reach = box ? int(std::floor(width)) : int(std::ceil(3 * width));
+/// Weights of a Gaussian for the cells in a line around the centre; their sum is 1.
+std::vector<float> kernel(float width) {
+  const int reach = int(std::ceil(3 * width));
   std::vector<float> weights;
   double sum = 0;
   for (int i = -reach; i <= reach; ++i) {
-    weights.push_back(box ? 1 : std::exp(-0.5f * float(i * i) / (width * width)));
+    weights.push_back(std::exp(-0.5f * float(i * i) / (width * width)));
     sum += double(weights.back());
   }
   for (float& w : weights) w = float(double(w) / sum);
@@ -52,60 +51,6 @@ void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& co
       }
     }
   });
-}
-
-void filter_separable(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter,
-                      float width) {
-  const std::vector<float> weights = kernel(filter, width);
-  for (int axis = 0; axis < 3; ++axis) filter_axis(cells, counts, axis, weights);
-}
-
-float brightness(const Cell& cell) { return cell[3] > 0 ? (cell[0] + cell[1] + cell[2]) / (3 * cell[3]) : 0; }
-
-/// Bilateral filter: cells of different light weigh less. The light is compared after a Gaussian of the same width,
-/// since single cells are noisy. At the end the total is corrected, since the weights change it.
-/// [Durand & Dorsey 2002]
-void filter_bilateral(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, const FluenceFilter& filter,
-                      float width) {
-  std::vector<Cell> smooth = cells;
-  filter_separable(smooth, counts, {FluenceFilter::Kind::gaussian, width, 0}, width);
-  const int reach = int(std::ceil(2 * width));
-  const auto [nx, ny, nz] = counts;
-  const auto index = [&, ny = ny, nz = nz](int x, int y, int z) {
-    return (std::size_t(x) * std::size_t(ny) + std::size_t(y)) * std::size_t(nz) + std::size_t(z);
-  };
-  std::vector<Cell> result(cells.size());
-  parallel_chunks(
-      std::size_t(nx) * std::size_t(ny), 16, [&, nx = nx, ny = ny, nz = nz](std::size_t first, std::size_t last) {
-        for (std::size_t column = first; column < last; ++column)
-          for (int z = 0; z < nz; ++z) {
-            const int x = int(column / std::size_t(ny)), y = int(column % std::size_t(ny));
-            const float here = std::log(std::max(1e-30f, brightness(smooth[index(x, y, z)])));
-            Cell sum{};
-            for (int i = std::max(0, x - reach); i <= std::min(nx - 1, x + reach); ++i)
-              for (int j = std::max(0, y - reach); j <= std::min(ny - 1, y + reach); ++j)
-                for (int k = std::max(0, z - reach); k <= std::min(nz - 1, z + reach); ++k) {
-                  const std::size_t at = index(i, j, k);
-                  if (!(cells[at][3] > 0)) continue;
-                  const float difference = (std::log(std::max(1e-30f, brightness(smooth[at]))) - here) / filter.range;
-                  const auto d2 = float((i - x) * (i - x) + (j - y) * (j - y) + (k - z) * (k - z)) / (width * width);
-                  const float w = std::exp(-0.5f * (d2 + difference * difference));
-                  for (std::size_t c = 0; c < 4; ++c) sum[c] += w * cells[at][c];
-                }
-            result[index(x, y, z)] = sum;
-          }
-      });
-  // The total over the open cells must not change, per channel.
-  std::array<double, 3> before{}, after{};
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      before[c] += double(cells[i][c]);
-      if (result[i][3] > 0) after[c] += double(result[i][c]) / double(result[i][3]) * double(cells[i][3]);
-    }
-  for (Cell& cell : result)
-    for (std::size_t c = 0; c < 3; ++c)
-      if (after[c] > 0) cell[c] = float(double(cell[c]) * before[c] / after[c]);
-  cells = std::move(result);
 }
 
 }  // namespace
@@ -164,8 +109,8 @@ void FluenceSums::add(Vec3 point, Rgb contribution, int times) {
   photons_ += std::uint64_t(std::int64_t(times));
 }
 
-FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filter)
-    : box_(sums.box()), counts_(sums.counts()) {
+FluenceVolume::FluenceVolume(const FluenceSums& sums, float width)
+    : box_(sums.box()), counts_(sums.counts()), width_(width) {
   if (sums.sums().empty()) return;
   for (std::size_t a = 0; a < 3; ++a)
     cells_per_m_[int(a)] = float(counts_[a]) / (box_.upper[int(a)] - box_.lower[int(a)]);
@@ -177,7 +122,6 @@ FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filte
     cells_[i][3] = sums.open()[i] ? volume : 0;
     open += sums.open()[i];
   }
-  width_ = filter.width;
   if (!(width_ > 0)) {
     // A Gaussian of deviation s averages as many cells as (4 pi s^2)^(3/2).
     const double density = double(sums.photons()) / double(std::max<std::size_t>(1, open));
@@ -185,8 +129,8 @@ FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filte
         float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f,
         kWidest);
   }
-  if (filter.kind == FluenceFilter::Kind::bilateral) filter_bilateral(cells_, counts_, filter, std::min(width_, 4.0f));
-  else if (filter.kind != FluenceFilter::Kind::none) filter_separable(cells_, counts_, filter, width_);
+  const std::vector<float> weights = kernel(width_);
+  for (int axis = 0; axis < 3; ++axis) filter_axis(cells_, counts_, axis, weights);
 }
 
 Rgb FluenceVolume::at(Vec3 point) const {

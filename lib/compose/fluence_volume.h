@@ -54,20 +54,13 @@ class FluenceSums {
 
 inline constexpr float kPhotonsInFilter = 256;  ///< photons under a filter of automatic width: the noise is then 1/16
 
-struct FluenceFilter {
-  enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
-  Kind kind = Kind::gaussian;
-  /// cells: half the box's edge, or the Gaussian's standard deviation; 0: so that about 256 photons count
-  float width = 0;
-  float range = 0.5f;  ///< bilateral filter: standard deviation of the difference in ln fluence
-};
-
-/// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same kernel, so that cells at the border of
+/// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same Gaussian, so that cells at the border of
 /// the lit region are not darkened. Trilinear between the cells' centres; 0 outside.
 class FluenceVolume {
  public:
   FluenceVolume() = default;
-  FluenceVolume(const FluenceSums& sums, const FluenceFilter& filter);
+  /// `width`: standard deviation of the Gaussian, cells; 0: so that about kPhotonsInFilter photons count.
+  FluenceVolume(const FluenceSums& sums, float width);
   Rgb at(Vec3 point) const;
   float width() const { return width_; }  ///< cells: the width used, also if it was chosen automatically
 

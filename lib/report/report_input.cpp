@@ -152,8 +152,6 @@ MeasuredRun run_of(const Place& entry, const Folder& folder) {
       run.parameters[key] = value.json.is_string() ? value.string() : value.json.dump();
   for (const Place& stats : entry.at("stats").items()) run.stages.push_back(read_stats(folder.file(stats.string())));
   if (const auto comparison = entry.find("comparison")) run.error = read_comparison(folder.file(comparison->string()));
-  if (const auto image = entry.find("image")) run.image = folder.file(image->string());
-  if (const auto difference = entry.find("difference")) run.difference = folder.file(difference->string());
   return run;
 }
 
@@ -185,17 +183,9 @@ StatsRecord read_stats(const std::string& path) {
   Json keep;
   const Place top = open_document(path, "tempolux.stats", keep);
   StatsRecord record;
-  record.tool = top.at("tool").string();
   record.cpu_s = top.at("cpu_s").number_from_0();
   record.wall_s = top.at("wall_s").number_from_0();
   if (const auto peak = top.find("peak_memory_bytes")) record.peak_memory_bytes = peak->number_from_0();
-  if (const auto phases = top.find("phases"))
-    for (const Place& phase : phases->items())
-      record.phases.push_back(
-          {phase.at("name").string(), phase.at("cpu_s").number_from_0(), phase.at("wall_s").number_from_0()});
-  if (const auto counts = top.find("counts"))
-    for (const auto& [name, value] : counts->members())
-      if (!value.json.is_null()) record.counts[name] = value.number();
   return record;
 }
 
@@ -207,15 +197,11 @@ ErrorRecord read_comparison(const std::string& path) {
   const std::string mode = top.at("mode").string();
   if (mode == "own_halves") top.refuse("compares two halves of one image: its noise, not its error");
   record.halves = mode == "reference_halves";
-  record.layer = string_of(top, "layer");
-  record.pixels = total.at("pixels").number_from_0();
-  record.frames = top.at("frames").items().size();
   record.mse = total.at("mse").number();
   record.mse_standard_error = number_of(total, "mse_standard_error");
   record.relmse = number_of(total, "relmse");
   record.bias = number_of(total, "bias");
   record.bias_standard_error = number_of(total, "bias_standard_error");
-  record.psnr_db = number_of(total, "psnr_db");
   record.flicker = number_of(total, "flicker");
   record.worst_object = worst_object(total);
   return record;
@@ -237,8 +223,6 @@ ReportInput read_manifest(const std::string& path) {
       if (point.cpu_s <= 0 || point.rmse <= 0) entry.refuse("cpu_s and rmse must be above 0");
       input.points.push_back(std::move(point));
     }
-  if (const auto references = top.find("references"))
-    for (const auto& [scene, image] : references->members()) input.references[scene] = folder.file(image.string());
   return input;
 }
 

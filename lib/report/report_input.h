@@ -12,15 +12,8 @@ namespace tempolux {
 
 /// A stats file (formats/stats/stats.md): the cost of one program run.
 struct StatsRecord {
-  struct Phase {
-    std::string name;
-    double cpu_s = 0, wall_s = 0;
-  };
-  std::string tool;
   double cpu_s = 0, wall_s = 0;
   double peak_memory_bytes = 0;
-  std::vector<Phase> phases;
-  std::map<std::string, double> counts;
 };
 
 /// The object whose light is farthest off.
@@ -32,12 +25,9 @@ struct WorstObject {
 
 /// The totals of a comparison file (formats/comparison/comparison.md): the error of a result.
 struct ErrorRecord {
-  std::string layer;
-  double pixels = 0;
-  std::size_t frames = 0;
   double mse = 0;  ///< may be negative
   std::optional<double> mse_standard_error;
-  std::optional<double> relmse, bias, bias_standard_error, psnr_db, flicker;
+  std::optional<double> relmse, bias, bias_standard_error, flicker;
   bool halves = false;                      ///< the reference's noise is not in mse
   std::optional<WorstObject> worst_object;  ///< objects of few pixels apart
 
@@ -54,7 +44,6 @@ struct MeasuredRun {
   std::map<std::string, std::string> parameters;
   std::vector<StatsRecord> stages;  ///< one for each process
   std::optional<ErrorRecord> error;
-  std::string image, difference;  ///< PNG files, or empty
 
   double cpu_s() const;  ///< sum over the stages
   double wall_s() const;
@@ -72,8 +61,7 @@ struct ReportInput {
   std::string baseline;  ///< name of the curve that speed-ups refer to; empty: each scene's first
   std::vector<MeasuredRun> runs;
   std::vector<GivenPoint> points;
-  std::map<std::string, std::string> references;  ///< scene -> PNG of its reference
-  std::vector<std::string> files;                 ///< all files that were read
+  std::vector<std::string> files;  ///< all files that were read
 };
 
 /// Read one file. Throw InputError "FILE: PLACE: WHAT; REMEDY".

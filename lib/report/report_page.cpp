@@ -2,10 +2,6 @@
 #include "lib/report/report_page.h"
 
 #include <cstdint>
-#include <fstream>
-#include <iterator>
-
-#include "formats/error.h"
 
 namespace tempolux {
 namespace {
@@ -76,32 +72,11 @@ std::string figure(const std::string& type, const std::string& bytes, const std:
          "\"><figcaption>" + html_text(caption) + "</figcaption></figure>\n";
 }
 
-std::string png_figure(const std::string& path, const std::string& caption) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be read; the report names it as an image");
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw InputError(path + ": not a PNG; give images of runs as PNG");
-  return figure("png", bytes, caption);
-}
-
-std::string pictures(const ReportInput& input, const std::string& scene) {
-  std::string text;
-  const auto reference = input.references.find(scene);
-  if (reference != input.references.end()) text += png_figure(reference->second, "reference");
-  for (const MeasuredRun& run : input.runs) {
-    if (run.scene != scene) continue;
-    if (!run.image.empty()) text += png_figure(run.image, run.label);
-    if (!run.difference.empty()) text += png_figure(run.difference, run.label + ": difference");
-  }
-  return text.empty() ? "" : "<h3>Frames</h3>\n<div class=\"frames\">\n" + text + "</div>\n";
-}
-
 constexpr const char* kStyle =
     "body{font:15px/1.4 sans-serif;margin:2em auto;max-width:72em;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:2px "
     "8px;text-align:right}"
     "td:first-child,td:nth-child(2),th{text-align:left}img{max-width:100%}"
-    ".frames{display:flex;flex-wrap:wrap}.frames figure{margin:0 1em 1em 0;max-width:24em}"
     "figcaption{font-size:13px;color:#555}";
 
 }  // namespace
@@ -125,7 +100,6 @@ std::string report_html(const ReportInput& input, const std::vector<SceneReport>
     const auto plot = plots.find(scene.file_stem + ".svg");
     if (plot != plots.end()) text += figure("svg+xml", plot->second, "error against time, " + scene.scene);
     for (const Table& table : scene.tables) text += html_table(table);
-    text += pictures(input, scene.scene);
   }
   return text + "</body></html>\n";
 }

@@ -15,8 +15,7 @@ using Plots = std::map<std::string, std::string>;
 /// Tables, and links to the plots that exist.
 std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
-/// The same as one self-contained file: plots, frames, references and difference images are data URIs. Throws
-/// InputError if an image that a run names cannot be read or is not a PNG.
+/// The same as one self-contained file: plots are data URIs.
 std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
 }  // namespace tempolux

@@ -28,11 +28,6 @@ struct SceneReport {
 /// One report per scene, in order of first appearance.
 std::vector<SceneReport> scene_reports(const ReportInput& input);
 
-/// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages, seconds
-/// by phase, counts (rays, bytes ...), peak memory, errors. Phases and counts of all runs are columns "TOOL.PHASE
-/// cpu_s" and "TOOL.COUNT"; a cell is empty if a run has no such number.
-std::string report_csv(const ReportInput& input);
-
 enum class PlotFormat { svg, png };
 
 /// gnuplot script that draws error against time, log-log, to its standard output: points, the fitted curve sqrt(a/t +

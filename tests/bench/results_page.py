@@ -77,7 +77,7 @@ def curves(bench, docs, command):
     else:
         text = f"""# Error against run time
 
-`{command} --only sweep` · {head}; every run: report/report.csv in its output folder
+`{command} --only sweep` · {head}
 
 Each scene is swept over samples per pixel (path tracing), over photons that are looked up directly (photon-trace, then
 frame-render with 16 samples per pixel), and over the parameters of final gathering with the irradiance cache

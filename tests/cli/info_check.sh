@@ -32,6 +32,19 @@ assert {line["object"]: line["photons"] for line in facts["by_object"]} == \
        {o: sum(r[8] == o for r in records) for o in {r[8] for r in records}}
 END
 
+# Names of objects stand beside their ids: the example's photons lie on object 7, the eighth node with a mesh.
+"${PYTHON:-python3}" - <<'END'
+import base64, json, struct
+triangle = base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
+json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(8))}],
+           "nodes": [{"name": f"Sofa {i}", "mesh": 0} for i in range(8)],
+           "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+           "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+           "bufferViews": [{"buffer": 0, "byteLength": 36}],
+           "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + triangle}]}, open("s.gltf", "w"))
+END
+tempolux-info --scene s.gltf "$example" | grep -q 'object 7 .*name Sofa 7$' || bad 'no name of an object'
+
 # Digest: an overlay with its base is the whole map; a map equals itself and differs from another.
 tempolux-info --diff "$example" "$example" >out.txt || bad 'a file differs from itself'
 [ -s out.txt ] && bad 'equal files need no words'

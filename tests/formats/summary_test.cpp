@@ -70,30 +70,5 @@ TEST(PhotonSummary, OfNoPhotonsIsZero) {
   EXPECT_EQ(summary.mean_flux[0], 0);
 }
 
-TEST(PhotonDifference, FindsTheRecordsThatDiffer) {
-  std::vector<Photon> changed = kThree;
-  changed[1].flux[2] = 7;         // was 2
-  changed[2].position[0] = 4.5f;  // was 5
-  const PhotonFile a(kThree), b(changed);
-  PhotonReader reader_a(a.path()), reader_b(b.path());
-  const PhotonDifference difference = compare(reader_a, reader_b);
-  EXPECT_EQ(difference.records, 3u);
-  EXPECT_EQ(difference.differing, 2u);
-  EXPECT_EQ(difference.first, 1u);
-  EXPECT_EQ(difference.largest_flux[2], 5);
-  EXPECT_EQ(difference.largest_position[0], 0.5);
-}
-
-TEST(PhotonDifference, ReadsBothToTheEndThoughOneIsShorter) {
-  const PhotonFile a(kThree), b({kThree[0]});
-  for (const bool swapped : {false, true}) {
-    PhotonReader reader_a(swapped ? b.path() : a.path()), reader_b(swapped ? a.path() : b.path());
-    const PhotonDifference difference = compare(reader_a, reader_b);
-    EXPECT_EQ(difference.records, 1u);
-    EXPECT_EQ(difference.differing, 0u);
-    EXPECT_NE(reader_a.digest(), reader_b.digest());
-  }
-}
-
 }  // namespace
 }  // namespace tempolux::formats

@@ -184,7 +184,7 @@ constexpr ManualText kTexts[] = {
      "Draws error against run time: reads the statistics of the tools and the comparisons of their frames, writes "
      "tables, "
      "plots and one HTML page.",
-     "report/: CSV, Markdown, plots, HTML (formats/report/report.md)\n"
+     "report/: Markdown, plots, HTML (formats/report/report.md)\n"
      "stats .json: the cost of a run (formats/stats/stats.md)",
      "error-report --run scene=room,curve=draft,label=12 photons.json+frame.json 12.error.json -o report",
      "aqm-compare frame-render"},

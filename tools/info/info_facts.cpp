@@ -79,12 +79,26 @@ Facts lines_of(const std::string& text) {
   return lines;
 }
 
-Facts identity_facts(const formats::Identity& identity) {
-  if (!identity.known()) return nullptr;
-  Facts facts = {{"frames", {identity.first_frame, identity.last_frame}}};
+Facts start_of(const std::string& path, const char* type, const std::string& history,
+               const formats::Identity& identity) {
+  Facts facts = {{"file", path}, {"type", type}, {"history", lines_of(history)}, {"identity", nullptr}};
+  if (!identity.known()) return facts;
+  facts["identity"]["frames"] = {identity.first_frame, identity.last_frame};
   for (const auto& [name, hash] : formats::kConcerns)
-    if (!(identity.*hash).empty()) facts[std::string(name)] = identity.*hash;
+    if (!(identity.*hash).empty()) facts["identity"][std::string(name)] = identity.*hash;
   return facts;
+}
+
+Facts spread_facts(const formats::Spread& spread) {
+  if (spread.count == 0) return nullptr;
+  return {{"min", spread.min}, {"max", spread.max}, {"mean", spread.mean()}};
+}
+
+std::string column_names(std::initializer_list<std::pair<bool, const char*>> columns) {
+  std::string names;
+  for (const auto& [there, name] : columns)
+    if (there) names += (names.empty() ? "" : ",") + std::string(name);
+  return names.empty() ? "none" : names;
 }
 
 namespace {
@@ -93,7 +107,6 @@ namespace {
 struct FileType {
   const char* magic;
   Facts (*facts)(const std::string& path, bool allow_nan);
-  Facts (*difference)(const std::string& a, const std::string& b);
   void (*export_as)(const std::string& path, const std::string& format, Output& output) = nullptr;
 };
 
@@ -102,21 +115,20 @@ Facts always_valid(const std::string& path, bool) {
   return facts(path);
 }
 
-constexpr FileType kPhotons{"\x89TPHOT", always_valid<photon_facts>, photon_difference, export_photons};
-constexpr FileType kJson{"{", always_valid<json_facts>, json_difference};
-constexpr FileType kTypes[] = {
-    kPhotons,
-    {"\x89TPATH", always_valid<paths_facts>, paths_difference},
-    {"\x89TIRPT", always_valid<irradpoints_facts>, irradpoints_difference, export_irradpoints},
-    {"\x89TIRRC", always_valid<irradcache_facts>, irradcache_difference, export_irradcache},
-    {"\x89TRADS", always_valid<radsamples_facts>, radsamples_difference},
-    {"\x89TMESH", always_valid<meshirrad_facts>, meshirrad_difference},
-    {"\x76\x2f\x31\x01", image_facts, image_difference},
-    {"\x89PNG", image_facts, image_difference},
-    {"\xff\xd8\xff", image_facts, image_difference},
-    {"#?", image_facts, image_difference},
-    {"II*", image_facts, image_difference},
-    {"MM", image_facts, image_difference}};
+constexpr FileType kPhotons{"\x89TPHOT", always_valid<photon_facts>, export_photons};
+constexpr FileType kJson{"{", always_valid<json_facts>};
+constexpr FileType kTypes[] = {kPhotons,
+                               {"\x89TPATH", always_valid<paths_facts>},
+                               {"\x89TIRPT", always_valid<irradpoints_facts>, export_irradpoints},
+                               {"\x89TIRRC", always_valid<irradcache_facts>, export_irradcache},
+                               {"\x89TRADS", always_valid<radsamples_facts>},
+                               {"\x89TMESH", always_valid<meshirrad_facts>},
+                               {"\x76\x2f\x31\x01", image_facts},
+                               {"\x89PNG", image_facts},
+                               {"\xff\xd8\xff", image_facts},
+                               {"#?", image_facts},
+                               {"II*", image_facts},
+                               {"MM", image_facts}};
 
 const FileType& type_of(const std::string& path) {
   const std::string head = head_of(path);
@@ -131,17 +143,39 @@ const FileType& type_of(const std::string& path) {
   throw InputError(path + ": not a file we know; it is none of our formats, no image and no JSON");
 }
 
+/// The facts that are not the same in both, by JSON Pointer, with both values; null: this file lacks the fact.
+Facts differing_facts(const Facts& a, const Facts& b) {
+  const Facts of_a = a.flatten(), of_b = b.flatten();
+  Facts differing = Facts::object();
+  const auto value_in = [](const Facts& facts, const std::string& place) {
+    return facts.contains(place) ? facts[place] : Facts();
+  };
+  for (const Facts* either : {&of_a, &of_b})
+    for (const auto& [place, unused] : either->items())
+      if (value_in(of_a, place) != value_in(of_b, place))
+        differing[place] = {value_in(of_a, place), value_in(of_b, place)};
+  return differing;
+}
+
 }  // namespace
 
-bool is_meshirrad(const std::string& path) { return type_of(path).difference == meshirrad_difference; }
+bool is_meshirrad(const std::string& path) { return type_of(path).facts == always_valid<meshirrad_facts>; }
 
 Facts facts_of(const std::string& path, bool allow_nan) { return type_of(path).facts(path, allow_nan); }
 
 Facts difference_of(const std::string& a, const std::string& b) {
-  const FileType& type = type_of(a);
-  if (type.difference != type_of(b).difference)
-    throw InputError(b + ": of another type than " + a + "; nothing to compare");
-  return type.difference(a, b);
+  const auto type = type_of(a).facts;
+  if (type != type_of(b).facts) throw InputError(b + ": of another type than " + a + "; nothing to compare");
+  Facts of_a = type(a, true), of_b = type(b, true);
+  const Facts digests = {of_a["digest"], of_b["digest"]};
+  for (Facts* facts : {&of_a, &of_b})
+    for (const char* key : {"file", "digest"}) facts->erase(key);
+  Facts facts = {{"files", {a, b}}, {"type", of_a["type"]}, {"equal", digests[0] == digests[1]}};
+  facts["differing"] = differing_facts(of_a, of_b);
+  if (type == image_facts && of_a["width"] == of_b["width"] && of_a["height"] == of_b["height"])
+    facts["channels_differing"] = channel_differences_of(a, b);
+  facts["digests"] = digests;
+  return facts;
 }
 
 void export_points(const std::string& path, const std::string& format, Output& output) {

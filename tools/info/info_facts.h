@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/identity.h"
+#include "formats/record_statistics.h"
 #include "tools/common/output.h"
 
 namespace tempolux {
@@ -25,8 +28,13 @@ bool is_meshirrad(const std::string& path);
 
 /// The lines of a history.
 Facts lines_of(const std::string& text);
-/// nullptr if the identity is unknown.
-Facts identity_facts(const formats::Identity& identity);
+/// The first facts of a file with a text header: name, type, history, identity (null if it is unknown).
+Facts start_of(const std::string& path, const char* type, const std::string& history,
+               const formats::Identity& identity);
+/// Smallest, largest and mean; nullptr if there are no numbers.
+Facts spread_facts(const formats::Spread& spread);
+/// The names of a file's columns, joined by commas; "none" if it has none.
+std::string column_names(std::initializer_list<std::pair<bool, const char*>> columns);
 
 /// The facts of each file type. Each function reads the whole file, so it also checks the file. Throws InputError
 /// naming the place.
@@ -40,18 +48,12 @@ Facts image_facts(const std::string& path, bool allow_nan);
 Facts json_facts(const std::string& path);
 Facts facts_of(const std::string& path, bool allow_nan);
 
-/// The differences of two files of each type. "equal" is true if their digests are equal: history and identity are
-/// compared and reported, but do not count.
-Facts photon_difference(const std::string& a, const std::string& b);
-Facts paths_difference(const std::string& a, const std::string& b);
-Facts irradpoints_difference(const std::string& a, const std::string& b);
-Facts irradcache_difference(const std::string& a, const std::string& b);
-Facts radsamples_difference(const std::string& a, const std::string& b);
-Facts meshirrad_difference(const std::string& a, const std::string& b);
-Facts image_difference(const std::string& a, const std::string& b);
-Facts json_difference(const std::string& a, const std::string& b);
-/// Throws InputError if the types differ.
+/// The differences of two files of one type. "differing" has each fact that is not the same in both, by its place in
+/// the facts (a JSON Pointer), with both values; "equal" is true if the digests are equal, so history and identity do
+/// not count. Throws InputError if the types differ.
 Facts difference_of(const std::string& a, const std::string& b);
+/// For two images of one size: the channels that differ, with the number of pixels, and the largest difference.
+Facts channel_differences_of(const std::string& a, const std::string& b);
 
 /// Text for people: one fact per line, indented; long lists are cut, with the number of further items.
 std::string facts_as_text(const Facts& facts);

@@ -84,24 +84,4 @@ Facts json_facts(const std::string& path) {
   return facts;
 }
 
-Facts json_difference(const std::string& a, const std::string& b) {
-  const Facts document_a = load(a), document_b = load(b);
-  Facts facts = {{"files", {a, b}}, {"type", schema_of(document_a)}};
-  facts["equal"] = digest_of_document(document_a) == digest_of_document(document_b);
-  Facts differing = Facts::object();
-  // JSON Pointer of each difference, with both values.
-  for (const auto& step : nlohmann::json::diff(nlohmann::json(document_a), nlohmann::json(document_b))) {
-    const std::string place = step["path"];
-    const nlohmann::json pointed_a = nlohmann::json(document_a), pointed_b = nlohmann::json(document_b);
-    const nlohmann::json::json_pointer pointer(place);
-    const auto value_in = [&](const nlohmann::json& document) {
-      return document.contains(pointer) ? Facts(document[pointer]) : Facts(nullptr);
-    };
-    differing[place] = {value_in(pointed_a), value_in(pointed_b)};
-  }
-  facts["differing"] = differing;
-  facts["digests"] = {digest_of_document(document_a), digest_of_document(document_b)};
-  return facts;
-}
-
 }  // namespace tempolux::tools

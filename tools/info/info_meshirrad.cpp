@@ -1,11 +1,11 @@
-// tools/info/info_meshirrad.cpp -- tempolux-info on .meshirrad: facts, difference.
+// tools/info/info_meshirrad.cpp -- tempolux-info on .meshirrad: facts.
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/meshirrad/meshirrad.h"
 #include "formats/record_statistics.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
 namespace {
@@ -31,8 +31,7 @@ Facts window_facts(const MeshirradFile& file) {
     age.add((double(e.after) - double(e.before)) / 2);
   }
   if (frames.count == 0) return Facts::object();
-  const auto facts = [](const Spread& s) { return Facts{{"min", s.min}, {"max", s.max}, {"mean", s.mean()}}; };
-  return {{"window_frames", facts(frames)}, {"window_shift_frames", facts(age)}};
+  return {{"window_frames", spread_facts(frames)}, {"window_shift_frames", spread_facts(age)}};
 }
 
 /// Photons, flux and irradiance of a set of elements.
@@ -62,8 +61,7 @@ struct Sum {
 
 Facts meshirrad_facts(const std::string& path) {
   const MeshirradFile file = load_meshirrad(path);
-  Facts facts = {{"file", path}, {"type", "meshirrad"}, {"history", lines_of(file.header.history)}};
-  facts["identity"] = identity_facts(file.header.identity);
+  Facts facts = start_of(path, "meshirrad", file.header.history, file.header.identity);
   facts.update(header_facts(file.header));
   Sum all;
   std::map<std::uint16_t, Sum> by_object;
@@ -81,10 +79,6 @@ Facts meshirrad_facts(const std::string& path) {
   }
   facts["digest"] = digest_of(file);
   return facts;
-}
-
-Facts meshirrad_difference(const std::string& a, const std::string& b) {
-  return difference_of_files("meshirrad", a, b, load_meshirrad, header_facts, &MeshirradFile::elements);
 }
 
 }  // namespace tempolux::tools

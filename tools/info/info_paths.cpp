@@ -1,22 +1,15 @@
-// tools/info/info_paths.cpp -- tempolux-info on .paths: facts, difference.
+// tools/info/info_paths.cpp -- tempolux-info on .paths: facts.
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/paths/paths.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
 namespace {
 
 using namespace formats;
-
-/// The header without history and identity.
-Facts header_facts(const PathsHeader& header) {
-  return {{"kinds", header.kinds},        {"origin_m", header.origin},
-          {"groups", header.group_count}, {"emitted_paths", header.emitted_count},
-          {"seed", header.seed},          {"intervals", header.movers.size()}};
-}
 
 /// Number of paths by interval.
 std::vector<std::uint64_t> counts_of(const PathsFile& file) {
@@ -30,17 +23,18 @@ std::vector<std::uint64_t> counts_of(const PathsFile& file) {
 
 Facts paths_facts(const std::string& path) {
   const PathsFile file = load_paths(path);
-  Facts facts = {{"file", path}, {"type", "paths"}, {"history", lines_of(file.header.history)}};
-  facts["identity"] = identity_facts(file.header.identity);
-  facts.update(header_facts(file.header));
-  facts["touched_paths"] = file.paths.size();
-  facts["by_interval"] = counts_of(file);
-  facts["digest"] = digest_of(file);
+  const PathsHeader& header = file.header;
+  Facts facts = start_of(path, "paths", header.history, header.identity);
+  facts.update({{"kinds", header.kinds},
+                {"origin_m", header.origin},
+                {"groups", header.group_count},
+                {"emitted_paths", header.emitted_count},
+                {"seed", header.seed},
+                {"intervals", header.movers.size()},
+                {"touched_paths", file.paths.size()},
+                {"by_interval", counts_of(file)},
+                {"digest", digest_of(file)}});
   return facts;
-}
-
-Facts paths_difference(const std::string& a, const std::string& b) {
-  return difference_of_files("paths", a, b, load_paths, header_facts, &PathsFile::paths);
 }
 
 }  // namespace tempolux::tools

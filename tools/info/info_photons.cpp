@@ -1,16 +1,14 @@
-// tools/info/info_photons.cpp -- tempolux-info on .photons: facts, difference, export.
+// tools/info/info_photons.cpp -- tempolux-info on .photons: facts, export.
 #include <array>
-#include <bit>
-#include <cstdio>
-#include <cstring>
-#include <limits>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/photons/summary.h"
 #include "lib/image/statistics.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
+#include "tools/info/point_table.h"
 
 namespace tempolux::tools {
 namespace {
@@ -19,17 +17,15 @@ using namespace formats;
 
 constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume", "tentative"};
 
-std::string column_names(std::uint32_t columns) {
-  std::string names;
-  if (columns & column_direction) names = "direction";
-  if (columns & column_albedo) names += names.empty() ? "albedo" : ",albedo";
-  return names.empty() ? "none" : names;
-}
-
 /// The header without history and identity.
 Facts header_facts(const PhotonHeader& header) {
-  Facts facts = {{"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
-                 {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
+  Facts facts = {{"map", header.map},
+                 {"kinds", header.kinds},
+                 {"columns", column_names({{header.columns & column_direction, "direction"},
+                                           {header.columns & column_albedo, "albedo"}})},
+                 {"origin_m", header.origin},
+                 {"groups", header.group_count},
+                 {"emitted_paths", header.emitted_count}};
   if (!header.part.empty()) facts["part"] = header.part;
   if (header.pilots > 0) facts["pilots_of_a_group"] = header.pilots;
   if (!header.base_name.empty()) {
@@ -68,64 +64,13 @@ Facts group_facts(const std::vector<GroupFlux>& ledger) {
   return facts;
 }
 
-std::string ply_header(std::uint64_t count) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment photons; flux in W, positions in m\n";
-  text += "element vertex " + std::to_string(count) + "\n";
-  for (const char* name : {"x", "y", "z"}) text += std::string("property double ") + name + "\n";
-  for (const char* name : {"nx", "ny", "nz", "flux_r", "flux_g", "flux_b"})
-    text += std::string("property float ") + name + "\n";
-  text += "property ushort object\n";
-  for (const char* name : {"kind", "bounce", "red", "green", "blue"})
-    text += std::string("property uchar ") + name + "\n";
-  return text + "end_header\n";
-}
-
-/// Appends one vertex in the layout of the PLY header above, little-endian.
-void append_vertex(std::string& to, const std::array<double, 3>& position, const Photon& photon, double white) {
-  static_assert(std::endian::native == std::endian::little);
-  const auto put = [&to](const auto& value) {
-    char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);
-    to.append(bytes, sizeof value);
-  };
-  put(position);
-  put(decode_normal(photon.normal));
-  put(photon.flux);
-  put(photon.object);
-  put(photon.kind);
-  put(photon.bounce);
-  put(point_color(photon.flux, white));
-}
-
-/// Appends a photon of a block with the file's columns.
-void append_row(std::string& to, const std::array<double, 3>& position, const PhotonBlock& block, std::size_t i,
-                std::uint32_t columns) {
-  const Photon& photon = block.photons[i];
-  const auto normal = decode_normal(photon.normal);
-  char text[400];
-  const int length = std::snprintf(
-      text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u", position[0], position[1], position[2],
-      double(photon.flux[0]), double(photon.flux[1]), double(photon.flux[2]), double(normal[0]), double(normal[1]),
-      double(normal[2]), unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
-  to.append(text, std::size_t(length));
-  const auto add = [&](double value) {
-    to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value)));
-  };
-  if (columns & column_direction)
-    for (const float w : decode_normal(block.directions[i])) add(double(w));
-  if (columns & column_albedo)
-    for (std::size_t c = 0; c < 3; ++c) add(block.albedos[i][c] / 255.0);
-  to += '\n';
-}
-
 }  // namespace
 
 Facts photon_facts(const std::string& path) {
   PhotonReader reader(path);
   const PhotonSummary summary = summarise(reader);
   const PhotonTotals& totals = reader.totals();
-  Facts facts = {{"file", path}, {"type", "photons"}, {"history", lines_of(reader.header().history)}};
-  facts["identity"] = identity_facts(reader.header().identity);
+  Facts facts = start_of(path, "photons", reader.header().history, reader.header().identity);
   facts.update(header_facts(reader.header()));
   facts["photons"] = totals.photon_count;
   if (summary.all.count > 0) {
@@ -147,55 +92,41 @@ Facts photon_facts(const std::string& path) {
   return facts;
 }
 
-Facts photon_difference(const std::string& a, const std::string& b) {
-  PhotonReader reader_a(a), reader_b(b);
-  const PhotonDifference records = compare(reader_a, reader_b);
-  const auto compared = [](const std::string& path, const PhotonReader& reader) {
-    const PhotonHeader& header = reader.header();
-    Facts facts = {{"history", lines_of(header.history)}, {"identity", identity_facts(header.identity)}};
-    facts.update(header_facts(header));
-    facts["photons"] = reader.totals().photon_count;
-    facts.update(total_facts(reader.totals()));
-    return ComparedFile{path, reader.digest(), facts};
-  };
-  const ComparedFile of_a = compared(a, reader_a), of_b = compared(b, reader_b);
-  Facts facts = difference_of_headers("photons", of_a, of_b);
-  add_record_difference(records, {"largest_flux_difference_W", records.largest_flux}, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
-  return facts;
-}
-
 void export_photons(const std::string& path, const std::string& format, Output& output) {
-  const bool ply = format == "ply";
   double white = 0;
-  std::string text;
-  if (ply) {  // PLY needs the count and the brightest photon first, so the file is read twice
+  std::uint64_t count = 0;
+  if (format == "ply") {  // PLY needs the count and the brightest photon first, so the file is read twice
     if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
     PhotonReader first(path, {.digest = false});
     const PhotonSummary summary = summarise(first);
-    white = summary.largest_flux;
-    text = ply_header(summary.all.count);
+    white = summary.largest_flux, count = summary.all.count;
   }
   PhotonReader reader(path, {.digest = false});
   const std::array<double, 3> origin = reader.header().origin;
-  const std::uint32_t columns = reader.header().columns;
-  if (!ply)
-    text = std::string("x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce") +
-           (columns & column_direction ? ",wi_x,wi_y,wi_z" : "") +
-           (columns & column_albedo ? ",albedo_r,albedo_g,albedo_b" : "") + "\n";
+  const bool directions = format == "csv" && reader.header().columns & column_direction,
+             albedos = format == "csv" && reader.header().columns & column_albedo;
+  std::vector<PointTable::Column> columns{PointTable::channels("flux", "W"),
+                                          {{"object"}, "", "ushort"},
+                                          {{"kind"}, "", "uchar", {std::begin(kKindNames), std::end(kKindNames)}},
+                                          {{"bounce"}, "", "uchar"}};
+  if (directions) columns.push_back({{"wi_x", "wi_y", "wi_z"}, ""});
+  if (albedos) columns.push_back(PointTable::channels("albedo", ""));
+  PointTable table(format, output, count, "photons; flux in W, positions in m", columns);
   PhotonBlock block;
-  while (reader.read_block(block)) {
+  while (reader.read_block(block))
     for (std::size_t i = 0; i < block.photons.size(); ++i) {
       const Photon& photon = block.photons[i];
-      std::array<double, 3> position = origin;
-      for (std::size_t c = 0; c < 3; ++c) position[c] += double(photon.position[c]);
-      if (ply) append_vertex(text, position, photon, white);
-      else append_row(text, position, block, i, columns);
+      for (std::size_t c = 0; c < 3; ++c) table.add(origin[c] + double(photon.position[c]));
+      table.add(decode_normal(photon.normal));
+      table.add(photon.flux);
+      table.add(photon.object);
+      table.add(double(photon.kind));
+      table.add(photon.bounce);
+      if (directions) table.add(decode_normal(block.directions[i]));
+      for (std::size_t c = 0; albedos && c < 3; ++c) table.add(block.albedos[i][c] / 255.0);
+      table.end_row(point_color(photon.flux, white));
     }
-    output.write(text.data(), text.size());
-    text.clear();
-  }
-  output.write(text.data(), text.size());
+  table.finish();
 }
 
 }  // namespace tempolux::tools

@@ -1,4 +1,4 @@
-// tools/info/info_radsamples.cpp -- tempolux-info on .radsamples: facts, difference.
+// tools/info/info_radsamples.cpp -- tempolux-info on .radsamples: facts.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/radsamples/radsamples.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
 namespace {
@@ -52,8 +52,7 @@ Facts age_facts(const RadsamplesFile& file) {
 
 Facts radsamples_facts(const std::string& path) {
   const RadsamplesFile file = load_radsamples(path);
-  Facts facts = {{"file", path}, {"type", "radsamples"}, {"history", lines_of(file.header.history)}};
-  facts["identity"] = identity_facts(file.header.identity);
+  Facts facts = start_of(path, "radsamples", file.header.history, file.header.identity);
   facts.update(header_facts(file));
   facts["age"] = age_facts(file);
   const auto has = [&](SampleFlags flag) {
@@ -75,16 +74,6 @@ Facts radsamples_facts(const std::string& path) {
   facts["fading_records"] = fading;
   facts["most_updates"] = updates;
   facts["digest"] = digest_of(file);
-  return facts;
-}
-
-Facts radsamples_difference(const std::string& a, const std::string& b) {
-  const RadsamplesFile file_a = load_radsamples(a), file_b = load_radsamples(b);
-  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a)}, of_b{b, digest_of(file_b), header_facts(file_b)};
-  Facts facts = difference_of_headers("radsamples", of_a, of_b);
-  add_differing_records(file_a.records, file_b.records, facts);
-  facts["samples_differing"] = count_differing(file_a.samples, file_b.samples);
-  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 

@@ -1,4 +1,4 @@
-// tools/info/info_records.cpp -- tempolux-info on .irradpoints and .irradcache: facts, difference, export.
+// tools/info/info_records.cpp -- tempolux-info on .irradpoints and .irradcache: facts, export.
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -7,19 +7,13 @@
 #include "formats/irradcache/summary.h"
 #include "formats/irradpoints/summary.h"
 #include "lib/image/statistics.h"
-#include "tools/info/info_difference.h"
+#include "tools/info/info_facts.h"
 #include "tools/info/point_table.h"
 
 namespace tempolux::tools {
 namespace {
 
 using namespace formats;
-
-/// nullptr if there are no numbers.
-Facts spread_facts(const Spread& spread) {
-  if (spread.count == 0) return nullptr;
-  return {{"min", spread.min}, {"max", spread.max}, {"mean", spread.mean()}};
-}
 
 Facts channel_facts(const std::array<Spread, 3>& channels) {
   Facts facts = {{"min", Facts::array()}, {"max", Facts::array()}, {"mean", Facts::array()}};
@@ -52,17 +46,11 @@ Facts header_facts(const IrradpointsHeader& header) {
   return facts;
 }
 
-std::string column_names(std::uint32_t columns) {
-  std::string names;
-  if (columns & column_influence) names = "influence";
-  if (columns & column_update) names += names.empty() ? "update" : ",update";
-  if (columns & column_clearance) names += names.empty() ? "clearance" : ",clearance";
-  if (columns & column_noise) names += names.empty() ? "noise" : ",noise";
-  return names.empty() ? "none" : names;
-}
-
 Facts header_facts(const IrradcacheHeader& header) {
-  return {{"columns", column_names(header.columns)},
+  return {{"columns", column_names({{header.columns & column_influence, "influence"},
+                                    {header.columns & column_update, "update"},
+                                    {header.columns & column_clearance, "clearance"},
+                                    {header.columns & column_noise, "noise"}})},
           {"origin_m", header.origin},
           {"rays", header.rays},
           {"error_bound", header.error_bound},
@@ -83,39 +71,29 @@ Facts total_facts(const IrradcacheTotals& totals) {
 }
 
 template <class File>
-Facts start_of(const std::string& path, const char* type, const File& file) {
-  Facts facts = {{"file", path}, {"type", type}, {"history", lines_of(file.header.history)}};
-  facts["identity"] = identity_facts(file.header.identity);
+Facts file_facts(const std::string& path, const char* type, const File& file) {
+  Facts facts = start_of(path, type, file.header.history, file.header.identity);
   facts.update(header_facts(file.header));
   facts.update(total_facts(file.totals));
   return facts;
 }
 
-template <class File>
-Facts difference(const std::array<std::string, 2>& names, const char* type, const File& a, const File& b) {
-  const auto compared = [](const std::string& path, const File& file) {
-    Facts facts = {{"history", lines_of(file.header.history)}, {"identity", identity_facts(file.header.identity)}};
-    facts.update(header_facts(file.header));
-    facts.update(total_facts(file.totals));
-    return ComparedFile{path, digest_of(file), facts};
-  };
-  const ComparedFile of_a = compared(names[0], a), of_b = compared(names[1], b);
-  const RecordDifference records = compare(a, b);
-  Facts facts = difference_of_headers(type, of_a, of_b);
-  add_record_difference(records, {"largest_irradiance_difference_W_m2", records.largest_irradiance}, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
-  return facts;
-}
+const PointTable::Column kObjectColumn{{"object"}, "", "ushort"},
+    kSetColumn{{"set"}, "", "uchar", {"static", "dynamic"}};
 
 /// Adds the first columns of every row: position in world space, and normal.
 template <class Record, class Normal>
 void start_row(PointTable& table, const std::array<double, 3>& origin, const Record& record, const Normal& normal) {
   for (std::size_t c = 0; c < 3; ++c) table.add(origin[c] + double(record.position[c]));
-  for (const float n : normal) table.add(double(n));
+  table.add(normal);
 }
 
-void add_colour(PointTable& table, const std::array<float, 3>& irradiance, double white) {
-  for (const std::uint8_t c : point_color(irradiance, white)) table.add_colour(c);
+/// Adds the last columns of every row: object, surface set, and colour.
+template <class Record>
+void end_row(PointTable& table, const Record& record, const std::array<float, 3>& irradiance, double white) {
+  table.add(record.object);
+  table.add(double(record.set));
+  table.end_row(point_color(irradiance, white));
 }
 
 double largest(const std::array<float, 3>& irradiance) {
@@ -133,7 +111,7 @@ std::array<float, 3> all_kinds(const IrradiancePointRecord& point) {
 Facts irradpoints_facts(const std::string& path) {
   const IrradpointsFile file = load_irradpoints(path);
   const IrradpointsSummary summary = summarise(file);
-  Facts facts = start_of(path, "irradpoints", file);
+  Facts facts = file_facts(path, "irradpoints", file);
   const auto add_kind = [&](const char* name, const IrradianceShare& share) {
     if (("," + file.header.kinds + ",").find(std::string(",") + name + ",") == std::string::npos) return;
     facts["by_kind"][name] = {{"irradiance_W_m2", channel_facts(share.irradiance)}, {"flux_W", share.flux}};
@@ -151,7 +129,7 @@ Facts irradpoints_facts(const std::string& path) {
 Facts irradcache_facts(const std::string& path) {
   const IrradcacheFile file = load_irradcache(path);
   const IrradcacheSummary summary = summarise(file);
-  Facts facts = start_of(path, "irradcache", file);
+  Facts facts = file_facts(path, "irradcache", file);
   facts["irradiance_W_m2"] = channel_facts(summary.irradiance);
   facts["radius_m"] = spread_facts(summary.radius);
   facts["radius_unclamped_m"] = spread_facts(summary.radius_unclamped);
@@ -161,33 +139,24 @@ Facts irradcache_facts(const std::string& path) {
   return facts;
 }
 
-Facts irradpoints_difference(const std::string& a, const std::string& b) {
-  return difference({a, b}, "irradpoints", load_irradpoints(a), load_irradpoints(b));
-}
-
-Facts irradcache_difference(const std::string& a, const std::string& b) {
-  return difference({a, b}, "irradcache", load_irradcache(a), load_irradcache(b));
-}
-
 void export_irradpoints(const std::string& path, const std::string& format, Output& output) {
   const IrradpointsFile file = load_irradpoints(path);
   double white = 0;
   for (const IrradiancePointRecord& point : file.records) white = std::max(white, largest(all_kinds(point)));
   const bool noise = format == "csv" && file.header.columns & column_points_noise;
-  std::vector<PointTable::Column> columns{
-      {"direct", "W_m2", 3}, {"caustic", "W_m2", 3}, {"indirect", "W_m2", 3}, {"radius", "m", 1}};
-  if (noise) columns.push_back({"noise", "W_m2", 3});
+  std::vector<PointTable::Column> columns;
+  for (const char* kind : {"direct", "caustic", "indirect"}) columns.push_back(PointTable::channels(kind, "W_m2"));
+  columns.push_back({{"radius"}, "m"});
+  if (noise) columns.push_back(PointTable::channels("noise", "W_m2"));
+  columns.insert(columns.end(), {kObjectColumn, kSetColumn});
   PointTable table(format, output, file.records.size(), "irradiance points; irradiance in W/m^2, positions in m",
                    columns);
   for (const IrradiancePointRecord& point : file.records) {
     start_row(table, file.header.origin, point, decode_normal(point.normal));
-    for (const auto* irradiance : {&point.direct, &point.caustic, &point.indirect})
-      for (const float e : *irradiance) table.add(double(e));
+    for (const auto* irradiance : {&point.direct, &point.caustic, &point.indirect}) table.add(*irradiance);
     table.add(double(point.radius));
-    if (noise)
-      for (const float e : point.noise) table.add(double(e));
-    add_colour(table, all_kinds(point), white);
-    table.end_row(point.object, std::uint8_t(point.set));
+    if (noise) table.add(point.noise);
+    end_row(table, point, all_kinds(point), white);
   }
   table.finish();
 }
@@ -196,42 +165,37 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   const IrradcacheFile file = load_irradcache(path);
   double white = 0;
   for (const IrradianceCacheRecord& record : file.records) white = std::max(white, largest(record.irradiance));
-  std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
-  const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
-             update = csv && file.header.columns & column_update,
-             clearance = csv && file.header.columns & column_clearance,
-             noise = csv && file.header.columns & column_noise;
+  std::vector<PointTable::Column> columns{
+      PointTable::channels("irradiance", "W_m2"), {{"radius"}, "m"}, {{"radius_unclamped"}, "m"}};
+  const bool csv = format == "csv";
+  const auto has = [&](std::uint32_t column) { return csv && file.header.columns & column; };
   if (csv)
     for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
-      for (const char* channel : {"_r", "_g", "_b"})
-        for (const char* axis : {"_x", "_y", "_z"})
-          columns.push_back({std::string(gradient) + channel + axis, unit, 1});
-  if (influence) columns.push_back({"influence", "W_m2", 1});
-  if (update) columns.push_back({"update", "W_m2", 3});
-  if (clearance)
-    for (int k = 0; k < 16; ++k) columns.push_back({"clearance_" + std::to_string(k), "m", 1});
-  if (noise) columns.push_back({"noise", "W_m2", 3});
+      for (const std::string channel : {"_r", "_g", "_b"})
+        columns.push_back({{gradient + channel + "_x", gradient + channel + "_y", gradient + channel + "_z"}, unit});
+  if (has(column_influence)) columns.push_back({{"influence"}, "W_m2"});
+  if (has(column_update)) columns.push_back(PointTable::channels("update", "W_m2"));
+  if (has(column_clearance))
+    for (int k = 0; k < 16; ++k) columns.push_back({{"clearance_" + std::to_string(k)}, "m"});
+  if (has(column_noise)) columns.push_back(PointTable::channels("noise", "W_m2"));
+  columns.insert(columns.end(), {kObjectColumn, kSetColumn});
   PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
                    columns);
   for (const IrradianceCacheRecord& record : file.records) {
     start_row(table, file.header.origin, record, record.normal);
-    for (const float e : record.irradiance) table.add(double(e));
+    table.add(record.irradiance);
     table.add(double(record.radius));
     table.add(double(record.radius_unclamped));
     if (csv)
       for (const auto* gradients : {&record.rotational, &record.translational})
-        for (const auto& channel : *gradients)
-          for (const float g : channel) table.add(double(g));
-    if (influence) table.add(double(record.influence));
-    if (update)
-      for (const float e : record.update) table.add(double(e));
-    if (clearance)
+        for (const auto& channel : *gradients) table.add(channel);
+    if (has(column_influence)) table.add(double(record.influence));
+    if (has(column_update)) table.add(record.update);
+    if (has(column_clearance))
       for (std::size_t k = 0; k < 16; ++k)
         table.add(double(record.clearance_reach) * double(record.clearance[k]) / 255);
-    if (noise)
-      for (const float e : record.noise) table.add(double(e));
-    add_colour(table, record.irradiance, white);
-    table.end_row(record.object, std::uint8_t(record.set));
+    if (has(column_noise)) table.add(record.noise);
+    end_row(table, record, record.irradiance, white);
   }
   table.finish();
 }

@@ -17,55 +17,50 @@ void append_bytes(std::string& to, const Value& value) {
   to.append(bytes, sizeof value);
 }
 
-/// Names such as "direct_r", "direct_g", "direct_b"; the plain name for a single number. `unit` is appended if given.
-std::vector<std::string> names_of(const PointTable::Column& column, const std::string& unit) {
-  const std::string end = unit.empty() ? "" : "_" + unit;
-  if (column.channels == 1) return {column.name + end};
-  return {column.name + "_r" + end, column.name + "_g" + end, column.name + "_b" + end};
-}
-
-std::string ply_header(std::uint64_t rows, const std::string& comment, const std::vector<PointTable::Column>& columns) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
-                     std::to_string(rows) + "\nproperty double x\nproperty double y\nproperty double z\n" +
-                     "property float nx\nproperty float ny\nproperty float nz\n";
-  for (const PointTable::Column& column : columns)
-    for (const std::string& name : names_of(column, "")) text += "property float " + name + "\n";
-  text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  return text + "property ushort object\nproperty uchar set\nend_header\n";
-}
-
-std::string csv_header(const std::vector<PointTable::Column>& columns) {
-  std::string text = "x_m,y_m,z_m,nx,ny,nz";
-  for (const PointTable::Column& column : columns)
-    for (const std::string& name : names_of(column, column.unit)) text += "," + name;
-  return text + ",object,set\n";
-}
-
 }  // namespace
 
 PointTable::PointTable(const std::string& format, Output& output, std::uint64_t rows, const std::string& comment,
                        const std::vector<Column>& columns)
-    : output_(output), ply_(format == "ply"), text_(ply_ ? ply_header(rows, comment, columns) : csv_header(columns)) {}
+    : output_(output), ply_(format == "ply") {
+  const auto add_fields = [&](const Column& column) {
+    const std::string end = ply_ || column.unit.empty() ? "" : "_" + column.unit;
+    for (const std::string& name : column.names) fields_.push_back({name + end, column.type, column.words});
+  };
+  add_fields({{"x", "y", "z"}, "m", "double"});
+  add_fields({{"nx", "ny", "nz"}, ""});
+  for (const Column& column : columns) add_fields(column);
+  if (ply_)
+    text_ =
+        "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " + std::to_string(rows) + "\n";
+  for (const Field& field : fields_)
+    text_ +=
+        ply_ ? "property " + field.type + " " + field.name + "\n" : (&field == &fields_[0] ? "" : ",") + field.name;
+  text_ += ply_ ? "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n" : "\n";
+}
 
 void PointTable::add(double value) {
-  const bool position = column_++ < 3;
-  if (ply_ && position) return append_bytes(text_, value);
-  if (ply_) return append_bytes(text_, float(value));
+  const Field& field = fields_[field_++];
+  if (ply_) {
+    if (field.type == "double") append_bytes(text_, value);
+    else if (field.type == "float") append_bytes(text_, float(value));
+    else if (field.type == "ushort") append_bytes(text_, std::uint16_t(value));
+    else append_bytes(text_, std::uint8_t(value));
+    return;
+  }
+  if (field_ > 1) text_ += ',';
+  if (!field.words.empty()) {
+    text_ += field.words.at(std::size_t(value));
+    return;
+  }
   char number[40];
-  const int length = std::snprintf(number, sizeof number, "%.9g,", value);
+  const int length = std::snprintf(number, sizeof number, "%.9g", value);
   text_.append(number, std::size_t(length));
 }
 
-void PointTable::end_row(std::uint16_t object, std::uint8_t set) {
-  if (ply_) {
-    text_ += colour_;
-    append_bytes(text_, object);
-    append_bytes(text_, set);
-  } else {
-    text_ += std::to_string(object) + (set == 0 ? ",static\n" : ",dynamic\n");
-  }
-  column_ = 0;
-  colour_.clear();
+void PointTable::end_row(const std::array<std::uint8_t, 3>& colour) {
+  if (ply_) append_bytes(text_, colour);
+  else text_ += '\n';
+  field_ = 0;
   if (text_.size() < kPieceBytes) return;
   output_.write(text_.data(), text_.size());
   text_.clear();

@@ -17,12 +17,8 @@ MeasuredRun run_of(const std::string& curve, double x, double cpu_s, double mse)
   run.label = curve + ", " + std::to_string(int(x));
   run.x = x;
   run.stages.resize(2);
-  run.stages[0].tool = "photon-trace";
   run.stages[0].cpu_s = run.stages[1].cpu_s = cpu_s / 2;
   run.stages[0].peak_memory_bytes = 3e6;
-  run.stages[0].phases.push_back({"trace", cpu_s / 2, cpu_s / 4});
-  run.stages[0].counts["rays"] = 1e6 * x;
-  run.stages[1].tool = "frame-render";
   run.stages[1].peak_memory_bytes = 5e6;
   run.error.emplace();
   run.error->mse = mse;
@@ -42,18 +38,6 @@ const Table& table_of(const SceneReport& report, const std::string& heading) {
   for (const Table& table : report.tables)
     if (table.heading == heading) return table;
   throw std::runtime_error("no table " + heading);
-}
-
-TEST(ReportTest, CsvHasALinePerRunWithSecondsByPhaseAndCounts) {
-  ReportInput input;
-  input.runs = {run_of("path", 4, 2, 0.0625)};
-  EXPECT_EQ(report_csv(input),
-            "scene,curve,label,x,parameters,stages,cpu_s,wall_s,peak_memory_bytes,photon-trace.trace cpu_s,"
-            "photon-trace.rays,layer,pixels,frames,rmse,mse,mse_standard_error,relmse,bias,bias_standard_error,"
-            "worst_object_bias,psnr_db,flicker\n"
-            "S <2>,path,\"path, 4\",4,,photon-trace "
-            "frame-render,2.000000,0.000000,5000000,1,4000000,,0,0,0.25,0.0625"
-            ",,,,,,,\n");
 }
 
 // Curve "map's" falls as 1e-3/t + 1e-5: floor sqrt(1e-5), ten times that at t = 10: points 1 and 4 carry the
