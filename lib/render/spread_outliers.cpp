@@ -107,10 +107,11 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Moves to `spread` what fits at box radius r, in the order of `waiting`. Let `room` be the allowed error of each
-/// pixel that no spread light has used yet. An outlier fits if its light is at most the room of 3 x 3 cells of r x r
-/// pixels around: that is about the area of three box filters of 2 r + 1 pixels, 16/9 (2 r + 1)^2. Cells beyond the
-/// border are mirrored, as in blur().
+/// Moves to `spread` what fits at box radius r, in the order of `waiting`. Let `room` be the part of each pixel's
+/// allowed error that no spread light has used yet. An outlier fits if its light is at most the room of 3 x 3 cells of
+/// r x r pixels around. The middle of three boxes of b = 2 r + 1 pixels holds m^2 of its light, m = (3 b^2 + 1) / (4
+/// b^3). So the room is reduced to 1 / (9 r^2 m^2), if that is below 1: all light from one place stays below the error
+/// in the middle, too. Cells beyond the border are mirrored, as in blur().
 void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& room, int width, int r,
                   std::vector<Excess>& spread) {
   const std::size_t w = std::size_t(width), cell = std::size_t(r);
@@ -119,7 +120,9 @@ void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& room,
   const auto cell_at = [&](int i, int j) -> double& {
     return left[std::size_t(std::clamp(j, 0, rows - 1) * columns + std::clamp(i, 0, columns - 1))];
   };
-  for (std::size_t p = 0; p < room.size(); ++p) cell_at(int(p % w / cell), int(p / w / cell)) += room[p];
+  const double box = 2 * r + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
+  const double share = std::min(1.0, 1 / (9 * middle * middle * r * r));
+  for (std::size_t p = 0; p < room.size(); ++p) cell_at(int(p % w / cell), int(p / w / cell)) += share * room[p];
   std::vector<Excess> stay;
   for (const Excess& excess : waiting) {
     const int i = int(excess.pixel % w / cell), j = int(excess.pixel / w / cell);
