@@ -111,15 +111,13 @@ void blur(std::vector<double>& image, int width, int height, int r) {
 /// allowed error that no spread light has used yet. An outlier fits if its light is at most the room of 3 x 3 cells of
 /// r x r pixels around. The middle of three boxes of b = 2 r + 1 pixels holds m^2 of its light, m = (3 b^2 + 1) / (4
 /// b^3). So the room is reduced to 1 / (9 r^2 m^2), if that is below 1: all light from one place stays below the error
-/// in the middle, too. Cells beyond the border are mirrored, as in blur().
+/// in the middle, too. Cells beyond the border have no room: blur() mirrors their light back.
 void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& room, int width, int r,
                   std::vector<Excess>& spread) {
   const std::size_t w = std::size_t(width), cell = std::size_t(r);
   const int columns = (width + r - 1) / r, rows = int((room.size() / w + cell - 1) / cell);
   std::vector<double> left(std::size_t(columns * rows));
-  const auto cell_at = [&](int i, int j) -> double& {
-    return left[std::size_t(std::clamp(j, 0, rows - 1) * columns + std::clamp(i, 0, columns - 1))];
-  };
+  const auto cell_at = [&](int i, int j) -> double& { return left[std::size_t(j * columns + i)]; };
   const double box = 2 * r + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
   const double share = std::min(1.0, 1 / (9 * middle * middle * r * r));
   for (std::size_t p = 0; p < room.size(); ++p) cell_at(int(p % w / cell), int(p / w / cell)) += share * room[p];
@@ -127,7 +125,8 @@ void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& room,
   for (const Excess& excess : waiting) {
     const int i = int(excess.pixel % w / cell), j = int(excess.pixel / w / cell);
     double sum = 0;
-    for (int n = 0; n < 9; ++n) sum += cell_at(i + n % 3 - 1, j + n / 3 - 1);
+    for (int v = std::max(0, j - 1); v <= std::min(rows - 1, j + 1); ++v)
+      for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u) sum += cell_at(u, v);
     const bool fits = excess.light() <= sum;
     if (fits) cell_at(i, j) -= excess.light();
     (fits ? spread : stay).push_back(excess);

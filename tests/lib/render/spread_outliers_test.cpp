@@ -96,10 +96,12 @@ TEST(SpreadOutliers, TwoSamplesDoNotConfirmEachOther) {
 
 /// The left half of the picture is black and may err by .005, the right half shows 1 and may err by .05. 30 pixels
 /// there have a sample of 1000. Together they claim 30 x 249, but the picture has room for 48000 x .055 = 2640. So some
-/// are spread, the others stay whole, and no pixel gets more than its error times 1.27. This is 9 r^2 m^2, the middle
-/// of three wide boxes over their mean in the 3 x 3 cells that are judged. B changes by less than a tenth from a
-/// pixel of the rim to the next for boxes of 17 and more, so the black side of the rim gets at most .11 of what the
-/// bright side gets. The median within 5 x 5 pixels at the rim is that of a pixel's own side.
+/// are spread, the others stay whole. The room is that of 3 x 3 cells. Three wide boxes leave 1.27 (9 r^2 m^2) times
+/// the mean over the cells in the middle. Light is divided by B(w), which is the mean of both halves, .0275, or more:
+/// that is .55 of w in the bright half. So no pixel gets more than 1.27 / .55 = 2.3 times its error. (Each outlier by
+/// itself would give 30 x 249 / 2640 = 2.8 on average.) B changes by less than a tenth from a pixel of the rim to the
+/// next for boxes of 17 and more, so the black side of the rim gets at most .11 of what the bright side gets. The
+/// median within 5 x 5 pixels at the rim is that of a pixel's own side.
 TEST(SpreadOutliers, ManyOutliersTogetherStayBelowTheError) {
   Even even(320, 300);
   even.error = [](double level) { return level > 0.5 ? 0.05 : 0.005; };
@@ -113,7 +115,7 @@ TEST(SpreadOutliers, ManyOutliersTogetherStayBelowTheError) {
     const float got = pixels[p][Layer::indirect].g - before[p][Layer::indirect].g;
     spread += got < -200;
     whole += before[p][Layer::indirect].g > 200 && got >= 0;
-    ASSERT_LE(got, 1.27f * (p % 320 < 160 ? 0.005f : 0.05f)) << p;
+    ASSERT_LE(got, 2.3f * (p % 320 < 160 ? 0.005f : 0.05f)) << p;
   }
   EXPECT_GT(spread, 3);
   EXPECT_EQ(spread + whole, 30);
@@ -155,7 +157,7 @@ TEST(SpreadOutliers, PixelsOutsideTheMaskCountNowhere) {
 /// green.
 TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
   Even even(37, 23);
-  even.error = [](double level) { return 0.05 * std::sqrt(level); };
+  even.error = [](double level) { return 0.5 * std::sqrt(level); };  // room 356 for light of 126
   for (std::size_t p = 0; p < even.parts.size(); ++p) {
     if (p % 37 > 30) {
       even.parts[p] = {};
