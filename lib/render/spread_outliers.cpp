@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "lib/core/parallel.h"
 
@@ -12,13 +11,13 @@ namespace {
 constexpr int kNear = 2;            ///< pixels: the 24 pixels within this distance give the local light
 constexpr double kConfirmed = 0.5;  ///< share of the outlier that other samples must find to confirm it
 
-/// The light taken from a pixel, and how far it is spread.
+/// Light that a pixel may give away.
 struct Excess {
   std::size_t pixel;
   Layer layer;
-  int level;  ///< box filters reach 2^level pixels
   Rgbd radiance;
   int samples;  ///< samples of the outlier's part
+  double light() const { return channel_mean(radiance); }
 };
 
 double radiance_of(const Layers& pixel) {
@@ -27,35 +26,37 @@ double radiance_of(const Layers& pixel) {
   return sum;
 }
 
-/// Mean of value(pixel) over the pixels around (x, y), without (x, y) itself.
-template <class Value>
-double around(int width, int height, int x, int y, const Value& value) {
-  double sum = 0;
-  int n = 0;
-  for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
-    for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i) {
-      if (i == x && j == y) continue;
-      sum += value(std::size_t(j) * std::size_t(width) + std::size_t(i));
-      ++n;
+/// Calls body(pixel) for the pixels around (x, y), without (x, y) itself, that take part.
+template <class Body>
+void for_each_near(const SampledPixels& samples, int x, int y, const Body& body) {
+  for (int j = std::max(0, y - kNear); j <= std::min(samples.height - 1, y + kNear); ++j)
+    for (int i = std::max(0, x - kNear); i <= std::min(samples.width - 1, x + kNear); ++i) {
+      const std::size_t pixel = std::size_t(j) * std::size_t(samples.width) + std::size_t(i);
+      if ((i != x || j != y) && samples.takes_part(pixel)) body(pixel);
     }
-  return n > 0 ? sum / n : 0;
 }
 
-std::vector<double> radiances_of(const std::vector<Layers>& pixels) {
-  std::vector<double> radiances(pixels.size());
-  parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) radiances[p] = radiance_of(pixels[p]);
-  });
-  return radiances;
-}
-
-/// The error that each pixel may have.
-std::vector<double> errors_of(const SampledPixels& samples, const std::vector<double>& radiances) {
-  std::vector<double> errors(radiances.size());
-  parallel_chunks(radiances.size() / std::size_t(samples.width), 1, [&](std::size_t y, std::size_t) {
-    for (int x = 0; x < samples.width; ++x)
-      errors[y * std::size_t(samples.width) + std::size_t(x)] =
-          samples.error(around(samples.width, samples.height, x, int(y), [&](std::size_t p) { return radiances[p]; }));
+/// The error that each pixel may have, from the median of the radiance around it: the outliers themselves do not raise
+/// their limit. 0 for pixels without a surface and outside the mask: these neither give nor get light.
+std::vector<double> errors_of(const SampledPixels& samples, const std::vector<Layers>& pixels) {
+  std::vector<double> errors(pixels.size());
+  parallel_chunks(std::size_t(samples.height), 1, [&](std::size_t row, std::size_t) {
+    std::vector<double> near;
+    const auto note = [&](std::size_t p) {
+      const double radiance = radiance_of(pixels[p]);
+      near.push_back(std::isfinite(radiance) ? radiance : 0);
+    };
+    for (int x = 0, y = int(row); x < samples.width; ++x) {
+      const std::size_t pixel = row * std::size_t(samples.width) + std::size_t(x);
+      if (!(pixels[pixel].coverage > 0) || !samples.takes_part(pixel)) continue;
+      near.clear();
+      note(pixel);
+      for_each_near(samples, x, y, note);
+      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
+      std::nth_element(near.begin(), middle, near.end());
+      const double error = samples.error(*middle);
+      if (std::isfinite(error)) errors[pixel] = error;
+    }
   });
   return errors;
 }
@@ -64,17 +65,6 @@ std::vector<double> errors_of(const SampledPixels& samples, const std::vector<do
 int last_level(int width, int height) {
   int level = 0;
   while ((2 << (level + 1)) + 1 <= std::max(width, height)) ++level;
-  return level;
-}
-
-/// The lowest level at which a pixel keeps at most `error` of its excess. After three passes of a box of b values, the
-/// middle holds (3 b^2 + 1) / (4 b^3).
-int level_of(double excess, double error, int last) {
-  int level = 0;
-  for (; level < last; ++level) {
-    const double box = (2 << level) + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
-    if (excess * middle * middle <= error) break;
-  }
   return level;
 }
 
@@ -117,57 +107,63 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// By pixel how much of the spread light of a layer it gets: the median of the layer's light within kNear, plus the
-/// error that the pixel may have; 0 where the pixel gets none. The median ignores single bright samples and keeps the
-/// rims of surfaces.
-std::vector<double> weights_of(const SampledPixels& samples, const std::vector<Layers>& pixels,
-                               const std::vector<double>& errors, Layer layer) {
-  const int width = samples.width, height = samples.height;
-  std::vector<double> weight(pixels.size());
-  parallel_chunks(std::size_t(height), 1, [&](std::size_t row, std::size_t) {
-    std::vector<double> near;
-    for (int x = 0, y = int(row); x < width; ++x) {
-      const std::size_t pixel = row * std::size_t(width) + std::size_t(x);
-      if (!(pixels[pixel].coverage > 0) || !samples.takes_part(pixel)) continue;
-      near.clear();
-      for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
-        for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i) {
-          const double light = channel_mean(Rgbd(pixels[std::size_t(j) * std::size_t(width) + std::size_t(i)][layer]));
-          near.push_back(std::isfinite(light) ? std::max(0.0, light) : 0.0);
-        }
-      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
-      std::nth_element(near.begin(), middle, near.end());
-      if (std::isfinite(errors[pixel])) weight[pixel] = *middle + errors[pixel];
-    }
-  });
-  return weight;
-}
-
-/// Spreads `excess` (one level of one layer) as w blur(excess / blur(w)). Its sum is that of `excess` for any weights
-/// w.
-void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight,
-            const std::vector<double>& blurred, std::vector<Layers>& pixels) {
-  const int r = 1 << excess.front().level;
-  const std::size_t layer = std::size_t(excess.front().layer);
-  for (int c = 0; c < 3; ++c) {
-    std::vector<double> given(weight.size());
-    bool any = false;
-    for (const Excess& e : excess) {
-      given[e.pixel] += e.radiance[c] / blurred[e.pixel];
-      any = any || e.radiance[c] != 0;
-    }
-    if (!any) continue;
-    blur(given, width, height, r);
-    for (std::size_t p = 0; p < pixels.size(); ++p)
-      if (weight[p] > 0)
-        pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + weight[p] * std::max(0.0, given[p]));
+/// Moves to `spread` what fits at box radius r, in the order of `waiting`. Let `room` be the part of each pixel's
+/// allowed error that no spread light has used yet. An outlier fits if its light is at most the room of 3 x 3 cells of
+/// r x r pixels around. The middle of three boxes of b = 2 r + 1 pixels holds m^2 of its light, m = (3 b^2 + 1) / (4
+/// b^3). So the room is reduced to 1 / (9 r^2 m^2), if that is below 1: all light from one place stays below the error
+/// in the middle, too. Cells beyond the border have no room: blur() mirrors their light back.
+void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& room, int width, int r,
+                  std::vector<Excess>& spread) {
+  const std::size_t w = std::size_t(width), cell = std::size_t(r);
+  const int columns = (width + r - 1) / r, rows = int((room.size() / w + cell - 1) / cell);
+  std::vector<double> left(std::size_t(columns * rows));
+  const auto cell_at = [&](int i, int j) -> double& { return left[std::size_t(j * columns + i)]; };
+  const double box = 2 * r + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
+  const double share = std::min(1.0, 1 / (9 * middle * middle * r * r));
+  for (std::size_t p = 0; p < room.size(); ++p) cell_at(int(p % w / cell), int(p / w / cell)) += share * room[p];
+  std::vector<Excess> stay;
+  for (const Excess& excess : waiting) {
+    const int i = int(excess.pixel % w / cell), j = int(excess.pixel / w / cell);
+    double sum = 0;
+    for (int v = std::max(0, j - 1); v <= std::min(rows - 1, j + 1); ++v)
+      for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u) sum += cell_at(u, v);
+    const bool fits = excess.light() <= sum;
+    if (fits) cell_at(i, j) -= excess.light();
+    (fits ? spread : stay).push_back(excess);
   }
+  waiting = std::move(stay);
 }
 
-void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y, int last,
+/// Takes `excess` out of its pixels and spreads it as w blur(excess / blur(w)), with the allowed error as w. Its sum
+/// stays for any weights w. Subtracts what each pixel gets from `room`.
+void spread(std::span<const Excess> excess, const SampledPixels& samples, int r, const std::vector<double>& weight,
+            std::vector<double>& room, std::vector<Layers>& pixels) {
+  std::vector<double> blurred = weight, given;
+  blur(blurred, samples.width, samples.height, r);
+  for (std::size_t layer = 0; layer < kLayerCount; ++layer)
+    for (int c = 0; c < 3; ++c) {
+      given.assign(weight.size(), 0);
+      bool any = false;
+      for (const Excess& e : excess) {
+        if (std::size_t(e.layer) != layer || e.radiance[c] == 0) continue;
+        float& value = pixels[e.pixel].value[layer][c];
+        value = float(double(value) - e.radiance[c]);
+        given[e.pixel] += e.radiance[c] / blurred[e.pixel];
+        any = true;
+      }
+      if (!any) continue;
+      blur(given, samples.width, samples.height, r);
+      for (std::size_t p = 0; p < pixels.size(); ++p) {
+        const double got = weight[p] * std::max(0.0, given[p]);
+        pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + got);
+        room[p] -= got / 3;
+      }
+    }
+}
+
+void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y,
                std::vector<Excess>& found) {
   const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
-  if (!samples.takes_part(pixel)) return;
   const BrightestSamples& brightest = samples.brightest[pixel];
   const PartCounts& counts = samples.counts[pixel];
   const FurtherSamples* const further = samples.further_of.empty() || samples.further_of[pixel] == kNone
@@ -186,16 +182,20 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
       other_count += further->count.*number;
     }
     others = other_count > 0 ? others / other_count : 0;
-    const double beside = around(samples.width, samples.height, x, y,
-                                 [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); });
+    double beside = 0;
+    int near = 0;
+    for_each_near(samples, x, y, [&](std::size_t p) {
+      beside += channel_mean(Rgbd(pixels[p][sample.layer]));
+      ++near;
+    });
+    beside /= std::max(1, near);
     const double allowed = error + std::max(others, beside);
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
     // If further samples found about one such sample's light again, the light is confirmed.
     if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
-    const double both = claimed - allowed + std::max(0.0, second - allowed);
     Rgbd excess = Rgbd(sample.radiance) * ((1 - allowed / claimed) / count);
     if (second > allowed) excess += Rgbd(sample.second) * ((1 - allowed / second) / count);
-    found.push_back({pixel, sample.layer, level_of(both, error, last), excess, count});
+    found.push_back({pixel, sample.layer, excess, count});
   };
   look(brightest.own, &PathParts::own, &PartCounts::own);
   look(brightest.lit, &PathParts::lit, &PartCounts::lit);
@@ -204,11 +204,11 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
 
 std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels,
                                const std::vector<double>& errors) {
-  const int width = samples.width, last = last_level(width, samples.height);
+  const int width = samples.width;
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
   parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
     for (int x = 0; x < width; ++x)
-      excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
+      excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), by_row[y]);
   });
   std::vector<Excess> all;
   for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
@@ -233,38 +233,26 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
 
 std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels) {
   std::vector<std::size_t> found;
-  for (const Excess& excess : all_excess(samples, pixels, errors_of(samples, radiances_of(pixels))))
+  for (const Excess& excess : all_excess(samples, pixels, errors_of(samples, pixels)))
     if (excess.samples < kJudges && (found.empty() || found.back() != excess.pixel)) found.push_back(excess.pixel);
   return found;
 }
 
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
-  const int width = samples.width, height = samples.height;
-  const std::vector<double> radiances = radiances_of(pixels);
-  const std::vector<double> errors = errors_of(samples, radiances);
-  std::vector<Excess> all = all_excess(samples, pixels, errors);
-  if (all.empty()) return 0;
-  const double light = std::accumulate(radiances.begin(), radiances.end(), 0.0);
-  double moved = 0;
-  for (const Excess& e : all) {
-    moved += channel_mean(e.radiance);
-    for (int c = 0; c < 3; ++c) {
-      float& value = pixels[e.pixel][e.layer][c];
-      value = float(double(value) - e.radiance[c]);
-    }
-  }
-  std::vector<double> weight, blurred;
-  std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) {
-    return a.layer != b.layer ? a.layer < b.layer : a.level < b.level;
-  });
-  for (std::size_t first = 0, end; first < all.size(); first = end) {
-    for (end = first; end < all.size() && all[end].level == all[first].level && all[end].layer == all[first].layer;)
-      ++end;
-    const Layer layer = all[first].layer;
-    if (first == 0 || layer != all[first - 1].layer) weight = weights_of(samples, pixels, errors, layer);
-    blurred = weight;
-    blur(blurred, width, height, 1 << all[first].level);
-    spread({all.data() + first, end - first}, width, height, weight, blurred, pixels);
+  const int last = last_level(samples.width, samples.height);
+  const std::vector<double> errors = errors_of(samples, pixels);
+  std::vector<Excess> waiting = all_excess(samples, pixels, errors), taken;
+  double light = 0, moved = 0;
+  for (const Layers& pixel : pixels) light += radiance_of(pixel);
+  std::stable_sort(waiting.begin(), waiting.end(),
+                   [](const Excess& a, const Excess& b) { return a.light() < b.light(); });
+  std::vector<double> room = errors;
+  for (int level = 0; level <= last && !waiting.empty(); ++level) {
+    taken.clear();
+    take_fitting(waiting, room, samples.width, 1 << level, taken);
+    if (taken.empty()) continue;
+    for (const Excess& e : taken) moved += e.light();
+    spread(taken, samples, 1 << level, errors, room, pixels);
   }
   return light > 0 ? moved / light : 0;
 }

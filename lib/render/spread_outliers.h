@@ -57,11 +57,11 @@ struct SampledPixels {
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994],
 /// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the largest of
 /// three values: the error that the pixel may have, the light that the pixel's other samples (FurtherSamples
-/// included) show in that layer, and the light that the 24 pixels around show there. The rest is taken out of
-/// `pixels` (sums of parts) and spread over so many pixels around that it is below the allowed error in each where
-/// these show the same light. A pixel receives light in proportion to the median of the layer's light around it plus
-/// its allowed error; a pixel without a surface (coverage 0) receives none. The sum of a layer over the picture stays
-/// the same up to rounding. Returns the share of the picture's light that was spread.
+/// included) show in that layer, and the light that the 24 pixels around show there. The rest may be spread: outliers
+/// come in ascending order of their light, and each takes the smallest box in which all spread light together stays
+/// below the allowed error. A pixel receives light in proportion to this error; a pixel without a surface (coverage 0)
+/// neither gives nor receives. An outlier that fits nowhere stays in its pixel. The sum of a layer over the picture
+/// stays the same up to rounding. Returns the share of the picture's light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
 
 /// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.
