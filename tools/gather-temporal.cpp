@@ -66,7 +66,8 @@ void check_points(const Chain& chain, const std::string& file, const FramePoints
 
 void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history,
                  tools::Output& output) {
-  formats::IrradcacheHeader header = tools::records_header(frame, store.records(), options.gather, options.placement);
+  formats::IrradcacheHeader header =
+      tools::records_header(frame, store.records(), store.least_cosine(), options.gather, options.placement);
   header.placed_frames = {{frame.frame, frame.frame}};
   header.history = history;
   tools::write_records(header, to_file(store.records(), frame), output);
@@ -175,7 +176,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tool.stats().phase("records", true);
   TemporalCounts counts;
   if (chain.before) gather.advance(chain.kept, counts);
-  RecordStore store;
+  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
   gather.place(seen, options.width, options.height, chain.kept, store, counts,
                [&](double done) { tool.progress(done); });
   tool.stats().phase("write");

@@ -16,6 +16,7 @@ LocalisedRecords localised_records(const formats::IrradcacheFile& file, const Sc
   const std::vector<IrradianceRecord> records =
       from_file(file.records, Vec3d{origin[0], origin[1], origin[2]} - frame.origin);
   LocalisedRecords cache;
+  cache.least_cosine = float(file.header.least_cosine);
   cache.history = file.header.history;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const formats::IrradianceCacheRecord& record = file.records[i];

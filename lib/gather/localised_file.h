@@ -17,6 +17,7 @@ namespace tempolux {
 struct LocalisedRecords {
   std::vector<IrradianceRecord> standing, gathered;
   std::vector<RecordChange> changes;
+  float least_cosine = 0;  ///< smallest cosine between normals for which a record of either set counts
   std::string history;
 };
 

@@ -42,7 +42,7 @@ void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
 template <class Body>
 void RecordStore::for_each_cell_of(const Level& level, const IrradianceRecord& r, const Body& body) const {
   const Vec3d local(r.position), normal(r.normal);
-  const double c = double(kLeastCosine), width = 1 / level.inverse_cell;
+  const double c = double(std::min(options_.least_cosine, kWideCosine)), width = 1 / level.inverse_cell;
   const double off =
       double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));

@@ -23,22 +23,40 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
-  Clearance clearance;                  ///< the record does not count outside of it; measured about `normal`
-  std::uint32_t object = 0;             ///< the object it lies on
+  Clearance clearance;       ///< the record does not count outside of it; measured about `normal`
+  std::uint32_t object = 0;  ///< the object it lies on
   /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (gathered_record.h); 0: unknown
   Rgb noise{0.0f};
   Rgb points_noise{0.0f};  ///< W/m^2: the part of `noise` from the points that were read; not in files
 };
 
-/// A record counts if the cosine between its normal and the surface's is above this: about 20 degrees.
-inline constexpr float kLeastCosine = 0.94f;
+struct InterpolationOptions {
+  /// A record counts if the cosine between its normal and the surface's is above least_cosine, in [0, 1).
+  float least_cosine = 0.94f;
+  bool only_read = false;  ///< all records are added in one call
+};
+
+/// least_cosine of records placed with this error bound (lib/gather/place_records.h). On curved surfaces a bright spot
+/// rises over the horizon faster than gradients predict: a ball lit from the side came out 4 % too dark there with 20
+/// degrees and 1 % with 10. As for radii, the angle follows the bound,
+///     1 - least_cosine = 0.375 error_bound^2,   50 degrees x error_bound,
+/// within 5 to 20 degrees. Normals of fine meshes turn by more than 5 degrees within a pixel, and wider angles than 20
+/// degrees are wrong.
+float least_cosine_of(float error_bound);
+/// Cosine of about 20 degrees.
+inline constexpr float kWideCosine = 0.94f;
 
 /// Finds records by place. A record is listed in the cells that its validity sphere meets near its tangent plane. The
 /// cells belong to hashed grids, one per level; cell sizes are powers of two, from one to two radii. The cost of a
 /// look-up grows with the number of overlapping records only. Look-ups are thread-safe while nothing is added.
 class RecordStore {
  public:
-  explicit RecordStore(bool only_read = false) : only_read_(only_read) {}
+  explicit RecordStore(const InterpolationOptions& options = {}) : options_(options) {}
+
+  /// Narrows the angle within which records count, if least_cosine is larger than the present value.
+  void narrow(float least_cosine) { options_.least_cosine = std::max(options_.least_cosine, least_cosine); }
+  /// Records count above this cosine between normals.
+  float least_cosine() const { return options_.least_cosine; }
 
   /// False, and the record is refused and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
@@ -59,19 +77,22 @@ class RecordStore {
   /// Weighted mean of the valid records' extrapolations by their gradients:
   ///
   ///     E = sum w_i (E_i + (n_i x n) . g_r,i + (x - x_i) . g_t,i) / sum w_i
-  ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - kLeastCosine)))      where both are positive
+  ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - least_cosine)))      where both are positive
   ///
   /// with the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which are zero at the border of validity, so
   /// that records have no visible borders. Every extrapolation is clamped at 0. A record is not valid if the point
   /// does not lie on the record's surface: |(x - x_i) . (n + n_i)/2| > 0.05 r_i (0 along circles). Ward 1988 tests
   /// only points behind the record. Points in front matter, too: the bright ground below a plate's rim would light
-  /// the top of the plate. A record is not valid either if an obstacle lies between (clearance).
+  /// the top of the plate. A record is not valid either if an obstacle lies between (clearance). If no record is
+  /// valid, records within the angle of kWideCosine are used.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Sum of the weights, at a record's own place, of the records added before it, except the marked ones (`marked` may
   /// be empty).
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
-  /// True if the sum of the weights is at least `weight`; stops as soon as it is.
-  bool covers(Vec3 position, Vec3 normal, float weight) const;
+  /// True if the sum of the weights is at least `weight`; stops as soon as it is. Also true if the sum would be at
+  /// least `weight` with all radii limited to least_reach [m] and within the angle of kWideCosine: where normals turn
+  /// quickly, records need not be denser than the smallest radius allows.
+  bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
   /// Multiplies IrradianceRecord::noise of the records from `first` on, which is that of their rays, and adds
   /// points_noise.
   void complete_noise(std::size_t first, float factor);
@@ -126,16 +147,18 @@ class RecordStore {
   /// Calls found(entry), in order, for the entries that a slightly widened test of place and normal accepts, until
   /// found returns true.
   template <class Found>
-  static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, const Found& found);
+  static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);
   /// True if found(entry) is true for a record that may be valid at the point. Each record is tried once, until one is
   /// found.
   template <class Found>
-  bool any_near(Vec3 position, Vec3 normal, const Found& found) const;
-  /// Weight of a record at a point; 0 where it is not valid.
-  float weight_of(const Entry& entry, Vec3 position, Vec3 normal) const;
-  void accumulate(const Entry& entry, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
+  bool any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const;
+  Interpolated interpolate(Vec3 position, Vec3 normal, float least_cosine) const;
+  /// Weight of a record at a point, with another radius than its own; 0 where it is not valid.
+  float weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const;
+  void accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal, Rgb& sum,
+                  Interpolated& result) const;
 
-  bool only_read_;  ///< all records are added in one call
+  InterpolationOptions options_;
   std::vector<IrradianceRecord> records_;
   std::vector<Level> levels_;  ///< levels with members, in the order of their first members
   std::uint64_t refused_ = 0;

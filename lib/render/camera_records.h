@@ -39,7 +39,7 @@ struct UpdateInput {
 };
 
 /// Updates the static records in `cache` and gathers new ones where movers change the light that the cameras see.
-/// Returns the counts.
+/// Returns the counts and sets least_cosine.
 GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
                                 LocalisedRecords& cache);
 

@@ -19,9 +19,10 @@ namespace tempolux {
 /// docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
-  /// changes[i] belongs to static_records[i].
+  /// changes[i] belongs to static_records[i]. least_cosine: the smallest cosine between normals for which a record of
+  /// either set counts.
   LocalisedLight(std::span<const IrradianceRecord> static_records, std::span<const RecordChange> changes,
-                 std::span<const IrradianceRecord> gathered, const InfluenceThresholds& thresholds,
+                 std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 
   /// Empty if a record that the place needs is missing.

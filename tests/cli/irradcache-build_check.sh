@@ -11,7 +11,7 @@ refuses() {   # exit 2 and these words in one line; nothing is written
   [ -e refused ] && bad "left an output: $*" && rm -f refused
 }
 scenes=$HERE/../../pipelines/scenes
-still=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb
+still=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb round=$scenes/S3_indirect_room.glb
 small="--size 48x27 --rays 64"
 photon-trace "$still" --photons 20k -o p.photons -q || bad 'photons'
 
@@ -34,11 +34,32 @@ tempolux-info --check one.irradcache p.irradpoints >/dev/null || bad 'not valid'
 irradcache-build records "$still" --points - $small -o - -q <p.irradpoints >piped.irradcache || bad 'pipes'
 same piped.irradcache two.irradcache || bad 'a pipe changes the records'
 
+# The angle in which records count follows the error bound, the file says it.
+says() { tempolux-info --json "$1" | grep -q "\"least_cosine\": $2" || bad "$1 does not say least_cosine $2"; }
+irradcache-build records "$still" --points p.irradpoints $small --error-bound 0.5 -o coarse.irradcache -q || bad 'coarse'
+says two.irradcache 0.98
+says coarse.irradcache '0.9[34]'
+
 # A frame from the cache, and the same one however the cache came to be.
 for cache in one two; do
   frame-render "$still" --size 48x27 --spp 2 --pixel-error 0 --irradcache $cache.irradcache --channels layers -o $cache.exr -q || bad "frame from $cache"
 done
 tempolux-info --diff one.exr two.exr >/dev/null || bad 'frames of equal caches differ'
+
+# frame-render interpolates in the angle the file says: in one of 2.6 degrees a ball and a head look different.
+photon-trace "$round" --frame 1 --photons 20k -o round.photons -q
+irradcache-build "$round" --frame 1 --photons round.photons --point-count 1k $small -o round.irradcache -q || bad 'round'
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" - <<'END' || bad 'narrower'
+from read_irradcache import read_irradcache, write_irradcache
+cache = read_irradcache("round.irradcache")
+cache.header["least-cosine"] = "0.999"
+write_irradcache("narrow.irradcache", cache)
+END
+for cache in round narrow; do
+  frame-render "$round" --frame 1 --size 48x27 --spp 2 --pixel-error 0 --irradcache $cache.irradcache --photons round.photons -o $cache.exr -q
+done
+pixels=$(tempolux-info --diff round.exr narrow.exr | sed -n 's/^ *channel R *pixels \([0-9]*\).*/\1/p')
+[ "${pixels:-0}" -gt 50 ] || bad "another angle changes ${pixels:-0} pixels"
 
 # Frames that are lit alike are one cache; frames that are not are refused.
 irradcache-build "$still" --photons p.photons --point-count 1k $small --frames 0-2 -o frames.irradcache --stats frames.json -q || bad '--frames'

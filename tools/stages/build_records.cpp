@@ -17,8 +17,9 @@ namespace {
 
 /// Header of a cache that is placed for these frames.
 formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneFrame& frame,
-                                       const std::vector<int>& frames, std::span<const IrradianceRecord> records) {
-  formats::IrradcacheHeader header = records_header(frame, records, options.gather, options.placement);
+                                       const std::vector<int>& frames, std::span<const IrradianceRecord> records,
+                                       float least_cosine) {
+  formats::IrradcacheHeader header = records_header(frame, records, least_cosine, options.gather, options.placement);
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
   header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
   header.columns |= formats::column_noise;
@@ -127,13 +128,13 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
     options.gather.bright = &*bright;
   }
   const FinalGather gather(tracer, lights, lookup, options.gather);
-  RecordStore store;
+  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
 
   tool.stats().phase("records", true);
   const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state),
                                                 options.placement, store);
   tool.stats().phase("write");
-  formats::IrradcacheHeader header = cache_header(options, first, frames, store.records());
+  formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
   if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
   header.history = points.history + tool.history_line();
   write_records(header, to_file(store.records(), first), output);
@@ -158,7 +159,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const std::string name = frame_name(options.update, number);
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
-  RecordStore fixed(true);
+  RecordStore fixed({.least_cosine = 0, .only_read = true});
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
@@ -181,7 +182,8 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   tool.stats().phase("write");
   std::vector<IrradianceRecord> all = cache.standing;
   all.insert(all.end(), cache.gathered.begin(), cache.gathered.end());
-  formats::IrradcacheHeader header = cache_header(options, frame, frames, all);
+  formats::IrradcacheHeader header =
+      cache_header(options, frame, frames, all, std::max(cache.least_cosine, fixed.least_cosine()));
   header.columns |= formats::column_influence | formats::column_update;
   header.history = cache.history + (frames.size() == 1 ? tool.history_line(number) : tool.history_line());
   write_records(header, to_file(cache, frame), output);

@@ -168,13 +168,15 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
 }
 
 formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<const IrradianceRecord> records,
-                                         const GatherOptions& gather, const PlacementOptions& placement) {
+                                         float least_cosine, const GatherOptions& gather,
+                                         const PlacementOptions& placement) {
   formats::IrradcacheHeader header;
   header.identity = identity_of(frame);
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
   header.columns = formats::column_clearance;
   header.rays = std::uint32_t(gather.rays);
   header.error_bound = double(placement.error_bound);
+  header.least_cosine = double(least_cosine);
   if (!records.empty()) {
     const auto [least, most] = std::ranges::minmax_element(records, {}, &IrradianceRecord::radius);
     header.min_radius = double(least->radius), header.max_radius = double(most->radius);
@@ -196,6 +198,7 @@ std::string add_records(Tool& tool, const std::string& name, const formats::Irra
     throw InputError(name +
                      ": holds records that stand beside those of a frame (--update); give one without these columns");
   check_identity(tool, name, file.header.identity, frame);
+  store.narrow(float(file.header.least_cosine));
   store.add(from_file(file.records, shift_of(file.header.origin, frame)));
   return file.header.history;
 }

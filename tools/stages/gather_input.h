@@ -49,7 +49,8 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
 
 /// Header of a cache of a frame's records, without the frames that it was placed for and without history.
 formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<const IrradianceRecord> records,
-                                         const GatherOptions& gather, const PlacementOptions& placement);
+                                         float least_cosine, const GatherOptions& gather,
+                                         const PlacementOptions& placement);
 void write_records(const formats::IrradcacheHeader& header, const std::vector<formats::IrradianceCacheRecord>& records,
                    Output& output);
 

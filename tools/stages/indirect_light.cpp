@@ -115,12 +115,12 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneF
     check_identity(tool, name, file.header.identity, frame);
     LocalisedRecords records = localised_records(file, frame);
     history_ = records.history;
-    localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered, thresholds,
-                                                  MovingObjects(frame));
+    localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered,
+                                                  records.least_cosine, thresholds, MovingObjects(frame));
     known_.localised = localised_.get();
     return;
   }
-  records_ = std::make_unique<RecordStore>(true);
+  records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = 0, .only_read = true});
   history_ = add_records(tool, name, file, frame, *records_);
   known_.records = records_.get();
 }

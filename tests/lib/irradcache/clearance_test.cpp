@@ -71,7 +71,7 @@ TEST(Clearance, NoRecordCountsBehindAWall) {
   record.clearance = look([](float x, float) { return x < 0.2f; });
   const Frame frame(kNormal);
   for (const bool only_read : {false, true}) {
-    RecordStore store(only_read);
+    RecordStore store({.only_read = only_read});
     store.add(std::span(&record, 1));
     EXPECT_GT(store.interpolate(frame.tangent * 0.15f, kNormal).weight, 0);
     EXPECT_GT(store.interpolate(frame.tangent * -0.9f, kNormal).weight, 0);

@@ -35,7 +35,9 @@ struct Records {
   std::vector<IrradianceRecord> standing{record({0, 0, 0}, 10), record({10, 0, 0}, 10), record({20, 0, 0}, 10)};
   std::vector<RecordChange> changes{{Rgb(8.0f), 0}, {Rgb(8.0f), 1.05f}, {Rgb(8.0f), 10}};
   std::vector<IrradianceRecord> gathered{record({10, 0, 0}, 4), record({20, 0, 0}, 4)};
-  LocalisedLight light() const { return {standing, changes, gathered, {}, MovingObjects({false, false, false, true})}; }
+  LocalisedLight light() const {
+    return {standing, changes, gathered, 0.9f, {}, MovingObjects({false, false, false, true})};
+  }
 };
 
 float at(const LocalisedLight& light, const SurfacePoint& point) {
