@@ -32,7 +32,7 @@ class GlassLoss {
 };
 
 namespace glass_table {
-inline constexpr int kPlanes = 11, kRows = 9, kColumns = 20;
+inline constexpr int kPlanes = 11, kRows = 15, kColumns = 24;
 extern const float kLoss[2][kPlanes][kRows][kColumns];
 extern const float kMean[2][kPlanes][kRows];
 
