@@ -16,7 +16,8 @@ struct Excess {
   std::size_t pixel;
   Layer layer;
   Rgbd radiance;
-  int samples;  ///< samples of the outlier's part
+  int samples;       ///< samples of the outlier's part
+  double seen2 = 0;  ///< square of what is seen of it if it stays, in allowed errors
   double light() const { return channel_mean(radiance); }
 };
 
@@ -107,37 +108,50 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Moves to `spread` what fits at box radius r, in the order of `waiting`. Let `room` be the part of each pixel's
-/// allowed error that no spread light has used yet. An outlier fits if its light is at most the room of 3 x 3 cells of
-/// r x r pixels around. The middle of three boxes of b = 2 r + 1 pixels holds m^2 of its light, m = (3 b^2 + 1) / (4
-/// b^3). So the room is reduced to 1 / (9 r^2 m^2), if that is below 1: all light from one place stays below the error
-/// in the middle, too. Cells beyond the border have no room: blur() mirrors their light back.
-void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& room, int width, int r,
-                  std::vector<Excess>& spread) {
-  const std::size_t w = std::size_t(width), cell = std::size_t(r);
-  const int columns = (width + r - 1) / r, rows = int((room.size() / w + cell - 1) / cell);
-  std::vector<double> left(std::size_t(columns * rows));
-  const auto cell_at = [&](int i, int j) -> double& { return left[std::size_t(j * columns + i)]; };
+/// Moves to `spread` what fits at box radius r, in the order of `waiting`. Light L goes to 3 x 3 cells of r x r pixels
+/// around. S is the sum of their allowed errors e, U the light that they have got before. The middle of three boxes of
+/// b = 2 r + 1 pixels holds m^2 of the light, m = (3 b^2 + 1) / (4 b^3); so n = 1 / m^2 pixels, if these are fewer,
+/// stand for the cells. An outlier fits if
+///     L <= S: alone it stays below the error of each pixel, and
+///     n L / S (2 U / S + L / S) <= seen2: the sum of ((U + L) / S)^2 - (U / S)^2 over the pixels, the squared error
+///     that it adds in allowed errors, is less than its own as a single bright pixel.
+/// Cells beyond the border have no room: blur() mirrors their light back.
+void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& errors, const std::vector<double>& got,
+                  int width, int r, std::vector<Excess>& spread) {
+  struct Cell {
+    double room = 0, used = 0;
+  };
+  const std::size_t w = std::size_t(width), side = std::size_t(r);
+  const int columns = (width + r - 1) / r, rows = int((errors.size() / w + side - 1) / side);
+  std::vector<Cell> cells(std::size_t(columns * rows));
   const double box = 2 * r + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
-  const double share = std::min(1.0, 1 / (9 * middle * middle * r * r));
-  for (std::size_t p = 0; p < room.size(); ++p) cell_at(int(p % w / cell), int(p / w / cell)) += share * room[p];
+  const double pixels = std::min(9.0 * r * r, 1 / (middle * middle)), share = pixels / (9.0 * r * r);
+  for (std::size_t p = 0; p < errors.size(); ++p) {
+    Cell& cell = cells[p / w / side * std::size_t(columns) + p % w / side];
+    cell.room += share * errors[p];
+    cell.used += share * got[p];
+  }
   std::vector<Excess> stay;
   for (const Excess& excess : waiting) {
-    const int i = int(excess.pixel % w / cell), j = int(excess.pixel / w / cell);
-    double sum = 0;
+    const int i = int(excess.pixel % w / side), j = int(excess.pixel / w / side);
+    Cell around;
     for (int v = std::max(0, j - 1); v <= std::min(rows - 1, j + 1); ++v)
-      for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u) sum += cell_at(u, v);
-    const bool fits = excess.light() <= sum;
-    if (fits) cell_at(i, j) -= excess.light();
+      for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u) {
+        around.room += cells[std::size_t(v * columns + u)].room;
+        around.used += cells[std::size_t(v * columns + u)].used;
+      }
+    const double light = excess.light() / around.room, used = around.used / around.room;
+    const bool fits = around.room > 0 && light <= 1 && pixels * light * (2 * used + light) <= excess.seen2;
+    if (fits) cells[std::size_t(j * columns + i)].used += excess.light();
     (fits ? spread : stay).push_back(excess);
   }
   waiting = std::move(stay);
 }
 
 /// Takes `excess` out of its pixels and spreads it as w blur(excess / blur(w)), with the allowed error as w. Its sum
-/// stays for any weights w. Subtracts what each pixel gets from `room`.
+/// stays for any weights w. Adds what each pixel gets to `all`.
 void spread(std::span<const Excess> excess, const SampledPixels& samples, int r, const std::vector<double>& weight,
-            std::vector<double>& room, std::vector<Layers>& pixels) {
+            std::vector<double>& all, std::vector<Layers>& pixels) {
   std::vector<double> blurred = weight, given;
   blur(blurred, samples.width, samples.height, r);
   for (std::size_t layer = 0; layer < kLayerCount; ++layer)
@@ -156,7 +170,7 @@ void spread(std::span<const Excess> excess, const SampledPixels& samples, int r,
       for (std::size_t p = 0; p < pixels.size(); ++p) {
         const double got = weight[p] * std::max(0.0, given[p]);
         pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + got);
-        room[p] -= got / 3;
+        all[p] += got / 3;
       }
     }
 }
@@ -195,7 +209,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
     if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
     Rgbd excess = Rgbd(sample.radiance) * ((1 - allowed / claimed) / count);
     if (second > allowed) excess += Rgbd(sample.second) * ((1 - allowed / second) / count);
-    found.push_back({pixel, sample.layer, excess, count});
+    found.push_back({.pixel = pixel, .layer = sample.layer, .radiance = excess, .samples = count});
   };
   look(brightest.own, &PathParts::own, &PartCounts::own);
   look(brightest.lit, &PathParts::lit, &PartCounts::lit);
@@ -213,6 +227,22 @@ std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<L
   std::vector<Excess> all;
   for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
   return all;
+}
+
+/// Sets `seen2` of each outlier: the square of its light below white over the error that its pixel may have then. White
+/// is where evaluation puts it: the median pixel has .18 of it.
+void note_what_is_seen(const SampledPixels& samples, const std::vector<Layers>& pixels, std::vector<Excess>& outliers) {
+  std::vector<double> radiances;
+  for (std::size_t p = 0; p < pixels.size(); ++p)
+    if (samples.takes_part(p)) radiances.push_back(std::max(0.0, radiance_of(pixels[p])));
+  if (radiances.empty()) return;
+  const auto median = radiances.begin() + std::ptrdiff_t(radiances.size() / 2);
+  std::nth_element(radiances.begin(), median, radiances.end());
+  for (Excess& outlier : outliers) {
+    const double under = std::max(0.0, radiance_of(pixels[outlier.pixel]) - outlier.light()),
+                 top = std::min(under + outlier.light(), std::max(*median / 0.18, under)), error = samples.error(top);
+    outlier.seen2 = error > 0 ? (top - under) * (top - under) / (error * error) : 0;
+  }
 }
 
 }  // namespace
@@ -246,13 +276,14 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
   for (const Layers& pixel : pixels) light += radiance_of(pixel);
   std::stable_sort(waiting.begin(), waiting.end(),
                    [](const Excess& a, const Excess& b) { return a.light() < b.light(); });
-  std::vector<double> room = errors;
+  note_what_is_seen(samples, pixels, waiting);
+  std::vector<double> got(errors.size(), 0.0);
   for (int level = 0; level <= last && !waiting.empty(); ++level) {
     taken.clear();
-    take_fitting(waiting, room, samples.width, 1 << level, taken);
+    take_fitting(waiting, errors, got, samples.width, 1 << level, taken);
     if (taken.empty()) continue;
     for (const Excess& e : taken) moved += e.light();
-    spread(taken, samples, 1 << level, errors, room, pixels);
+    spread(taken, samples, 1 << level, errors, got, pixels);
   }
   return light > 0 ? moved / light : 0;
 }

@@ -58,9 +58,10 @@ struct SampledPixels {
 /// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the largest of
 /// three values: the error that the pixel may have, the light that the pixel's other samples (FurtherSamples
 /// included) show in that layer, and the light that the 24 pixels around show there. The rest may be spread: outliers
-/// come in ascending order of their light, and each takes the smallest box in which all spread light together stays
-/// below the allowed error. A pixel receives light in proportion to this error; a pixel without a surface (coverage 0)
-/// neither gives nor receives. An outlier that fits nowhere stays in its pixel. The sum of a layer over the picture
+/// come in ascending order of their light, and each takes the smallest box in which it stays below the allowed error
+/// and adds less squared error to what has been spread there than it has as a single bright pixel below white. A pixel
+/// receives light in proportion to the allowed error; a pixel without a surface (coverage 0) neither gives nor
+/// receives. An outlier that fits nowhere stays in its pixel. The sum of a layer over the picture
 /// stays the same up to rounding. Returns the share of the picture's light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
 
