@@ -132,8 +132,9 @@ struct PhotonSearch {
                                          _mm256_mul_ps(dz, dz)),
                    h = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, nx), _mm256_mul_ps(dy, ny)),
                                      _mm256_mul_ps(dz, nz)),
-                   d2 = _mm256_add_ps(round,
-                                      _mm256_mul_ps(_mm256_mul_ps(flat_factor, h), h));  // 0 h^2 must not be 0 inf
+                   // Without flattening, and far away, 0 h^2 must not be 0 x infinity.
+          flat = _mm256_and_ps(h, _mm256_cmp_ps(flat_factor, _mm256_setzero_ps(), _CMP_NEQ_OQ)),
+                   d2 = _mm256_add_ps(round, _mm256_mul_ps(flat_factor, _mm256_mul_ps(flat, flat)));
       const __m256 pass =
           _mm256_and_ps(_mm256_cmp_ps(d2, bound, _CMP_LE_OQ), filter(index.filters_[first >> kLeafBits].code + i));
       list.append(d2, photons, unsigned(_mm256_movemask_ps(pass)));

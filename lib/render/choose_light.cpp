@@ -13,6 +13,9 @@ namespace {
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
 constexpr double kFewestRays = 64;  ///< per record: distances along fewer rays do not determine a record's radius
 constexpr double kLeastError = 1e-12;
+/// Squared error of a raw frame over that of the filtered frame, for ways without records: geometric mean of seven
+/// scenes (docs/pixels.md).
+constexpr double kFilterGain = 2.4;
 
 /// Squared error that n samples leave of light that photons show and paths do not meet; at most all of the light.
 double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
@@ -20,22 +23,20 @@ double left_of(const MissedLight& missed, double samples) { return std::min(miss
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
   const bool records = method == IndirectMethod::records;
   const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
-  const LightNoise& noise = records ? (map ? effort.other_without_caustic : effort.other)
-                            : map   ? effort.without_caustic
-                                    : effort.all;
-  const double left = order.filtered ? rough.path.other.left : 1,
-               variance = noise.variance * (order.filtered && left > 0 ? noise.left / left : 1);
+  const double variance = records ? (map ? effort.other_without_caustic : effort.other)
+                          : map   ? effort.without_caustic
+                                  : effort.all;
   const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, variance / wanted);
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
   if (map || method != IndirectMethod::paths)
     fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
-  Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted * left};
+  Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
   if (rough.wanted_of > 0 && variance > rough.wanted_of)
     way.pixel_error = error_for_variance(variance / rough.wanted_of);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
-  if (map) way.error += order.filtered ? rough.map_error * rough.map_left : rough.map_error;
+  if (map) way.error += rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);
   if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
   const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);

@@ -40,15 +40,14 @@ struct Way {
 /// work c and variance V. Let the frame have M records of k rays; a ray costs the work g, and a record has the
 /// squared error e / k. P is the number of pixels. Then
 ///
-///     work = fixed + P c n + M g k,   error = l E + e / k + B,   n = V l' / (l E)
+///     work = fixed + P c n + M g k,   error = E / G + e / k + B,   n = V / E
 ///
-/// E is the squared error that the wish allows for the light that all ways sample alike, l the share of it that the
-/// filter leaves, l' the share that it leaves of the way's noise. So the filter leaves the same error of all ways. The
-/// filter does not reduce e / k, because the errors of neighbouring pixels that share a record are equal. B is the
-/// error that does not fall with work: what the filter leaves of caustic light by a density of photons, and light that
-/// photons show and paths do not meet. The product is least for
+/// E is the squared error that the wish allows for the light that all ways sample alike. G is the factor by which the
+/// filter reduces the noise of samples. The filter does not reduce e / k, because the errors of neighbouring pixels
+/// that share a record are equal. B is the error that does not fall with work: of caustic light by a density of
+/// photons, and of light that photons show and paths do not meet. The product is least for
 ///
-///     k = sqrt(e (fixed + P c n) / (M g (l E + B)))
+///     k = sqrt(e (fixed + P c n) / (M g (E / G + B)))
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
 /// The ways for several frames together: for each way the sums of work and error over the frames, the largest number

@@ -124,10 +124,8 @@ struct Levels {
 using PartOfLight = std::function<double(const Sample&)>;
 
 /// For each part of the picture, the variance of a sample of some of the light, divided by the square of the allowed
-/// error. A sample counts at most as much as makes a pixel of `times` samples white. `left`: factor for each place;
-/// empty: 1.
-std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light,
-                              const std::vector<double>& left = {}) {
+/// error. A sample counts at most as much as makes a pixel of `times` samples white.
+std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
   std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     double first = 0, square = 0;
@@ -137,93 +135,38 @@ std::vector<double> variances(const Samples& samples, const Levels& levels, doub
     }
     const std::size_t part = levels.part[i];
     if (levels.allowed[part] > 0)
-      sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]) *
-                   (left.empty() ? 1 : left[i]);
+      sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]);
     ++count[part];
   }
   for (std::size_t part = 0; part < sum.size(); ++part) sum[part] /= std::max(1.0, count[part]);
   return sum;
 }
 
-/// What a place sees first.
-struct Visible {
-  SurfacePoint surface;
-  float distance = 0, pixel = 0;  ///< pixel: its size there [m]
-};
-
-std::optional<Visible> visible(const RenderScene& scene, const CameraView& view, float x, float y) {
-  Hit hit;
-  scene.tracer.intersect(view.ray(x, y), hit);
-  if (hit.surface == kNone) return {};
-  return Visible{scene.tracer.surface_point(hit), hit.t, view.pixel_size(hit.t)};
+/// The variance that n adaptive samples per pixel divide by n. A frame takes samples in proportion to the root of
+/// each part's variance, which leaves (mean root)^2 / n.
+double adaptive(const std::vector<double>& variances) {
+  double roots = 0;
+  for (const double variance : variances) roots += std::sqrt(variance) / double(variances.size());
+  return roots * roots;
 }
 
-/// True if the filter takes light from one to the other: the same object and nearly the same plane
-/// (docs/methods/st-filter.md, 2).
-bool on_one_surface(const Visible& a, const std::optional<Visible>& b) {
-  constexpr float kCosine = 0.9f, kDepth = 1e-3f;
-  return b && a.surface.object == b->surface.object && dot(a.surface.normal, b->surface.normal) > kCosine &&
-         std::abs(dot(a.surface.normal, b->surface.position - a.surface.position)) < kDepth * a.distance + a.pixel;
-}
-
-/// The share of a pixel's noise that the filter leaves: 3 / m, at most 1. m is the number of pixels that show the same
-/// surface, of the 15 x 15 around. They are counted along eight directions, in three rings. 1 for a pixel at an edge.
-double left_at(const RenderScene& scene, const CameraView& view, const Where& at) {
-  struct Ring {
-    int radius, pixels;
-  };
-  constexpr Ring kRings[] = {{1, 9 - 1}, {3, 81 - 9}, {6, 225 - 81}};
-  constexpr double kOfAPlane = 3;  // numbers that are fitted
-  const float x = at.x + 0.5f, y = at.y + 0.5f;
-  const std::optional<Visible> centre = visible(scene, view, x, y);
-  if (!centre) return 1;
-  const auto same = [&](float dx, float dy) { return on_one_surface(*centre, visible(scene, view, x + dx, y + dy)); };
-  for (const float dy : {-0.5f, 0.5f})
-    for (const float dx : {-0.5f, 0.5f})
-      if (!same(dx, dy)) return 1;
-  double pixels = 1;
-  for (const Ring& ring : kRings)
-    for (const int dy : {-ring.radius, 0, ring.radius})
-      for (const int dx : {-ring.radius, 0, ring.radius})
-        if ((dx || dy) && same(float(dx), float(dy))) pixels += ring.pixels / 8.0;
-  return std::min(1.0, kOfAPlane / pixels);
-}
-
-/// The picture that a rough frame measures.
-struct Picture {
-  const RenderScene& scene;
-  const CameraView& view;
-  const RoughOptions& options;
-  const Levels levels;
-  std::vector<double> left;  ///< by place: share of noise that the filter leaves
-};
-
-/// A frame takes samples in proportion to the root of each part's variance v: n per pixel leave mean(v^1/2)^2 / n. A
-/// filter that leaves the share l of each part leaves mean(v^1/2) mean(l v^1/2) / n.
-SampleEffort effort_of(const Picture& picture, const Samples& samples, double times, double work) {
-  const auto of = [&](const PartOfLight& light) {
-    const std::vector<double> all = variances(samples, picture.levels, times, light),
-                              left = variances(samples, picture.levels, times, light, picture.left);
-    double roots = 0, roots_left = 0;
-    for (std::size_t part = 0; part < all.size(); ++part) {
-      roots += std::sqrt(all[part]) / double(all.size());
-      if (all[part] > 0) roots_left += left[part] / std::sqrt(all[part]) / double(all.size());
-    }
-    return LightNoise(roots * roots, roots > 0 ? roots_left / roots : 1);
-  };
+SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
+  const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
   const auto lost = [&](double Sample::*layer) {
     double above = 0;
     for (std::array<Sample, kSamples> some : samples) {
       std::ranges::sort(some, std::greater(), layer);
-      above += std::max(0.0, some[0].*layer - std::max(some[1].*layer, times * picture.levels.white));
+      above += std::max(0.0, some[0].*layer - std::max(some[1].*layer, times * levels.white));
     }
-    return above > 0 ? above / (kSamples * double(samples.size()) * picture.levels.picture) : 0;
+    return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
   };
-  SampleEffort effort{
-      work, of([](const Sample& s) { return s.sum(); }), of([](const Sample& s) { return s.other + s.indirect; }),
-      of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
-  effort.lost_caustic = lost(&Sample::caustic), effort.lost_indirect = lost(&Sample::indirect);
-  return effort;
+  return {.work = work,
+          .all = of([](const Sample& s) { return s.sum(); }),
+          .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
+          .other = of([](const Sample& s) { return s.other + s.caustic; }),
+          .other_without_caustic = of([](const Sample& s) { return s.other; }),
+          .lost_caustic = lost(&Sample::caustic),
+          .lost_indirect = lost(&Sample::indirect)};
 }
 
 /// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
@@ -280,6 +223,14 @@ class RoughLight {
   std::optional<PointLookup> lookup_;
   std::vector<LampPhoton> lamps_;
   std::optional<BrightPoints> bright_;
+};
+
+/// The picture that a rough frame measures.
+struct Picture {
+  const RenderScene& scene;
+  const CameraView& view;
+  const RoughOptions& options;
+  const Levels levels;
 };
 
 /// Two records at one place.
@@ -387,14 +338,6 @@ void compare(const Picture& picture, const PhotonView& photons, const Samples& p
       missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
   rough.missed = missed_light(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
   rough.map_error = kMapError2 * caustics.square / allowed2;
-  // The spots of a map are as wide as the footprint of its photons, so that fewer of them lie in the filter's window.
-  const double pixels = double(picture.view.width()) * picture.view.height(),
-               frame_photons = caustics.photons * double(rough.paths_of_light) / double(kPaths),
-               lit = caustics.square > 0 ? caustics.mean * caustics.mean / caustics.square : 1,
-               footprint = frame_photons > 0 ? lit * pixels / (kMapError2 * frame_photons) : pixels;
-  rough.map_left = 0;
-  for (const double left : picture.left)
-    rough.map_left += std::min(1.0, left * std::max(1.0, footprint)) / double(picture.left.size());
 }
 
 /// Sets lower bounds for gathering and records. Work: a camera ray, and one ray onward from each Lambert lobe. Error:
@@ -414,7 +357,7 @@ void measure_gathering(const Picture& picture, const RoughLight& light, RoughFra
   RayCounts counts;
   const Samples gathered = take_samples(picture.scene, picture.view, &known, picture.options, counts);
   rough.gathered = true;
-  rough.gather = effort_of(picture, gathered, rough.samples, work_of(counts, gathered));
+  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
   // A sample that reads a record still sends a ray from the Lambert lobe, because that ray is joined with light
   // sampling. The ray ends at its first hit.
   const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
@@ -431,15 +374,11 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   rough.places = int(std::ranges::count_if(seen.places, &SeenPlace::exists));
   RayCounts counts;
   const Samples paths = take_samples(scene, view, nullptr, options, counts);
-  Picture picture{scene, view, options, Levels(paths, view, options.seed), std::vector<double>(paths.size())};
-  parallel_chunks(paths.size(), 32, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-      picture.left[i] = left_at(scene, view, where(int(i), view, options.seed));
-  });
+  const Picture picture{scene, view, options, Levels(paths, view, options.seed)};
   rough.radiance = picture.levels.picture;
   ask(paths, picture.levels, options.pixel_error, rough);
-  rough.path = effort_of(picture, paths, rough.samples, work_of(counts, paths));
-  rough.wanted_of = std::max(rough.path.other.variance, kFirst * options.pixel_error * options.pixel_error);
+  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts, paths));
+  rough.wanted_of = std::max(rough.path.other, kFirst * options.pixel_error * options.pixel_error);
   if (rough.places == 0) return rough;
 
   formats::PhotonBlock photons =

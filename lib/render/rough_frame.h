@@ -25,22 +25,15 @@ struct Work {
   static constexpr double kRecordLookUp = 3, kCausticLookUp = 9;
 };
 
-/// Noise of some of the light of a sample.
-struct LightNoise {
-  LightNoise(double v = 0, double l = 1) : variance(v), left(l) {}
-  double variance, left;  ///< left: share of the variance that the filter leaves
-};
-
 /// Work and variance of one sample. Variances are in the unit of a picture file, which stores about the root of
 /// radiance: each variance is divided by the square of the error that its pixel may have (allowed_error at pixel
 /// error 1). A sample counts at most as much as makes its pixel white. Frames take more samples in noisy parts, so a
 /// variance here is the square of the mean root over 16 x 9 parts of the picture: n samples per pixel leave variance
-/// / n. A plane through m values leaves 3 / m of their variance; m is the number of pixels in the filter's window that
-/// show the same surface.
+/// / n.
 struct SampleEffort {
-  double work = 0;                          ///< shadow rays
-  LightNoise all, without_caustic;          ///< all light, and all but layer caustic
-  LightNoise other, other_without_caustic;  ///< all light but layer indirect, likewise
+  double work = 0;                              ///< shadow rays
+  double all = 0, without_caustic = 0;          ///< variance of all light, and of all but layer caustic
+  double other = 0, other_without_caustic = 0;  ///< variance of all light but layer indirect, likewise
   /// Light of layers caustic and indirect that one sample of a place alone brings, as far as it is above white. It
   /// shows in lone white pixels, and all other pixels lack it. A share of the picture's light: the root of a squared
   /// error.
@@ -74,7 +67,6 @@ struct RoughFrame {
   double records = 0, record_ray = 0, record_error = 0;
   MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
   double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
-  double map_left = 1;                 ///< share of it that the filter leaves
   double photons_per_path = 0;
   std::uint64_t paths_of_light = 0;  ///< light paths of the photon map; more if few of them leave photons
 };

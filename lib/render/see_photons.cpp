@@ -130,7 +130,6 @@ SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const 
   double squares = 0, through = 0, squares_behind = 0;
   for (const SeenFlux& one : seen) {
     pilot.mean += one.radiance;
-    pilot.photons += one.radiance > 0;
     squares += one.radiance * one.radiance;
     cells[one.cell] += one.radiance;
   }
@@ -142,7 +141,6 @@ SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const 
   for (const double cell : noise) squares_behind += cell * cell;
   pilot.mean += through;
   pilot.mean_error = std::sqrt(squares + squares_behind);
-  if (squares_behind > 0) pilot.photons += through * through / squares_behind;  // as many of equal flux
   for (const double cell : cells) pilot.square += cell * cell * double(cells.size());
   return pilot;
 }

@@ -12,7 +12,6 @@ namespace tempolux {
 struct SeenPhotons {
   double mean = 0, mean_error = 0;  ///< mean and its standard error
   double square = 0;                ///< mean of the square, over 32 x 18 parts of the picture
-  double photons = 0;               ///< number of photons that the camera sees; behind glass, as many of equal flux
 };
 
 /// Sums the photons of this kind that a camera ray reaches directly, which is unbiased. Camera rays that reach a place
