@@ -7,8 +7,8 @@
 namespace tempolux {
 
 /// The signed difference x - r per channel; x is the frame, r the reference or the mean of its halves. 0 where pixels
-/// do not count. The picture's channels are R, G, B for a colour layer and Y for a layer of one channel. Another layer
-/// keeps the suffixes of its channels: N.X, N.Y, N.Z give X, Y, Z.
+/// do not count. The result has the channels R, G, B if a layer of colours is compared, and Y if a layer of one channel
+/// is. The result of any other layer has the suffixes of that layer's channels: N.X, N.Y, N.Z give X, Y, Z.
 Image difference_image(const Compared& pair);
 
 /// The scale of a difference picture: the smallest of 1, 2, 5 x 10^k that is at least the 99th percentile of |d|, where

@@ -26,7 +26,8 @@ class MediaLight {
     double cell = 0;         ///< m; 0: the edge of the finest voxel
     float filter_width = 0;  ///< cells: standard deviation of the Gaussian; 0: so that 256 photons count
     bool direct = false;     ///< true if photons directly from lights count, too
-    int rays = 0;            ///< per pixel, in directions drawn from the phase function: PhaseShare
+    int rays =
+        0;  ///< number of rays per pixel; their random directions have the phase function as density (PhaseShare)
   };
   MediaLight(const Media& media, const MajorantGrid& majorants, Vec3 eye, double emitted_flux, const Options& options);
   /// Adds the volume photons of a block; positions plus `offset` are in scene space. With `times` -1 the photons are

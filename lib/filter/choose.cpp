@@ -21,6 +21,15 @@ constexpr float kEqualPixels = [] {
 
 float squared(float v) { return v * v; }
 
+/// Mean of the channels of a pixel; what is not finite counts as 0.
+float light_of(const PicturePlanes& picture, std::size_t pixel) {
+  float light = 0;
+  for (const std::vector<float>* channel : picture)
+    if (const float value = (*channel)[pixel]; std::isfinite(value))
+      light += std::clamp(value, 0.0f, kLargestLight) / 3;
+  return light;
+}
+
 /// Sums over the window around each pixel.
 Plane box_sums(const Plane& values, int width, int height) {
   Plane rows(width, height), out = Plane::unset(width, height);
@@ -238,19 +247,20 @@ Halves choose(const Halves& raw, const std::vector<Halves>& candidates, const Ne
   return Choice(raw, candidates, around, picture).run();
 }
 
-PictureLight::PictureLight(const Colours& picture, int width, int height, std::optional<float> dark_light) {
-  Plane light(width, height);
+float dark_of(const PicturePlanes& picture) {
   double sum = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      for (const std::vector<float>& channel : picture) {
-        const float value = channel[std::size_t(y) * std::size_t(width) + std::size_t(x)];
-        if (std::isfinite(value)) light.at(x, y) += std::clamp(value, 0.0f, kLargestLight) / 3;
-      }
-      sum += double(light.at(x, y));
-    }
-  dark = dark_light.value_or(std::max(kDark * float(sum / (double(width) * height)), 1e-18f));
-  level = Plane(width, height);
+  const std::size_t count = picture[0]->size();
+  for (std::size_t p = 0; p < count; ++p) sum += double(light_of(picture, p));
+  return std::max(kDark * float(sum / double(std::max<std::size_t>(1, count))), 1e-18f);
+}
+
+PictureLight::PictureLight(const PicturePlanes& picture, int width, int height, float dark_light)
+    : level(width, height), dark(dark_light) {
+  Plane light(width, height);
+  for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x)
+      light.at(x, y) = light_of(picture, std::size_t(y) * std::size_t(width) + std::size_t(x));
+  });
   for_each_row(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       float around = 0;

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "lib/filter/plane.h"
@@ -42,15 +41,20 @@ class Neighbourhood {
   Plane share_;  ///< 1 / number of pixels of the kind within 7 x 7
 };
 
+/// R, G and B of a picture, row after row.
+using PicturePlanes = std::array<const std::vector<float>*, 3>;
+
+/// The light up to which a pixel counts as dark: 2 % of the picture's mean [W/m^2/sr].
+float dark_of(const PicturePlanes& picture);
+
 /// The light of the whole picture, all layers together, by which errors of a layer are judged.
 struct PictureLight {
   /// The mean of the 3 x 3 pixels around, plus a quarter of what the pixel's own light exceeds this mean by, plus
   /// `dark` [W/m^2/sr]; channel means. So a bright pixel does not decide for those around it.
   Plane level;
-  float dark = 0;  ///< the light up to which a pixel counts as dark: 2 % of the mean over the picture [W/m^2/sr]
-  /// `picture`: R, G and B of the sum of all layers. dark_light: `dark` of the whole picture, of which this one is a
-  /// part.
-  PictureLight(const Colours& picture, int width, int height, std::optional<float> dark_light = {});
+  float dark;
+  /// `picture`: the sum of all layers. dark_light: dark_of() the whole picture, of which `picture` may be a part.
+  PictureLight(const PicturePlanes& picture, int width, int height, float dark_light);
 };
 
 /// Mixes a raw layer and its filtered candidates so that the squared error is the least, for each pixel. Each half of

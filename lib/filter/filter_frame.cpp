@@ -96,10 +96,9 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
 }
 
 /// R, G and B of all layers together; of the picture itself if it has no layers.
-Colours picture_of(const LayerSums& layers, const Image& image) {
-  if (!layers[0].empty()) return layers;
-  const auto whole = image.rgb("");
-  return {*whole[0], *whole[1], *whole[2]};
+PicturePlanes picture_of(const LayerSums& layers, const Image& image) {
+  if (layers[0].empty()) return image.rgb("");
+  return {&layers[0], &layers[1], &layers[2]};
 }
 
 }  // namespace
@@ -150,7 +149,8 @@ struct FrameFilter::State {
     if (added != before + after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
     const LayerSums raw = sum_layers(image);
     const Coverage coverage(image);
-    const PictureLight picture(picture_of(raw, image), image.width, image.height, options.dark);
+    const PicturePlanes planes = picture_of(raw, image);
+    const PictureLight picture(planes, image.width, image.height, options.dark ? *options.dark : dark_of(planes));
     for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
       if (middle.light.group(g)) filter_group(g, coverage, picture, image);
     renew_picture(raw, sum_layers(image), image);
@@ -223,7 +223,7 @@ Image cut_out(const Image& image, int left, int top, int width, int height) {
 Image filter_alone(Image image, const FilterOptions& options) {
   constexpr int kWide = 480, kHigh = 270;
   FilterOptions of_tile = options;
-  of_tile.dark = PictureLight(picture_of(sum_layers(image), image), image.width, image.height).dark;
+  of_tile.dark = dark_of(picture_of(sum_layers(image), image));
   Image out{image.width, image.height, {}, {}, {}, {}};
   RemainingError remaining_error;
   for (int top = 0; top < image.height; top += kHigh)

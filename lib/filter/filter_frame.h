@@ -20,7 +20,7 @@ inline constexpr int kMostScales = 2;
 
 struct FilterOptions {
   int scales = kMostScales;   ///< 1: small windows only; 0: filter in time only
-  std::optional<float> dark;  ///< PictureLight::dark of the whole picture; empty: of the given image
+  std::optional<float> dark;  ///< dark_of() the whole picture (choose.h); empty: of the given image
 };
 
 /// A frame of a window: its light, and the first fits of its matte light.

@@ -110,11 +110,14 @@ void put_sums(const MeshSums& sums, std::vector<formats::MeshElement>& elements)
 void leave_out_dark(std::vector<formats::MeshElement>& elements);
 
 /// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area,
-/// both weighted by the same kernel around the element. An element counts only if it faces the same way (normals
-/// within 30 degrees), lies within a width of the element's plane, has the same material and lies, as the element does,
-/// outside or inside of solids: inside if the first surface above it shows its back. So no light is lost at edges, none
-/// spreads around corners, and the dark back of a wall's other face takes none. Each object keeps its total flux.
-/// `widths` [m]: the width of each element, 0 where no light arrives; empty: the filter's width everywhere.
+/// both weighted by the same kernel around the element. Another element counts only if
+///   - its normal is within 30 degrees of the element's normal,
+///   - it lies within a width of the element's plane,
+///   - it has the same material,
+///   - both lie outside of solids, or both inside. An element lies inside if the first surface above it shows its back.
+/// So no light is lost at edges or spreads around corners, and the dark back of a wall's other face takes no light.
+/// Each object keeps its total flux. `widths` [m]: the width of each element, 0 where no light arrives; empty: the
+/// filter's width everywhere.
 void smooth_elements(const Tracer& tracer, std::span<const Rgbd> flux, const MeshFilter& filter,
                      std::span<const float> widths, std::vector<formats::MeshElement>& elements);
 

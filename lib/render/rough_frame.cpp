@@ -327,8 +327,7 @@ MissedLight missed_light(const SeenPhotons& photons, double found, double sample
 
 /// Compares paths with photons: the light that paths miss, and the error that a map of caustic photons would have.
 void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
-  const auto seen = [&](formats::PathKind kind) { return see_photons(picture.scene, picture.view, photons, kind); };
-  const SeenPhotons caustics = seen(formats::PathKind::caustic), indirect = seen(formats::PathKind::indirect);
+  const auto [caustics, indirect] = see_photons(picture.scene, picture.view, photons);
   // If paths find no light at all, the picture is as bright as photons show.
   const double level = picture.levels.picture > 0 ? picture.levels.picture : caustics.mean + indirect.mean,
                allowed2 = level * level;

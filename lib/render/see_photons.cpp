@@ -79,8 +79,7 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const Photo
 }
 
 /// The light of a place that camera ray i of kLooks reaches through mirrors and glass, by a density of photons.
-SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, std::optional<SeenPoint>& seen,
-                     Vec2 u) {
+SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, std::optional<SeenPoint> seen, Vec2 u) {
   if (!seen) return {};
   const Vec3 normal = seen->surface.normal_geometric;
   const bool front = dot(normal, seen->normal) > 0;
@@ -94,55 +93,69 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   return {channel_mean(weight * irradiance), cell_at(u.x, u.y), channel_mean(weight * noise)};
 }
 
-std::vector<SeenFlux> all_behind(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
-                                 formats::PathKind kind) {
-  const auto at = [](std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); };
+/// Place of camera ray i of kLooks in the picture, in [0, 1).
+Vec2 look_at(std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); }
+
+/// The places that camera rays reach through mirrors and glass, by ray; empty if no ray does.
+std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, const CameraView& view) {
   std::vector<std::optional<SeenPoint>> places(kLooks);
   parallel_chunks(kLooks, 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const Look look{at(i).x * float(view.width()), at(i).y * float(view.height()), PathRandom(kLooks, i)};
+      const Vec2 at = look_at(i);
+      const Look look{at.x * float(view.width()), at.y * float(view.height()), PathRandom(kLooks, i)};
       places[i] = seen_through(scene.tracer, view, look);
       if (places[i] && !places[i]->by_choice) places[i].reset();
     }
   });
-  std::vector<SeenFlux> behind;
-  if (std::ranges::none_of(places, [](const auto& place) { return place.has_value(); })) return behind;
+  if (std::ranges::none_of(places, [](const auto& place) { return place.has_value(); })) places.clear();
+  return places;
+}
+
+std::vector<SeenFlux> all_behind(const RenderScene& scene, std::span<const std::optional<SeenPoint>> places,
+                                 const PhotonView& photons, formats::PathKind kind) {
+  if (places.empty()) return {};
   const FootprintDensity density(scene.tracer, photons, {.asked = 8}, kind_bit(kind));
-  behind.resize(density.empty() ? 0 : kLooks);
+  std::vector<SeenFlux> behind(density.empty() ? 0 : places.size());
   parallel_chunks(behind.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) behind[i] = seen_behind(scene, density, places[i], at(i));
+    for (std::size_t i = first; i < last; ++i) behind[i] = seen_behind(scene, density, places[i], look_at(i));
   });
   return behind;
 }
 
-}  // namespace
-
-SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
-                        formats::PathKind kind) {
-  std::vector<SeenFlux> seen(photons.photons.size());
-  parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-      if (photons.photons[i].kind == kind) seen[i] = seen_flux(scene, view, photons, i);
-  });
-  const std::vector<SeenFlux> behind = all_behind(scene, view, photons, kind);
+/// Joins what is seen directly, by photon, and behind mirrors and glass, by camera ray.
+SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> behind) {
   SeenPhotons pilot;
   std::vector<double> cells(kRows * kColumns, 0.0), noise(kRows * kColumns, 0.0);
-  double squares = 0, through = 0, squares_behind = 0;
+  double squares = 0, squares_behind = 0;
   for (const SeenFlux& one : seen) {
     pilot.mean += one.radiance;
     squares += one.radiance * one.radiance;
     cells[one.cell] += one.radiance;
   }
   for (const SeenFlux& one : behind) {
-    through += one.radiance;
+    pilot.mean += one.radiance;
     cells[one.cell] += one.radiance;
     noise[one.cell] += one.noise;
   }
   for (const double cell : noise) squares_behind += cell * cell;
-  pilot.mean += through;
   pilot.mean_error = std::sqrt(squares + squares_behind);
   for (const double cell : cells) pilot.square += cell * cell * double(cells.size());
   return pilot;
+}
+
+}  // namespace
+
+SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons) {
+  const std::vector<std::optional<SeenPoint>> places = places_behind(scene, view);
+  const auto of_kind = [&](formats::PathKind kind) {
+    std::vector<SeenFlux> seen(photons.photons.size());
+    parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        if (photons.photons[i].kind == kind) seen[i] = seen_flux(scene, view, photons, i);
+    });
+    return joined(seen, all_behind(scene, places, photons, kind));
+  };
+  return {of_kind(formats::PathKind::caustic), of_kind(formats::PathKind::indirect)};
 }
 
 }  // namespace tempolux

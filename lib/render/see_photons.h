@@ -14,10 +14,14 @@ struct SeenPhotons {
   double square = 0;                ///< mean of the square, over 32 x 18 parts of the picture
 };
 
-/// Sums the photons of this kind that a camera ray reaches directly, which is unbiased. Camera rays that reach a place
+/// The same of the two kinds of light that paths may miss.
+struct SeenLight {
+  SeenPhotons caustic, indirect;
+};
+
+/// Sums the photons of each kind that a camera ray reaches directly, which is unbiased. Camera rays that reach a place
 /// through mirrors and glass add a density of photons there: in the middle of a wall at most 20 % too bright
 /// (docs/methods/caustics.md). Same result for any number of threads.
-SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons,
-                        formats::PathKind kind);
+SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons);
 
 }  // namespace tempolux

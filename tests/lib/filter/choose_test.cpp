@@ -31,12 +31,17 @@ Colours noise(unsigned seed, float sigma) {
 
 const Neighbourhood kInside(std::vector<std::uint8_t>(kCount, 1), kSide, kSide);
 
+PictureLight light_of(const Colours& picture) {
+  const PicturePlanes planes{&picture[0], &picture[1], &picture[2]};
+  return PictureLight(planes, kSide, kSide, dark_of(planes));
+}
+
 /// The mixture.
 Colours chosen(const Halves& raw, const std::vector<Halves>& candidates) {
   Colours colours = raw.a;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t p = 0; p < kCount; ++p) colours[c][p] = mean_of(raw.a[c][p], raw.b[c][p]);
-  const Halves halves = choose(raw, candidates, kInside, PictureLight(colours, kSide, kSide));
+  const Halves halves = choose(raw, candidates, kInside, light_of(colours));
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t p = 0; p < kCount; ++p) colours[c][p] = mean_of(halves.a[c][p], halves.b[c][p]);
   return colours;
@@ -145,7 +150,7 @@ TEST(Choose, AStepOfLightDoesNotGlowIntoTheDark) {
       ramp.a[c][p] = ramp.b[c][p] = std::clamp((x + 4) / 7, 0.001f, 1.0f);
       picture[c][p] = mean_of(raw.a[c][p], raw.b[c][p]) + 0.05f;
     }
-  const Halves out = choose(raw, {ramp}, kInside, PictureLight(picture, kSide, kSide));
+  const Halves out = choose(raw, {ramp}, kInside, light_of(picture));
   double light = 0;
   for (std::size_t y = 0; y < kSide; ++y) light += double(out.a[1][y * kSide + kSide / 2 - 1]) / kSide;
   EXPECT_LT(light, 0.01);

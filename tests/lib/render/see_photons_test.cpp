@@ -40,9 +40,8 @@ Pilots pilots_of(test::HandMadeScene& scene) {
       rough_frame({tracer, lights}, lights, view,
                   {.kinds = "caustic,indirect", .pixel_error = 0.016, .photons = 100'000, .seen = {}, .seed = 0});
   const formats::PhotonBlock photons = pilot_photons(tracer, lights, "caustic,indirect", 32768, 0);
-  return {see_photons({tracer, lights}, view, photons, formats::PathKind::caustic),
-          see_photons({tracer, lights}, view, photons, formats::PathKind::indirect), rough,
-          ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
+  const SeenLight seen = see_photons({tracer, lights}, view, photons);
+  return {seen.caustic, seen.indirect, rough, ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
 }
 
 /// The same with a floor in front of the wall.
