@@ -74,8 +74,11 @@ of() { [ "$1" = 1 ] && echo "1 $2" || echo "$1 $2s"; }   # of 3 frame -> 3 frame
 
 # How the frames get their indirect light, as the plan chose; plan.json says why.
 ways() {
-  sed -n 's/.*"indirect": "\([a-z]*\)".*/\1/p' plan.json | sort -u | paste -sd+ - |
-    sed 's/+/ and /; s/^/; indirect light by /; s/paths/camera paths/; s/gather\>/gathering/'
+  awk -F '[":, ]+' '
+    BEGIN { words["paths"] = "camera paths"; words["gather"] = "gathering"; words["records"] = "records" }
+    $2 == "indirect" { way = words[$3] }
+    $2 == "texture_width" { way = $3 > 0 ? "light textures" : way; if (!seen[way]++) all = all (all ? " and " : "") way }
+    END { if (all) print "; indirect light by " all }' plan.json
 }
 
 begin() {

@@ -16,7 +16,8 @@ run() { make_it "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }
 digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
 files() { ls "$1/$2" 2> /dev/null | grep -c "[.]$3\$"; }
 
-run SCENE=$scene METHOD=preview PHOTONS=10k OUT="$work/preview"
+run V= SCENE=$scene METHOD=preview PHOTONS=10k OUT="$work/preview"
+grep -q 'to run .*indirect light by light textures$' "$work/log" || bad "make says: $(head -1 "$work/log")"
 [ "$(files "$work/preview" counts meshirrad) $(files "$work/preview" windows meshirrad) $(files "$work/preview" cache irradcache)" = '6 6 0' ] ||
   bad 'not six counts, six windows and no record'
 run SCENE=$scene INDIRECT=records PHOTONS=100k POINTS='--point-count 1k' CACHE='--rays 50 --error-bound 0.5' OUT="$work/frames"
