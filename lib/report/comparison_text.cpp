@@ -15,9 +15,11 @@ std::string format(const char* pattern, Values... values) {
   return line;
 }
 
-/// A figure in 10 columns; "-" if it does not exist.
+/// A figure in 10 columns, a blank first; "-" if it does not exist.
 std::string cell(std::optional<double> value, const char* pattern = "%10.4g") {
-  return value ? format(pattern, *value) : "         -";
+  if (!value) return "         -";
+  const std::string text = format(pattern, *value);
+  return text.starts_with(' ') ? text : format("%10.2g", *value);
 }
 
 std::optional<double> value_of(const std::optional<Estimate>& estimate, double scale = 1) {

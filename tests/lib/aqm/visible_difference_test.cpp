@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numbers>
 
 #include "lib/aqm/animation_quality.h"
@@ -146,6 +147,59 @@ TEST(VisibleDifferenceTest, MoreContrastIsNeverSeenLess) {
     before = now;
   }
   EXPECT_GT(before, 0.999);
+}
+
+/// Patterns from -1 to 1, by column and row of a picture of kSize x kSize pixels.
+constexpr int kSize = 64;
+struct Pattern {
+  const char* name;
+  std::function<double(int, int)> at;
+};
+std::vector<Pattern> patterns() {
+  const auto noise = [](std::uint64_t seed) {
+    return [seed](int x, int y) { return synthetic::noise(seed, std::size_t(y * kSize + x), 0) / std::sqrt(3.0); };
+  };
+  return {{"plane", [](int, int) { return 0.0; }},
+          {"noise", noise(1)},
+          {"edge", [](int x, int) { return x < 40 ? -1.0 : 1.0; }},
+          {"checks", [](int x, int y) { return (x / 8 + y / 8) % 2 ? -1.0 : 1.0; }},
+          {"blotch", [](int x, int y) { return std::exp(-(std::pow(x - 48, 2) + std::pow(y - 40, 2)) / 288); }},
+          {"other noise", noise(2)},
+          {"grating", [](int x, int) { return std::cos(2 * std::numbers::pi * x / 12); }},
+          {"dot", [](int x, int y) { return x == 60 && y == 33 ? 1.0 : 0.0; }}};
+}
+
+/// The largest fall of AQM, as a share, while the error of a picture is multiplied by 2 again and again.
+double largest_fall(const Pattern& picture, double contrast, const Pattern& error, double& most) {
+  double fall = 0;
+  most = 0;
+  for (double k = 0.001; k < 0.6; k *= 2) {
+    DisplayedPair pair{kSize, kSize, {}, {}, {}};
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const double value = 1 + contrast * picture.at(x, y);
+        pair.first.push_back(float(60 * value));
+        pair.second.push_back(float(60 * (value + k * error.at(x, y))));
+      }
+    const double share = share_seen(detection_map(pair, {}, {37.8, Gaze::track}));
+    fall = std::max(fall, most - share);
+    most = std::max(most, share);
+  }
+  return fall;
+}
+
+// An error of any form on any picture: AQM never falls as the error grows. A picture's own negative is an error of
+// another kind (docs/methods/vision.md, limits).
+TEST(VisibleDifferenceTest, AqmNeverFallsAsAnErrorGrows) {
+  const std::vector<Pattern> all = patterns();
+  for (std::size_t picture = 0; picture < 5; ++picture)
+    for (std::size_t error = 1; error < all.size(); ++error)
+      for (const double contrast : {0.05, 0.3}) {
+        double most = 0;
+        const double fall = largest_fall(all[picture], contrast, all[error], most);
+        EXPECT_LE(fall, 0.001) << all[picture].name << " of " << contrast << ", error: " << all[error].name;
+        if (error != all.size() - 1) EXPECT_GT(most, 0.001) << all[picture].name << ", error: " << all[error].name;
+      }
 }
 
 // A picture that is brighter everywhere by a constant factor: frequency 0, which no eye sees by itself.
