@@ -23,6 +23,9 @@ try x.exr r.exr --relative-to small.exr
 # a whole image without bias, and two objects with 3 %
 try walls.exr ones.exr
 try hole.exr ones.exr --mask right.exr
+# large figures keep their columns
+exr huge.exr 32x16 'R=1e20|0.5' 'G=1e20|0.5' 'B=1e20|0.5' $scene
+try huge.exr r.exr
 # machines: JSON alone on standard output, words on standard error
 aqm-compare x.exr r.exr --json - 2>/dev/null |
   "${PYTHON:-python3}" -c 'import json,sys; t=json.load(sys.stdin)["total"]; print(t["rmse"], t["bias"], t["objects"])'
