@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 
+#include "formats/large_pages.h"
 #include "lib/aqm/fourier_module.h"
 
 namespace tempolux {
@@ -15,8 +16,9 @@ template <class T>
 class FourierArray {
  public:
   explicit FourierArray(std::size_t count)
-      : data_(static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kFourierAlignment}))),
-        count_(count) {}
+      : data_(static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kFourierAlignment}))), count_(count) {
+    formats::prefer_large_pages(data_.get(), count * sizeof(T));
+  }
   std::size_t size() const { return count_; }
   T* data() { return data_.get(); }
   const T* data() const { return data_.get(); }
