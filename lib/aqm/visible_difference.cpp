@@ -113,12 +113,12 @@ float elevation(float contrast, double slope) {
 }
 
 /// (difference / threshold)^3.5 at each sample of a channel inside the picture.
-std::vector<float> channel_terms(const ChannelGrid& grid, ChannelName name, const ChannelPair& pair,
-                                 const std::vector<float>& gains) {
+FourierArray<float> channel_terms(const ChannelGrid& grid, ChannelName name, const ChannelPair& pair,
+                                  const std::vector<float>& gains) {
   const int columns = grid.columns(name.band), rows = grid.rows(name.band),
             stride = grid.padded_width / ChannelGrid::step(name.band);
   const double slope = masking_slope(name.band);
-  std::vector<float> terms(std::size_t(columns) * std::size_t(rows));
+  FourierArray<float> terms(std::size_t(columns) * std::size_t(rows));
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x) {
       const std::size_t from = std::size_t(y) * std::size_t(stride) + std::size_t(x),
@@ -148,11 +148,11 @@ BandTerms all_terms(const ChannelGrid& grid, const Responses& responses, const C
       names.size(), std::size_t(parallel_thread_count()) + 1,
       [&](std::size_t i) -> std::shared_ptr<void> {
         const ChannelPair pair = filters.channel(transform, names[i], *spectra[0], *spectra[1]);
-        return std::make_shared<std::vector<float>>(
+        return std::make_shared<FourierArray<float>>(
             channel_terms(grid, names[i], pair, gains[std::size_t(names[i].band - 1)]));
       },
       [&](std::size_t i, void* made) {
-        const auto& terms = *static_cast<std::vector<float>*>(made);
+        const auto& terms = *static_cast<FourierArray<float>*>(made);
         std::vector<float>& sum = sums[std::size_t(names[i].band - 1)];
         if (sum.empty()) sum.assign(terms.size(), 0);
         for (std::size_t n = 0; n < terms.size(); ++n) sum[n] += terms[n];
