@@ -11,7 +11,8 @@ The chain is run as Makefile.example runs it (`make OUT/frames/NNNN.exr`), all p
 16, 64, ... samples until it is better, which gives its curve. Both are judged against the halves of a reference, which is kept in
 OUT/every/reference and grows until its noise is below half of the chain's seen error, or until --reference-cpu.
 
-Columns. Seen error, blobs, grain: seen.py. Noise said: what the frame itself says, after the filter: as in make's last line. Paths' CPU: what
+Columns. Seen error, blobs, grain: seen.py. Noise said: what the frame itself says, after the filter: as in make's last line. AQM: the share of the
+pixels in which a viewer sees a difference to the reference, and to a reference without the noise of a half (docs/methods/vision.md). Paths' CPU: what
 path tracing takes for the chain's seen error, read off between the samples measured; speed-up: that over the chain's CPU; `~` beyond
 the curve, `?` the reference is not converged. Layers: chain / reference - 1 in percent of the picture, with three standard errors;
 `!` significant and above 1 % of the picture, or 1.5 % of a layer that is 5 % of the picture. Audit: what the frame says of its layers.
@@ -39,7 +40,7 @@ MOST_CPU = 25                  # times the chain's, of one path-traced picture: 
 OF_PICTURE, OF_LAYER, LARGE_LAYER = 0.01, 0.015, 0.05
 LEAST = {"closed": 10, "window": 4, "open": 1.2}      # median speed-up asked of a class
 BLOBS = 0                                             # share of the picture
-HEADER = ["scene", "CPU s: all = photons + points + records + frame + rest", "seen error", "noise said", "paths' CPU", "speed-up", "blobs %", "grain, paths'",
+HEADER = ["scene", "CPU s: all = photons + points + records + frame + rest", "seen error", "noise said", "AQM %; of the reference", "paths' CPU", "speed-up", "blobs %", "grain, paths'",
           "layers that differ", "audit"]
 
 
@@ -95,12 +96,24 @@ def measure(bench, case, size, seeds, patience, reference_cpu, variables):
     shape = (images[0].width, images[0].height, seen.flat(images[0].width, images[0].height))
     return {"scene": case.name, "size": size, "kind": case.kind, "family": case.family, "note": case.note, "seeds": seeds,
             "cpu_s": cpu, "stages": {s: statistics.mean(run[2][s] for run in runs) for s in STAGES}, "seen": ours, "noise_said": said.get("noise.codes"),
+            "aqm": viewer(bench, images[0], reference.files),
             "converged": seen.halves_differ() < 2 * ours, "reference_noise": seen.halves_differ(), "path_cpu_s": path_cpu, "inside": inside,
             "speed_up": path_cpu / cpu, "path_curve": curve.points, "blobs": statistics.mean(seen.blobs(pixels.planes(i), *shape) for i in images),
             "grain": seen.grain(pixels.planes(images[0]), *shape), "path_grain": seen.grain(pixels.planes(by_paths), *shape),
             "bias": {layer or "picture": bias(images, (a, b), layer, mean) for layer in ("", *pixels.LAYERS)},
             "audit": {layer: [said[f"audit.{layer}"], said[f"audit.{layer}_error"]] for layer in pixels.LAYERS if f"audit.{layer}" in said},
             "not_finite": images[0].not_finite(), "shown": shown(bench, case, size, (a, by_paths, images[0]))}
+
+
+def viewer(bench, image, halves):
+    """AQM % of the picture against the reference, and AQM % of a half's own noise."""
+    judged, found = (bench.out / "every" / name for name in ("judged.exr", "judged.json"))
+    exr.write(judged, image.width, image.height, {c: image.channels[c] for c in "RGB"})
+
+    def percent(*words):
+        bench.run([bench.bin / "aqm-compare", *words, "--metric", "aqm", "--json", found, "--allow-stale", "-q"])
+        return json.loads(found.read_text())["total"]["aqm"]["percent"]
+    return [percent(judged, "--reference-halves", *halves), percent(*halves, "--either")]
 
 
 def shown(bench, case, size, three):
@@ -125,7 +138,7 @@ def line(row):
     audit = [f"{name} {100 * v:+.1f}±{100 * e:.1f}" for name, (v, e) in row["audit"].items()]
     mark = ("" if row["inside"] else "~") + ("" if row["converged"] else "?")
     return [f"{row['scene']} {row['size']}", f"{quantity(row['cpu_s'])} = {parts}", quantity(row["seen"]), quantity(row["noise_said"] or 0),
-            quantity(row["path_cpu_s"]), mark + quantity(row["speed_up"]), f"{100 * row['blobs']:.2f}",
+            "; ".join(quantity(v, 2) for v in row.get("aqm", ())), quantity(row["path_cpu_s"]), mark + quantity(row["speed_up"]), f"{100 * row['blobs']:.2f}",
             f"{quantity(row['grain'], 2)}, {quantity(row['path_grain'], 2)}", ", ".join(off), ", ".join(audit)]
 
 
