@@ -44,24 +44,18 @@ std::vector<const std::vector<float>*> planes_like(const NamedImage& image, cons
                    wanted + "); " + what_is_there(*image.image));
 }
 
-std::vector<std::uint8_t> pixels_of_mask(const NamedImage& mask) {
-  std::vector<std::uint8_t> counted(mask.image->pixel_count(), 0);
-  for (const Channel& channel : mask.image->channels)
-    for (std::size_t i = 0; i < counted.size(); ++i)
-      if (channel.ids.empty() ? channel.values[i] != 0.0f : channel.ids[i] != 0) counted[i] = 1;
-  if (std::ranges::count(counted, 0) == std::ptrdiff_t(counted.size()))
-    throw InputError(mask.name + ": leaves no pixel to compare; make it other than 0 where pixels count");
-  return counted;
+/// By pixel: 1 if a channel is not 0.
+std::vector<std::uint8_t> not_zero(const Image& image) {
+  std::vector<std::uint8_t> found(image.pixel_count(), 0);
+  for (const Channel& channel : image.channels)
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (channel.ids.empty() ? channel.values[i] != 0.0f : channel.ids[i] != 0) found[i] = 1;
+  return found;
 }
 
-/// Sets `counted` to 0 where `except` is not 0; an empty `counted` means that all pixels count.
-void leave_out(const NamedImage& except, std::vector<std::uint8_t>& counted) {
-  if (counted.empty()) counted.assign(except.image->pixel_count(), 1);
-  for (const Channel& channel : except.image->channels)
-    for (std::size_t i = 0; i < counted.size(); ++i)
-      if (channel.ids.empty() ? channel.values[i] != 0.0f : channel.ids[i] != 0) counted[i] = 0;
-  if (std::ranges::count(counted, 0) == std::ptrdiff_t(counted.size()))
-    throw InputError(except.name + ": leaves no pixel to compare; it is other than 0 everywhere that counts");
+void check_some_count(const std::vector<std::uint8_t>& counted, const NamedImage& image, const char* remedy) {
+  if (std::ranges::find(counted, 1) == counted.end())
+    throw InputError(image.name + ": leaves no pixel to compare; " + remedy);
 }
 
 void check_finite(const Compared& pair, const std::vector<const std::vector<float>*>& planes, const std::string& name,
@@ -116,8 +110,17 @@ Compared compare_layers(const ComparedInputs& inputs) {
   pair.reference = planes_like(reference, layer, pair.channels);
   if (second.image) pair.second = planes_like(second, layer, pair.channels);
   if (smooth.image) pair.smooth = planes_like(smooth, layer, pair.channels);
-  if (mask.image) pair.counted = pixels_of_mask(mask);
-  if (except.image) leave_out(except, pair.counted);
+  if (mask.image) {
+    pair.counted = not_zero(*mask.image);
+    check_some_count(pair.counted, mask, "make it other than 0 where pixels count");
+  }
+  if (except.image) {
+    if (pair.counted.empty()) pair.counted.assign(except.image->pixel_count(), 1);
+    const std::vector<std::uint8_t> left_out = not_zero(*except.image);
+    for (std::size_t i = 0; i < left_out.size(); ++i)
+      if (left_out[i]) pair.counted[i] = 0;
+    check_some_count(pair.counted, except, "it is other than 0 everywhere that counts");
+  }
   for (const NamedImage* from : {&test, &reference}) {
     const Channel* ids = from->image->find("id.object");
     if (!pair.objects && ids && !ids->ids.empty()) pair.objects = &ids->ids;

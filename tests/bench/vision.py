@@ -4,7 +4,6 @@
     python3 -B tests/bench/vision.py errors BIN OUT          five errors of equal RMSE, beside FLIP; pictures into OUT
     python3 -B tests/bench/vision.py flow BIN SCENE OUT      two pairs of warped keys of S4, flow x1, x3, x5
     python3 -B tests/bench/vision.py speed BIN SCENE OUT     1920x1080: normalised CPU seconds, threads (BIN/../tests/bench/bare_walk, S2)
-    python3 -B tests/bench/vision.py frames BIN SCENES OUT   preset final of S2, S3, S4 against Cycles
 
 Tables go to standard output. Only the standard library.
 """
@@ -196,30 +195,13 @@ def speed(tools, scene, out):
     print(f"| median of 3 | {middle[0]:.2f} | {middle[1]:.2f} | {middle[2]:.2f} | {middle[3]:.2f} x | {middle[4]:.0f} |")
 
 
-def frames(tools, scenes, out):
-    """Against Cycles, in halves. Seen error is compare_codes of measure.py's: here the pictures say it."""
-    print("| scene | AQM % | RMSE | largest object | AQM % of the reference's halves |\n|---|---|---|---|---|")
-    for name, frame in (("S2_cornell_moving", 10), ("S3_indirect_room", 1), ("S4_atrium", 10)):
-        folder = out / name
-        pipeline.run_make(Path(__file__).resolve().parents[2], tools, folder, SCENE=Path(scenes).resolve() / "made" / f"{name}.glb", FRAMES=frame,
-                          SIZE="320x180")
-        a, b = (f"{scenes}/ref/{name}_f{frame:04d}_{half}.exr" for half in "ab")
-        made = pipeline.frame_of(folder, frame)
-        run(tools / "aqm-compare", "-q", made, "--reference-halves", a, b, "--metric", "aqm", "--json", out / "a.json", "--allow-stale")
-        total = json.loads((out / "a.json").read_text())["total"]
-        run(tools / "aqm-compare", "-q", made, "--reference-halves", a, b, "-o", out / f"{name}.png", "--allow-stale")
-        halves = judge(tools, out, a, b)[0]["total"]["aqm"]["percent"]
-        worst = max(total["aqm"]["objects"], key=lambda o: o["seen"], default=None)
-        print(f"| {name} {frame} | {total['aqm']['percent']:.2f} | {total['rmse']:.4f} | {worst and worst['id']} | {halves:.2f} |", flush=True)
-
-
 def main(what, tools, *rest):
     out = Path(rest[-1]).resolve()
     out.mkdir(parents=True, exist_ok=True)
-    {"errors": errors, "flow": flow, "speed": speed, "frames": frames}[what](Path(tools).resolve(), *rest[:-1], out)
+    {"errors": errors, "flow": flow, "speed": speed}[what](Path(tools).resolve(), *rest[:-1], out)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 4 or sys.argv[1] not in ("errors", "flow", "speed", "frames"):
+    if len(sys.argv) < 4 or sys.argv[1] not in ("errors", "flow", "speed"):
         sys.exit(__doc__)
     main(*sys.argv[1:])
