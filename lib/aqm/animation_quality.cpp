@@ -8,6 +8,7 @@
 #include "formats/error.h"
 #include "lib/aqm/display_speed.h"
 #include "lib/aqm/visible_difference.h"
+#include "lib/core/parallel.h"
 
 namespace tempolux {
 namespace {
@@ -57,8 +58,11 @@ void AnimationQuality::add(const AnimationQuality& frame) {
 }
 
 double shared_exposure_stops(const ComparedInputs& inputs) {
-  const auto stops = [&](const NamedImage& image) { return auto_exposure_stops(*image.image, inputs.layer); };
-  return 0.5 * (stops(inputs.test) + stops(inputs.reference));
+  std::array<double, 2> stops{};
+  parallel_chunks(2, 1, [&](std::size_t i, std::size_t) {
+    stops[i] = auto_exposure_stops(*(i ? inputs.reference : inputs.test).image, inputs.layer);
+  });
+  return 0.5 * (stops[0] + stops[1]);
 }
 
 JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const VisionOptions& options,

@@ -90,6 +90,7 @@ double stops_of(const Content& content) {
   const Planes& planes = content.planes;
   const bool by_luminance = planes.size() == 3 && !is_signed(planes);
   std::vector<float> values;
+  values.reserve(planes[0]->size());
   for (std::size_t i = 0; i < planes[0]->size(); ++i) {
     const float value = by_luminance ? luminance(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]))
                                      : std::abs(largest_component(planes, i));
