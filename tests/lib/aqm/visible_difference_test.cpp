@@ -198,7 +198,8 @@ TEST(VisibleDifferenceTest, AqmNeverFallsAsAnErrorGrows) {
         double most = 0;
         const double fall = largest_fall(all[picture], contrast, all[error], most);
         EXPECT_LE(fall, 0.001) << all[picture].name << " of " << contrast << ", error: " << all[error].name;
-        if (error != all.size() - 1) EXPECT_GT(most, 0.001) << all[picture].name << ", error: " << all[error].name;
+        const bool dot = error == all.size() - 1;  // of contrast .5; not seen on every picture
+        EXPECT_TRUE(dot || most > 0.001) << all[picture].name << ", error: " << all[error].name;
       }
 }
 
