@@ -63,6 +63,7 @@ bool jumps(const FramesInARow& f, const Step& step) {
 
 bool light_jumps(const FramesInARow& frames) {
   if (!frames.last || !frames.here) return false;
+  if ((lamp_power(*frames.last) > 0) != (lamp_power(*frames.here) > 0)) return true;
   if (jumps(frames, step_of_lamps)) return true;
   for (std::size_t s = frames.here->static_count; s < frames.here->surfaces.size(); ++s)
     if (jumps(frames,

@@ -27,7 +27,7 @@ struct WindowOptions {
 /// The photons of one frame, counted by element.
 struct FrameCounts {
   int frame = 0;
-  double unit = 1;    ///< of sums and squares, over the middle frame's unit; a power of two
+  double unit = 1;    ///< of sums and squares, over the result's unit; a power of two
   bool jump = false;  ///< true if light jumps between the frame before and this one: no window reaches across
   std::vector<formats::MeshElement> elements;  ///< elements with photons
 };

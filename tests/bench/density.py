@@ -28,7 +28,9 @@ for folder in ("stress", "formats"):
     sys.path.insert(0, str(here.parents[1] / folder))
 import exr  # noqa: E402
 import read_meshirrad as mesh  # noqa: E402
+import pixels  # noqa: E402
 from scenes import Scene  # noqa: E402
+from seen import Seen, code  # noqa: E402
 
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
 parser.add_argument("bin", type=lambda p: Path(p).resolve())
@@ -38,6 +40,7 @@ parser.add_argument("--shared", type=lambda p: Path(p).resolve(), default=here.p
 parser.add_argument("--frames", type=int, default=0, help="of a range; 0: as the row has it")
 parser.add_argument("--scenes", default="S2,S5,room", help="of equal and preview, by names separated by commas")
 parser.add_argument("--size", default="320x180")
+parser.add_argument("--reference", type=int, default=256, help="samples per pixel of a half of preview's references")
 options = parser.parse_args()
 options.work.mkdir(parents=True, exist_ok=True)
 MIDDLE = 16
@@ -124,7 +127,8 @@ def alarms():
 
 
 def period():
-    print("| period | photons an element and frame | error, one frame | window | photons saved |\n|---:|---:|---:|---:|---:|")
+    """Windows beside the best one of a size for all elements and frames, which nobody knows beforehand: the most that a window can save."""
+    print("| period | photons an element and frame | error, one frame | window | photons saved | best window of one size for all | saves |\n|---:|---:|---:|---:|---:|---:|---:|")
     for frames in (60, 240):
         keys = [f / 24 for f in range(0, 129)]
 
@@ -133,20 +137,27 @@ def period():
             scene.animate(lamp, "scale", keys, [(0.7 * (1 + 0.3 * math.sin(2 * math.pi * f / frames)), 1, 1) for f in range(129)])
         scene = room(change).save(options.work / f"period{frames}.gltf")
         folder = f"period{frames}"
+        words = ("--segment", 129, "--cell", 0.68, "--filter-width", 0.135)   # 30 photons an element and frame
         photons(folder, scene, "0-128", "25k", "p.####.photons", "--segment", 129)
-        single, window, hits = [], [], []
-        for f in (20, 35, 50, 64, 80, 95, 110):
-            photons(folder, scene, f, "1M", "many.####.photons", "--segment", 129)
-            words = ("--segment", 129, "--cell", 0.68)   # 30 photons an element and frame
-            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "many.####.photons", *words, "--filter-width", 0.135, "-o", "many.meshirrad")
-            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "p.####.photons", *words, "--filter-width", 0.135, "-o", "one.meshirrad")
-            run(folder, "gather-temporal", "density", scene, "--frames", f"{f - 16}-{f + 16}", "--photons", "p.####.photons", *words, "--filter-width", 0.135, "-o", "w.####.meshirrad")
+        run(folder, "gather-temporal", "density", scene, "--frames", "0-128", "--photons", "p.####.photons", *words, "--reach", 0, "-o", "one.####.meshirrad")
+        run(folder, "gather-temporal", "density", scene, "--frames", "0-128", "--photons", "p.####.photons", *words, "-o", "w.####.meshirrad")
+        ones = [elements(folder, f"one.{f:04}.meshirrad") for f in range(129)]
+        window, sizes, hits = [], [[] for _ in range(MIDDLE + 1)], []
+        for f in range(16, 113, 4):
+            photons(folder, scene, f, "1M", "many.####.photons", "--segment", 129, "--seed", 7)   # no path of the window's
+            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "many.####.photons", *words, "-o", "many.meshirrad")
             reference = elements(folder, "many.meshirrad")
-            single.append(error(elements(folder, "one.meshirrad"), reference) ** 2)
             window.append(error(elements(folder, f"w.{f:04}.meshirrad"), reference) ** 2)
-            hits.append(statistics.mean(e[mesh.PHOTONS] for e in mesh.read_meshirrad(options.work / folder / "one.meshirrad").elements))
-        s, w, noise = statistics.mean(single), statistics.mean(window), statistics.mean(single) * 25 / 1025
-        print(f"| {frames} | {statistics.mean(hits):.0f} | {100 * math.sqrt(s):.1f} % | {100 * math.sqrt(w - noise):.1f} % | {(s - noise) / (w - noise):.1f} |", flush=True)
+            for reach, errors in enumerate(sizes):
+                span = ones[f - reach:f + reach + 1]
+                mean = {k: (math.fsum(one[k][0] for one in span if k in one) / len(span),) for k in reference}
+                errors.append(error(mean, reference) ** 2)
+            hits.append(statistics.mean(e[mesh.PHOTONS] for e in mesh.read_meshirrad(options.work / folder / f"one.{f:04}.meshirrad").elements))
+        sizes = [statistics.mean(errors) for errors in sizes]
+        s, w, noise = sizes[0], statistics.mean(window), sizes[0] * 25 / 1025
+        best = min(range(MIDDLE + 1), key=lambda reach: sizes[reach])
+        print(f"| {frames} | {statistics.mean(hits):.0f} | {100 * math.sqrt(s):.1f} % | {100 * math.sqrt(w - noise):.1f} % | {(s - noise) / (w - noise):.1f} | "
+              f"{2 * best + 1} | {(s - noise) / (sizes[best] - noise):.1f} |", flush=True)
 
 
 def events():
@@ -182,7 +193,8 @@ def scene_of(name):
         return file, ()
     if name == "evening":
         return found / "gltf" / "interiors" / "evening_shot.glb", ("--environment", found / "hdri" / "evening_sky.exr", "--light-units", "spec")
-    return next(made.glob(f"{name}_*.gl*")), ()
+    words = ("--environment", "1.1,1.5,2", "--light-units", "spec") if name == "S8" else ()
+    return next(made.glob(f"{name}_*.gl*")), words
 
 
 def layer(path, name="indirect"):
@@ -235,20 +247,41 @@ def equal():
 
 
 def preview():
+    """CPU seconds over all stages; seen error (seen_error.py) and flicker (evaluation.md, in its codes) of three frames in the middle."""
     frames = options.frames or 24
+    judged = range(frames // 2 - 1, frames // 2 + 2)
+    print("| scene | | CPU s per frame | seen error, codes | flicker, codes | halves of the reference differ by |\n|---|---|---:|---:|---:|---:|")
     for name in options.scenes.split(","):
         file, words = scene_of(name)
-        scene_words = {"room": []}.get(name, [])
-        if words:
-            scene_words = [f"ENVIRONMENT={words[1]}", f"LIGHT_UNITS={words[3]}"]
-        for method in ("preview", "draft"):
+        light = {"--environment": "SKY" if name == "S8" else "ENVIRONMENT", "--light-units": "LIGHT_UNITS"}
+        run(f"reference-{name}", "frame-render", file, "--frames", f"{judged[0]}-{judged[-1]}", "--size", options.size, "--integrator", "path", "--halves", "--spp", options.reference,
+            "--seed", 1000003, "--seed-mode", "frame", "--channels", "RGBA", *words, "-o", "r.####.exr")
+        halves = [[pixels.planes(exr.read(options.work / f"reference-{name}" / f"r.{f:04}_{h}.exr")) for h in "ab"] for f in judged]
+        exposure = Seen(*halves[1]).exposure     # one for all frames
+        codes = [[code_planes(exposure, half) for half in frame] for frame in halves]
+        noise = math.sqrt(product([(a, b, a, b) for a, b in codes]) / 2)
+        for method in ("preview", "frames"):
             out = options.work / f"{method}-{name}"
             before = os.times()
             subprocess.run(["make", "-s", "-f", str(here.parents[2] / "Makefile.example"), f"SCENE={file}", f"BIN={options.bin}", f"FRAMES=0-{frames - 1}", f"SIZE={options.size}",
-                            "QUALITY=draft", f"METHOD={'preview' if method == 'preview' else 'frames'}", f"OUT={out}", *scene_words], check=True, stdout=subprocess.DEVNULL)
+                            "QUALITY=draft", f"METHOD={method}", f"OUT={out}", *(f"{light[k]}={v}" for k, v in zip(words[::2], words[1::2]))], check=True, stdout=subprocess.DEVNULL)
             after = os.times()
             cpu = after.children_user + after.children_system - before.children_user - before.children_system
-            print(f"{name}: {method}: {cpu:.1f} CPU s for {frames} frames", flush=True)
+            shown = [code_planes(exposure, pixels.planes(exr.read(out / "frames" / f"{f:04}.exr"))) for f in judged]
+            error_ = math.sqrt(max(0, product([(x, a, x, b) for x, (a, b) in zip(shown, codes)])))
+            change = [[y - x for x, y in zip(one, two)] for one, two in zip(shown, shown[1:])]
+            changes = [[[y - x for x, y in zip(one[h], two[h])] for h in (0, 1)] for one, two in zip(codes, codes[1:])]
+            flicker = math.sqrt(max(0, product([(x, a, x, b) for x, (a, b) in zip(change, changes)])))
+            print(f"| {name} | {'preview' if method == 'preview' else 'draft'} | {cpu / frames:.2f} | {error_:.2f} | {flicker:.2f} | {noise:.1f} |", flush=True)
+
+
+def code_planes(exposure, planes):
+    return [code(exposure * v) for plane in planes for v in plane]
+
+
+def product(parts):
+    """Mean of (x - a) (y - b) over all values of all (x, a, y, b)."""
+    return math.fsum((x - a) * (y - b) for part in parts for x, a, y, b in zip(*part)) / sum(len(part[0]) for part in parts)
 
 
 for row in options.what:

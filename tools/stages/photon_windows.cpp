@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -100,6 +101,14 @@ class Counts {
   std::map<int, std::shared_ptr<const Counted>> kept_;
 };
 
+/// Unit of the windows' sums, W: that of the frame's counts, but at least 2^-10 of the largest one. Sums of one frame
+/// reach about 2^44, those of its neighbours then 2^54. A frame without light has an arbitrary tiny unit.
+double unit_of(const std::vector<std::shared_ptr<const Counted>>& found, std::size_t at) {
+  double unit = found[at]->header.unit;
+  for (const auto& counted : found) unit = std::max(unit, std::ldexp(counted->header.unit, -10));
+  return unit;
+}
+
 /// Checks that the counts of a window are of one segment, one mesh and one kind.
 void check_alike(const Counted& here, const Counted& other) {
   const auto& a = here.header;
@@ -126,6 +135,7 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
   file.header = here.header;
   file.header.holds = formats::MeshHolds::windows;
   file.header.jump = false;
+  file.header.unit = unit_of(found, at);
   file.header.history += tool.history_line(number);
   // Elements of moving surfaces depend on the frames by which they were cut, so these are evaluated again.
   const Segment& s = frame.segment;
@@ -133,13 +143,13 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
   for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last})
     others.push_back(f == number ? frame : input.at(f, false));
   file.elements = all_elements(frame, MeshCuts(here.header.cell, {&others[0], &others[1], &others[2]}));
-  std::vector<FrameCounts> scaled;  // scaled to this frame's unit
+  std::vector<FrameCounts> scaled;  // scaled to the windows' unit
   std::vector<const FrameCounts*> window;
   scaled.reserve(found.size());
   for (const auto& counted : found) {
     check_alike(here, *counted);
     scaled.push_back(counted->counts);
-    scaled.back().unit = counted->header.unit / here.header.unit;
+    scaled.back().unit = counted->header.unit / file.header.unit;
     window.push_back(&scaled.back());
   }
   WindowOptions window_options = options.window;
@@ -147,8 +157,8 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
       options.count.mesh.filter.width > 0 ? options.count.mesh.filter.width : here.header.cell / kCellOfWindows;
   CollectedLight light = collect_windows(window, at, std::uint32_t(frame.static_count), window_options, file.elements);
   tool.stats().phase("filter", true);
-  for (Rgbd& flux : light.flux.mean) flux *= here.header.unit;
-  for (double& squares : light.flux.squares) squares *= here.header.unit * here.header.unit;
+  for (Rgbd& flux : light.flux.mean) flux *= file.header.unit;
+  for (double& squares : light.flux.squares) squares *= file.header.unit * file.header.unit;
   file.header.filter = "gaussian " + formats::text_of(window_options.width);
   smooth_by_scales(tracer, light.flux, window_options.width, light.widths, file.elements);
   double frames = 0, lit = 0;
