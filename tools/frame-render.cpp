@@ -90,8 +90,9 @@ void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
             "photons do (--photons)");
 }
 
-/// Measures the bias of the frame's layers. Half of the effort is photons and half is camera paths, unless paths lack
-/// light that the frame has.
+/// Measures the bias of the frame's layers. Photons find the light of lamps, camera paths that of sun and sky: few
+/// photons of sun and sky are in view, and few paths meet a bright spot beside a lamp. No path meets a sun by way of a
+/// mirror or smooth glass; then photons find all light.
 std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene,
                               const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
                               const RenderedFrame& rendered) {
@@ -99,12 +100,19 @@ std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const R
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
+  const Tracer& tracer = scene.tracer;
+  const bool hidden = scene.lights.has_suns() && first_smooth_material(tracer.frame()) != kNone,
+             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
+  const AuditEffort effort = audit_effort(options.audit, rendered.rays, photons, paths,
+                                          mix64(frame_options.seed + std::uint64_t(tracer.frame().frame)));
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
-  const AuditEffort effort =
-      audit_effort(options.audit, rendered.rays, mix64(frame_options.seed + std::uint64_t(scene.frame().frame)));
-  audit.add_photons(scene.tracer, aimed_lights(scene.tracer, table, view), effort);
-  if (frame_options.known && (scene.frame().lights.empty() || first_smooth_material(scene.frame()) == kNone))
-    audit.add_paths(scene, frame_options, effort);
+  if (photons)
+    audit.add_photons(tracer, aimed_lights(tracer, table, view, hidden ? Lights::Which::all : Lights::Which::placed),
+                      effort);
+  if (paths) {
+    const Lights distant(tracer.frame(), table, Lights::Which::distant);
+    audit.add_paths({tracer, distant, distant.has_suns()}, effort);
+  }
   return audit.entries();
 }
 
