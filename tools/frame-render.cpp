@@ -8,6 +8,7 @@
 // Channels and attributes: formats/frames/frames.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@
 #include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
+#include "lib/render/pilot_photons.h"
+#include "lib/render/see_photons.h"
 #include "lib/render/seen_channels.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
@@ -79,15 +82,29 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
-/// Warns if path tracing cannot find some light of the scene: no path hits a light without extent after a mirror, so
-/// the reference would lack the light.
-void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
+/// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
+/// a reference any such light counts. Other frames may lack as much as an audit tolerates: photons of these lights
+/// measure the light.
+void warn_of_missing_light(tools::Tool& tool, const RenderScene& scene, const EmissionTable& table,
+                           const CameraView& view, const KnownLight* known, const RenderedFrame& rendered) {
+  constexpr std::uint64_t kPaths = 1 << 15;
+  const SceneFrame& frame = scene.frame();
   const std::uint32_t smooth = frame.lights.empty() ? kNone : first_smooth_material(frame);
-  if (smooth == kNone) return;
-  const std::string& name = frame.materials[smooth].name;
-  tool.warn(frame.scene->path + ": materials" + (name.empty() ? "" : " \"" + name + "\"") +
-            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; "
-            "photons do (--photons)");
+  if (smooth == kNone || (known && known->has_caustic())) return;
+  char share[48] = "";
+  if (known) {
+    const formats::PhotonBlock photons = pilot_photons(
+        scene.tracer, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), "caustic", kPaths, 0);
+    const SeenPhotons missing = see_photons(scene, view, photons).caustic;
+    if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
+    std::snprintf(share, sizeof share, " (%.2g of the picture's light)", missing.mean / rendered.mean_radiance);
+  }
+  const std::string &material = frame.materials[smooth].name, &light = frame.lights.front().light.name;
+  const auto quoted = [](const std::string& name) { return name.empty() ? "" : " \"" + name + "\""; };
+  tool.warn(frame.scene->path + ": materials" + quoted(material) +
+            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
+            ", for example light" + quoted(light) +
+            ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
 }
 
 /// Measures the bias of the frame's layers. Photons find the light of lamps, camera paths that of sun and sky: few
@@ -134,7 +151,6 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   if (options.integrator == "path" && number == tool.common().frames.front()) {
-    warn_of_missing_light(tool, frame);
     // With photons or a cache, the tools that made them have given this warning.
     if (const std::string doubt = doubt_of_light_units(input.scene());
         tool.common().light_units == "raw" && !doubt.empty())
@@ -162,6 +178,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   if (!yardstick) frame_options.known = &light.get();
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
+  if (number == tool.common().frames.front())
+    warn_of_missing_light(tool, scene, input.emission(frame.frame), view, frame_options.known, rendered);
   const std::vector<AuditEntry> audited =
       audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
   tool.stats().phase("data channels", true);

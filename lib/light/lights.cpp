@@ -55,14 +55,20 @@ Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table, Which w
       sphere_radius(table.sphere_radius),
       environment(table.environment),
       aim(table.aim, sphere_centre, sphere_radius) {
-  if (environment && which != Which::placed) environment_weight = max_component(environment->integral()) / 4;
+  if (environment && (which == Which::all || which == Which::distant))
+    environment_weight = max_component(environment->integral()) / 4;
   add_slots(table);
   build_tree();
 }
 
 bool Lights::Impl::shines(const EmissionSlot& slot) const {
   const bool distant = slot.kind == EmissionSlot::Kind::directional || slot.kind == EmissionSlot::Kind::environment;
-  return which == Which::all || distant == (which == Which::distant);
+  switch (which) {
+    case Which::placed: return !distant;
+    case Which::distant: return distant;
+    case Which::punctual: return slot.light != kNone;
+    default: return true;
+  }
 }
 
 void Lights::Impl::add_slots(const EmissionTable& table) {
@@ -128,7 +134,7 @@ std::vector<LightBounds> Lights::Impl::tree_bounds() const {
 
 Lights::Lights(const SceneFrame& frame, const EmissionTable& table, Which which)
     : impl_(std::make_unique<Impl>(frame, table, which)),
-      environment_(which == Which::placed ? nullptr : impl_->environment.get()) {}
+      environment_(which == Which::all || which == Which::distant ? impl_->environment.get() : nullptr) {}
 Lights::~Lights() = default;
 Lights::Lights(Lights&&) noexcept = default;
 
@@ -154,7 +160,7 @@ Rgbd Lights::total_flux() const {
 }
 
 Rgb Lights::emitted(const SurfacePoint& hit, Vec3 wo, float width) const {
-  if (impl_->which == Which::distant) return Rgb(0.0f);
+  if (impl_->which == Which::distant || impl_->which == Which::punctual) return Rgb(0.0f);
   const Material& material = impl_->frame->materials[hit.material];
   if (!material.double_sided && !(dot(hit.normal_geometric, wo) > 0)) return Rgb(0.0f);
   if (!material.textures) return material.emission;

@@ -85,9 +85,10 @@ struct PhotonEmission {
 /// All lights of one frame: draws light samples and photons.
 class Lights {
  public:
-  /// Which lights shine: all, those inside the scene, or directional lights and environment.
-  enum class Which : std::uint8_t { all, placed, distant };
-  /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are emitted.
+  /// Which lights shine: all; those inside the scene; directional lights and environment; those without extent.
+  enum class Which : std::uint8_t { all, placed, distant, punctual };
+  /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
+  /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
   ~Lights();
   Lights(Lights&&) noexcept;

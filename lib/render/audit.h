@@ -53,8 +53,8 @@ AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool
 ///
 /// The effort is divided into kAudits independent audits with seeds of their own. The standard error is that of their
 /// mean, however paths and starts are stratified within each audit. Nothing is reported if few contributions hold most
-/// of the variance: if (sum of c^2)^2 / sum of c^4 is below 32 for the contributions c of single photons and paths. This
-/// number of effective contributions gives the variance a relative standard error of 18 %.
+/// of the variance: if (sum of c^2)^2 / sum of c^4 is below 32 for the contributions c of single photons and paths.
+/// This number of effective contributions gives the variance a relative standard error of 18 %.
 class FrameAudit {
  public:
   static constexpr std::size_t kAudits = 32;
