@@ -97,13 +97,12 @@ void warn_of_missing_light(tools::Tool& tool, const RenderScene& scene, const Em
         scene.tracer, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), "caustic", kPaths, 0);
     const SeenPhotons missing = see_photons(scene, view, photons).caustic;
     if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
-    std::snprintf(share, sizeof share, " (%.2g of the picture's light)", missing.mean / rendered.mean_radiance);
+    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing.mean / rendered.mean_radiance);
   }
   const std::string &material = frame.materials[smooth].name, &light = frame.lights.front().light.name;
-  const auto quoted = [](const std::string& name) { return name.empty() ? "" : " \"" + name + "\""; };
-  tool.warn(frame.scene->path + ": materials" + quoted(material) +
+  tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
-            ", for example light" + quoted(light) +
+            (light.empty() ? "" : ", as that of light \"" + light + "\"") +
             ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
 }
 
