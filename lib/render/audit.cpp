@@ -15,6 +15,8 @@ namespace {
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
 constexpr double kFewest = 32;  ///< effective contributions to a variance: fewer give no standard error
+/// Student's t with 31 degrees of freedom exceeds 3 times this as rarely as a normal variable exceeds 3.
+constexpr double kStudent = 3.25 / 3;
 /// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as one camera
 /// path.
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
@@ -161,7 +163,8 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   for (const double audit : sums.light[layer]) square += (audit - mean) * (audit - mean);
   entry.light = {mean / n, std::sqrt(square / kAudits / (kAudits - 1)) / n};
   const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
-  entry.bias = {entry.shown - entry.light.value, std::sqrt(entry.light.error * entry.light.error + noise * noise / n)};
+  const double error = kStudent * entry.light.error;
+  entry.bias = {entry.shown - entry.light.value, std::sqrt(error * error + noise * noise / n)};
   return entry;
 }
 
