@@ -89,7 +89,9 @@ void warn_of_missing_light(tools::Tool& tool, const RenderScene& scene, const Em
                            const CameraView& view, const KnownLight* known, const RenderedFrame& rendered) {
   constexpr std::uint64_t kPaths = 1 << 15;
   const SceneFrame& frame = scene.frame();
-  const std::uint32_t smooth = frame.lights.empty() ? kNone : first_smooth_material(frame);
+  const auto shines =
+      std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
+  const std::uint32_t smooth = shines == frame.lights.end() ? kNone : first_smooth_material(frame);
   if (smooth == kNone || (known && known->has_caustic())) return;
   char share[48] = "";
   if (known) {
@@ -99,7 +101,7 @@ void warn_of_missing_light(tools::Tool& tool, const RenderScene& scene, const Em
     if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
     std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing.mean / rendered.mean_radiance);
   }
-  const std::string &material = frame.materials[smooth].name, &light = frame.lights.front().light.name;
+  const std::string &material = frame.materials[smooth].name, &light = shines->light.name;
   tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
             (light.empty() ? "" : ", as that of light \"" + light + "\"") +
