@@ -8,6 +8,7 @@
 // Channels and attributes: formats/frames/frames.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@
 #include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
+#include "lib/render/pilot_photons.h"
+#include "lib/render/see_photons.h"
 #include "lib/render/seen_channels.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
@@ -79,19 +82,35 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
-/// Warns if path tracing cannot find some light of the scene: no path hits a light without extent after a mirror, so
-/// the reference would lack the light.
-void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
-  const std::uint32_t smooth = frame.lights.empty() ? kNone : first_smooth_material(frame);
-  if (smooth == kNone) return;
-  const std::string& name = frame.materials[smooth].name;
-  tool.warn(frame.scene->path + ": materials" + (name.empty() ? "" : " \"" + name + "\"") +
-            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; "
-            "photons do (--photons)");
+/// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
+/// a reference any such light counts. Other frames may lack as much as an audit tolerates: photons of these lights
+/// measure the light.
+void warn_of_missing_light(tools::Tool& tool, const RenderScene& scene, const EmissionTable& table,
+                           const CameraView& view, const KnownLight* known, const RenderedFrame& rendered) {
+  constexpr std::uint64_t kPaths = 1 << 15;
+  const SceneFrame& frame = scene.frame();
+  const auto shines =
+      std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
+  const std::uint32_t smooth = shines == frame.lights.end() ? kNone : first_smooth_material(frame);
+  if (smooth == kNone || (known && known->has_caustic())) return;
+  char share[48] = "";
+  if (known) {
+    const formats::PhotonBlock photons = pilot_photons(
+        scene.tracer, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), "caustic", kPaths, 0);
+    const SeenPhotons missing = see_photons(scene, view, photons).caustic;
+    if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
+    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing.mean / rendered.mean_radiance);
+  }
+  const std::string &material = frame.materials[smooth].name, &light = shines->light.name;
+  tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
+            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
+            (light.empty() ? "" : ", as that of light \"" + light + "\"") +
+            ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
 }
 
-/// Measures the bias of the frame's layers. Half of the effort is photons and half is camera paths, unless paths lack
-/// light that the frame has.
+/// Measures the bias of the frame's layers. Photons find the light of lamps, camera paths that of sun and sky: few
+/// photons of sun and sky are in view, and few paths meet a bright spot beside a lamp. No path meets a sun by way of a
+/// mirror or smooth glass; then photons find all light.
 std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene,
                               const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
                               const RenderedFrame& rendered) {
@@ -99,12 +118,19 @@ std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const R
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
+  const Tracer& tracer = scene.tracer;
+  const bool hidden = scene.lights.has_suns() && first_smooth_material(tracer.frame()) != kNone,
+             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
+  const AuditEffort effort = audit_effort(options.audit, rendered.rays, photons, paths,
+                                          mix64(frame_options.seed + std::uint64_t(tracer.frame().frame)));
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
-  const AuditEffort effort =
-      audit_effort(options.audit, rendered.rays, mix64(frame_options.seed + std::uint64_t(scene.frame().frame)));
-  audit.add_photons(scene.tracer, aimed_lights(scene.tracer, table, view), effort);
-  if (frame_options.known && (scene.frame().lights.empty() || first_smooth_material(scene.frame()) == kNone))
-    audit.add_paths(scene, frame_options, effort);
+  if (photons)
+    audit.add_photons(tracer, aimed_lights(tracer, table, view, hidden ? Lights::Which::all : Lights::Which::placed),
+                      effort);
+  if (paths) {
+    const Lights distant(tracer.frame(), table, Lights::Which::distant);
+    audit.add_paths({tracer, distant, distant.has_suns()}, effort);
+  }
   return audit.entries();
 }
 
@@ -126,7 +152,6 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   if (options.integrator == "path" && number == tool.common().frames.front()) {
-    warn_of_missing_light(tool, frame);
     // With photons or a cache, the tools that made them have given this warning.
     if (const std::string doubt = doubt_of_light_units(input.scene());
         tool.common().light_units == "raw" && !doubt.empty())
@@ -154,6 +179,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   if (!yardstick) frame_options.known = &light.get();
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
+  if (number == tool.common().frames.front())
+    warn_of_missing_light(tool, scene, input.emission(frame.frame), view, frame_options.known, rendered);
   const std::vector<AuditEntry> audited =
       audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
   tool.stats().phase("data channels", true);

@@ -48,15 +48,27 @@ LightBounds bounds_of(const PlacedLight& placed) {
 
 }  // namespace
 
-Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table)
+Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table, Which which_)
     : frame(&frame_),
+      which(which_),
       sphere_centre(Vec3(table.sphere_centre)),
       sphere_radius(table.sphere_radius),
       environment(table.environment),
       aim(table.aim, sphere_centre, sphere_radius) {
-  if (environment) environment_weight = max_component(environment->integral()) / 4;
+  if (environment && (which == Which::all || which == Which::distant))
+    environment_weight = max_component(environment->integral()) / 4;
   add_slots(table);
   build_tree();
+}
+
+bool Lights::Impl::shines(const EmissionSlot& slot) const {
+  const bool distant = slot.kind == EmissionSlot::Kind::directional || slot.kind == EmissionSlot::Kind::environment;
+  switch (which) {
+    case Which::placed: return !distant;
+    case Which::distant: return distant;
+    case Which::punctual: return slot.light != kNone;
+    default: return true;
+  }
 }
 
 void Lights::Impl::add_slots(const EmissionTable& table) {
@@ -72,12 +84,14 @@ void Lights::Impl::add_slots(const EmissionTable& table) {
     slots.push_back({slot_kind(frame->lights[i].light.kind), kNone, 0, i, 0});
   if (environment) slots.push_back({EmissionSlot::Kind::environment, kNone, 0, kNone, 0});
   TEMPOLUX_CHECK(slots.size() == table.probability.size());
-  double sum = 0;
+  double sum = 0, all = which == Which::all ? 1 : 0;
+  if (which != Which::all)
+    for (std::size_t i = 0; i < slots.size(); ++i) all += shines(slots[i]) ? table.probability[i] : 0;
   cumulative.reserve(slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    slots[i].probability = table.probability[i];
-    cumulative.push_back(sum += table.probability[i]);
-    photon_flux.push_back(Rgb(slot_flux(i) / table.probability[i]));
+    slots[i].probability = all > 0 && shines(slots[i]) ? table.probability[i] / all : 0;
+    cumulative.push_back(sum += slots[i].probability);
+    photon_flux.push_back(Rgb(slot_flux(i) / slots[i].probability));
   }
 }
 
@@ -90,6 +104,7 @@ Rgbd Lights::Impl::slot_flux(std::size_t slot) const {
 void Lights::Impl::build_tree() {
   tree_index.assign(slots.size(), kNone);
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
+    if (!shines(slots[i])) continue;
     if (i < triangles.size()) {
       if (!triangles[i].emits()) continue;
     } else {
@@ -117,8 +132,9 @@ std::vector<LightBounds> Lights::Impl::tree_bounds() const {
   return bounds;
 }
 
-Lights::Lights(const SceneFrame& frame, const EmissionTable& table)
-    : impl_(std::make_unique<Impl>(frame, table)), environment_(impl_->environment.get()) {}
+Lights::Lights(const SceneFrame& frame, const EmissionTable& table, Which which)
+    : impl_(std::make_unique<Impl>(frame, table, which)),
+      environment_(which == Which::all || which == Which::distant ? impl_->environment.get() : nullptr) {}
 Lights::~Lights() = default;
 Lights::Lights(Lights&&) noexcept = default;
 
@@ -144,6 +160,7 @@ Rgbd Lights::total_flux() const {
 }
 
 Rgb Lights::emitted(const SurfacePoint& hit, Vec3 wo, float width) const {
+  if (impl_->which == Which::distant || impl_->which == Which::punctual) return Rgb(0.0f);
   const Material& material = impl_->frame->materials[hit.material];
   if (!material.double_sided && !(dot(hit.normal_geometric, wo) > 0)) return Rgb(0.0f);
   if (!material.textures) return material.emission;

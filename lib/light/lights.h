@@ -85,7 +85,11 @@ struct PhotonEmission {
 /// All lights of one frame: draws light samples and photons.
 class Lights {
  public:
-  Lights(const SceneFrame& frame, const EmissionTable& table);
+  /// Which lights shine: all; those inside the scene; directional lights and environment; those without extent.
+  enum class Which : std::uint8_t { all, placed, distant, punctual };
+  /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
+  /// emitted.
+  Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
   ~Lights();
   Lights(Lights&&) noexcept;
 

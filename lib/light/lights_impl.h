@@ -19,6 +19,7 @@ struct Lights::Impl {
   /// As Lights::sample. `joint`: u_choice is u.x, so the remainder of the choice replaces u.x.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
   const SceneFrame* frame;
+  Which which;
   Vec3 sphere_centre;
   double sphere_radius;
   std::vector<EmissionSlot> slots;
@@ -34,7 +35,8 @@ struct Lights::Impl {
   Aim aim;                        // of photons from directional lights and environment
   bool any_distant = false;       // true if the environment is not black or a directional light shines
   LightTree tree{{}};
-  Impl(const SceneFrame& frame_, const EmissionTable& table);
+  Impl(const SceneFrame& frame_, const EmissionTable& table, Which which_);
+  bool shines(const EmissionSlot& slot) const;
   void add_slots(const EmissionTable& table);
   void build_tree();
 

@@ -14,13 +14,13 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr double kFewest = 32;  ///< effective photons or paths: an estimate from fewer gets no standard error
-/// Largest share of one map or path in the sum of squares: above this the standard error is not known.
-constexpr double kMostOfOne = 0.5;
-/// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as two camera
-/// paths.
-constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;
-constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull;
+constexpr double kFewest = 32;  ///< effective contributions to a variance: fewer give no standard error
+/// Student's t with 31 degrees of freedom exceeds 3 times this as rarely as a normal variable exceeds 3.
+constexpr double kStudent = 3.25 / 3;
+/// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as one camera
+/// path.
+constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
+constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8;
 
 double light_of(const Layers& pixel) {
   double sum = 0;
@@ -28,24 +28,13 @@ double light_of(const Layers& pixel) {
   return sum;
 }
 
-/// Mean of both estimates, weighted by inverse variance, or the only one that is known. If the two differ by more than
-/// kAuditErrors standard errors of their difference, one of them is wrong (for example because it missed rare light).
-/// Nothing decides which one, so the result is unknown.
-Estimate joined(const Estimate& a, const Estimate& b) {
-  if (!a.known()) return b;
-  if (!b.known()) return a;
-  const double va = a.error * a.error, vb = b.error * b.error;
-  if (!(va + vb > 0)) return a;
-  const double apart = a.value - b.value;
-  if (apart * apart > kAuditErrors * kAuditErrors * (va + vb)) return {};
-  return {(a.value * vb + b.value * va) / (va + vb), std::sqrt(va * vb / (va + vb))};
-}
-
 }  // namespace
 
-AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed) {
-  const double half = 0.5 * share * double(rays.camera + rays.bounce + rays.shadow);
-  return {std::uint64_t(std::ceil(half / kRaysOfPhoton)), std::size_t(std::ceil(half / kRaysOfPath)), seed};
+AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool paths, std::uint64_t seed) {
+  const double each =
+      share * double(rays.camera + rays.bounce + rays.shadow) / std::max(1.0, double(photons) + double(paths));
+  const auto count = [&](bool wanted, double cost) { return wanted ? std::uint64_t(std::ceil(each / cost)) : 0; };
+  return {count(photons, kRaysOfPhoton), count(paths, kRaysOfPath), seed};
 }
 
 FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
@@ -84,14 +73,25 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
-/// Each map has its own seed and all of its paths in one group. Maps are traced in parallel and added in order.
+void FrameAudit::add(std::size_t audit, std::size_t pixel, std::size_t layer, double radiance) {
+  if (!mask_.empty() && !mask_[pixel]) return;
+  const double square = radiance * radiance;
+  for_parts_of(pixel, [&](std::size_t part) {
+    sums_[part].light[layer][audit] += radiance;
+    sums_[part].square[layer] += square;
+    sums_[part].fourth[layer] += square * square;
+  });
+}
+
+/// Each audit is a map with its own seed and all of its paths in one group. Audits are traced in parallel and added in
+/// order.
 void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
   const PhotonSplats camera(tracer, view_);
-  std::array<std::vector<Splat>, kMaps> seen;
-  parallel_chunks(kMaps, 1, [&](std::size_t first, std::size_t last) {
+  std::array<std::vector<Splat>, kAudits> seen;
+  parallel_chunks(kAudits, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
-                            .photon_count = (effort.photon_paths + kMaps - 1) / kMaps,
+                            .photon_count = (effort.photon_paths + kAudits - 1) / kAudits,
                             .group_count = 1};
       const PhotonTracer photons(tracer, lights, options);
       for (std::size_t b = 0; b < photons.batch_count(); ++b) {
@@ -107,67 +107,42 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
       }
     }
   });
-  for (std::size_t k = 0; k < kMaps; ++k)
-    for (const Splat& splat : seen[k]) {
-      if (!mask_.empty() && !mask_[splat.pixel]) continue;
-      const auto layer = std::size_t(splat.layer);
-      const double radiance = channel_mean(Rgbd(splat.radiance)), square = radiance * radiance;
-      for_parts_of(splat.pixel, [&](std::size_t part) {
-        sums_[part].splats[layer][k] += float(radiance);
-        sums_[part].splats_square[layer] += square;
-      });
-    }
+  for (std::size_t k = 0; k < kAudits; ++k)
+    for (const Splat& splat : seen[k])
+      add(k, splat.pixel, std::size_t(splat.layer), channel_mean(Rgbd(splat.radiance)));
 }
 
-void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options, const AuditEffort& effort) {
-  const std::size_t pixels = object_part_.size(), count = effort.eye_paths;
-  struct Difference {
+/// Each audit divides the pixels into as many runs as it has paths, row by row, and draws one pixel from each run.
+void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) {
+  const std::size_t pixels = object_part_.size(), count = (effort.eye_paths + kAudits - 1) / kAudits;
+  struct Found {
     std::size_t pixel = 0;
-    bool counts = false;
     std::array<double, kLayerCount> layer{};
-    std::array<double, kLayerCount> found{};
   };
-  std::vector<Difference> differences(count);
-  const std::uint64_t seed = mix64(effort.seed ^ kEyeKey);
-  parallel_chunks(count, 64, [&](std::size_t first, std::size_t last) {
+  std::vector<Found> found(kAudits * count);
+  parallel_chunks(found.size(), 64, [&](std::size_t first, std::size_t last) {
     RayCounts rays;
     for (std::size_t i = first; i < last; ++i) {
-      Difference& difference = differences[i];
-      const PixelRandom random(seed, i, 0);
-      // The pixels are divided into `count` runs, row by row, and one pixel is drawn from each run.
-      const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, i).get2(0, Purpose::pixel);
-      difference.pixel =
-          std::min(pixels - 1, std::size_t((double(i) + double(within.x)) * double(pixels) / double(count)));
-      if (!mask_.empty() && !mask_[difference.pixel]) continue;
+      const std::uint64_t seed = mix64(effort.seed ^ (kEyeKey + i / count));
+      const std::size_t run = i % count;
+      const PixelRandom random(seed, run, 0);
+      const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, run).get2(0, Purpose::pixel);
+      const std::size_t pixel =
+          std::min(pixels - 1, std::size_t((double(run) + double(within.x)) * double(pixels) / double(count)));
+      found[i].pixel = pixel;
+      if (!mask_.empty() && !mask_[pixel]) continue;
       const auto width = std::size_t(view_.width());
-      const Ray ray = view_.ray(float(difference.pixel % width) + jitter.x, float(difference.pixel / width) + jitter.y);
-      Hit hit;
-      scene.tracer.intersect(ray, hit);
-      const Layers shown =
-          trace_eye_path(scene, ray, hit, random, options.known, rays, view_.cone(), effort_of(0)).sum();
-      const Layers found = trace_eye_path(scene, ray, hit, random, nullptr, rays, view_.cone(), effort_of(0)).sum();
-      difference.counts = true;
-      for (std::size_t l = 0; l < kLayerCount; ++l) {
-        difference.found[l] = channel_mean(Rgbd(found.value[l]));
-        difference.layer[l] = channel_mean(Rgbd(shown.value[l])) - difference.found[l];
-      }
+      const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
+      const Layers light = trace_eye_path(scene, ray, random, nullptr, rays, view_.cone());
+      for (std::size_t l = 0; l < kLayerCount; ++l) found[i].layer[l] = channel_mean(Rgbd(light.value[l]));
     }
   });
-  for (const Difference& difference : differences) {
-    if (!difference.counts) continue;
-    for_parts_of(difference.pixel, [&](std::size_t part) {
-      Sums& sums = sums_[part];
-      ++sums.path_count;
-      for (std::size_t l = 0; l < kLayerCount; ++l) {
-        const double d = difference.layer[l], found = difference.found[l];
-        sums.paths[l] += d;
-        sums.found[l] += found;
-        sums.found_square[l] += found * found;
-        sums.paths_square[l] += d * d;
-        sums.paths_largest[l] = std::max(sums.paths_largest[l], d * d);
-      }
-    });
-  }
+  const double pixels_of_path = double(pixels) / double(count);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const Layer layer : kAudited) {
+      const auto l = std::size_t(layer);
+      if (found[i].layer[l] != 0) add(i / count, found[i].pixel, l, pixels_of_path * found[i].layer[l]);
+    }
 }
 
 AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
@@ -178,37 +153,18 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
                    .object = parts_[part].object,
                    .pixels = parts_[part].pixels,
                    .shown = sums.shown[layer] / n,
-                   .splats = {},
-                   .paths = {},
+                   .light = {},
                    .bias = {},
                    .picture = picture_ / n};
-  Estimate by_splats;
-  double sum = 0;
-  for (const float map : sums.splats[layer]) sum += double(map);
-  if (sum > 0 && sum * sum >= kFewest * sums.splats_square[layer]) {
-    double square = 0, largest = 0;
-    for (const float map : sums.splats[layer]) {
-      const double off = double(map) - sum / kMaps, off2 = off * off;
-      square += off2;
-      largest = std::max(largest, off2);
-    }
-    if (largest <= kMostOfOne * square) {
-      entry.splats = {sum / n / kMaps, std::sqrt(square / kMaps / (kMaps - 1)) / n};
-      const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
-      by_splats = {entry.shown - entry.splats.value,
-                   std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
-    }
-  }
-  const double m = double(sums.path_count);
-  // With equal random numbers both ways sample the same direct light: a difference of 0 is no measurement.
-  if (sums.paths_square[layer] > 0 && sums.found[layer] * sums.found[layer] >= kFewest * sums.found_square[layer] &&
-      sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
-    entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m -
-                                                                      sums.paths[layer] * sums.paths[layer] / (m * m)) /
-                                                    (m - 1))};
-  // Light that no path met has no part in the variance of paths. So paths alone cannot know that a frame is too bright.
-  const bool unmet = !by_splats.known() && entry.paths.value > kAuditErrors * entry.paths.error;
-  entry.bias = joined(by_splats, unmet ? Estimate{} : entry.paths);
+  if (!(sums.fourth[layer] > 0) || sums.square[layer] * sums.square[layer] < kFewest * sums.fourth[layer]) return entry;
+  double sum = 0, square = 0;
+  for (const double audit : sums.light[layer]) sum += audit;
+  const double mean = sum / kAudits;
+  for (const double audit : sums.light[layer]) square += (audit - mean) * (audit - mean);
+  entry.light = {mean / n, std::sqrt(square / kAudits / (kAudits - 1)) / n};
+  const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
+  const double error = kStudent * entry.light.error;
+  entry.bias = {entry.shown - entry.light.value, std::sqrt(error * error + noise * noise / n)};
   return entry;
 }
 

@@ -1,4 +1,4 @@
-// lib/render/audit.h -- measures the bias of a frame's layers by photons and by camera paths.
+// lib/render/audit.h -- measures the bias of a frame's layers with light of its own.
 #pragma once
 
 #include <array>
@@ -25,9 +25,8 @@ struct AuditEntry {
   std::uint32_t object = kNone;  ///< id.object
   std::size_t pixels = 0;
   double shown = 0;  ///< radiance of the frame
-  Estimate splats;   ///< radiance estimated by splats of photons
-  Estimate paths;    ///< radiance estimated by camera paths: `shown` minus the bias that paths find
-  Estimate bias;     ///< bias of the frame, estimated from splats and paths together
+  Estimate light;    ///< radiance that the audit found
+  Estimate bias;     ///< `shown` minus `light`; three of its errors are as rare as of a normal variable
   /// The whole picture's radiance of all layers, times its pixels over the part's pixels: `bias` is reported as a share
   /// of this.
   double picture = 0;
@@ -37,38 +36,36 @@ struct AuditEntry {
   double of_layer_error() const { return shown - bias.value > 0 ? bias.error / (shown - bias.value) : 0; }
 };
 
-/// Number of paths that an audit traces, from the lights and from the camera.
+/// Number of paths that an audit traces, from the lights and from the camera, rounded up to a multiple of
+/// FrameAudit::kAudits.
 struct AuditEffort {
-  std::uint64_t photon_paths = 0;  ///< rounded up to a multiple of FrameAudit::kMaps
+  std::uint64_t photon_paths = 0;
   std::size_t eye_paths = 0;
   std::uint64_t seed = 0;
 };
 
-/// The effort that costs about `share` of a frame's rays, half of it for photons.
-AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed);
+/// The effort that costs about `share` of a frame's rays, half of it for photons if there are both photons and paths.
+AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool paths, std::uint64_t seed);
 
-/// Audits the layers direct, caustic and indirect of a frame in two ways: by photons of its own that the camera sees,
-/// and by camera paths.
+/// Audits the layers direct, caustic and indirect of a frame: finds their light again, without files of light. Each
+/// light is found in one way, by photons that the camera sees (add_photons) or by camera paths (add_paths). So the
+/// lights of the two calls together must be those of the scene.
 ///
-/// The standard error of the photons' estimate is that of the mean of kMaps photon maps. Each map has its own seed, so
-/// the maps are independent and equally distributed, however the starts within one map are stratified. An estimate is
-/// not reported if one map or path holds more than half of its sum of squares, or if its photons or its paths' light
-/// count for fewer than 32 equal photons or paths, by (sum)^2 / sum of squares. Paths alone cannot know that a frame is
-/// too bright: they may miss rare light.
+/// The effort is divided into kAudits independent audits with seeds of their own. The standard error is that of their
+/// mean, however paths and starts are stratified within each audit. Nothing is reported if few contributions hold most
+/// of the variance: if (sum of c^2)^2 / sum of c^4 is below 32 for the contributions c of single photons and paths.
+/// This number of effective contributions gives the variance a relative standard error of 18 %.
 class FrameAudit {
  public:
-  static constexpr std::size_t kMaps = 32;
+  static constexpr std::size_t kAudits = 32;
 
   /// objects: id.object by pixel. Pixels with mask 0 are not audited. All arguments must outlive the audit.
   FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
              std::span<const std::uint8_t> mask);
-  /// Traces kMaps photon maps with effort.photon_paths light paths in all, and adds the photons that the camera sees.
-  /// `lights` may aim photons.
+  /// Adds the photons of effort.photon_paths light paths from `lights` that the camera sees. `lights` may aim photons.
   void add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort);
-  /// Starts effort.eye_paths camera rays, spread over the picture. At each first hit, adds the difference between the
-  /// frame's estimate of light and a camera path's estimate. So bias is found also where no photon is in view. `scene`
-  /// and `options` are those that the frame was rendered with.
-  void add_paths(const RenderScene& scene, const FrameOptions& options, const AuditEffort& effort);
+  /// Adds the light of scene.lights that effort.eye_paths camera paths find, spread over the picture.
+  void add_paths(const RenderScene& scene, const AuditEffort& effort);
   /// Entries of all layers that have an estimate: of the picture, the tiles and the objects, in this order.
   std::vector<AuditEntry> entries() const;
 
@@ -81,14 +78,12 @@ class FrameAudit {
   /// Sums over one part of the picture, by layer.
   struct Sums {
     std::array<double, kLayerCount> shown{};
-    std::array<std::array<float, kMaps>, kLayerCount> splats{};  ///< by map
-    std::array<double, kLayerCount> splats_square{};  ///< sum of the squares of the single photons' contributions
-    std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
-    std::size_t path_count = 0;
-    std::array<double, kLayerCount> found{}, found_square{};  ///< light that paths found
+    std::array<std::array<double, kAudits>, kLayerCount> light{};  ///< that each audit found
+    std::array<double, kLayerCount> square{}, fourth{};            ///< of single contributions: sums of powers
   };
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;
+  void add(std::size_t audit, std::size_t pixel, std::size_t layer, double radiance);
   AuditEntry entry(std::size_t part, std::size_t layer) const;
 
   const CameraView& view_;

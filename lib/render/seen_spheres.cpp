@@ -275,9 +275,9 @@ std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, c
   return spheres_in_scene(spheres_around(seen.places, scene_radius), tracer.frame().origin);
 }
 
-Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view) {
-  table.aim = spheres_seen(tracer, table.sphere_radius, view);
-  return Lights(tracer.frame(), table);
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view, Lights::Which which) {
+  if (which != Lights::Which::placed) table.aim = spheres_seen(tracer, table.sphere_radius, view);
+  return Lights(tracer.frame(), table, which);
 }
 
 }  // namespace tempolux

@@ -54,7 +54,9 @@ std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& 
 /// The spheres, in scene space, around the places that this camera and those around it see. scene_radius [m].
 std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view);
 
-/// Lights that aim photons of sun and sky at the places that the camera sees (docs/methods/aim.md).
-Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view);
+/// Lights that aim photons of sun and sky at the places that the camera sees (docs/methods/aim.md). `which`: as for
+/// Lights.
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view,
+                    Lights::Which which = Lights::Which::all);
 
 }  // namespace tempolux

@@ -34,6 +34,25 @@ END
 for scene in smooth gloss; do expect 0 '' frame-render $scene.gltf --integrator path --size 16x9 --spp 1 -o made.exr; done
 expect 0 'lamp.gltf: materials "Mirror": what point, spot and sun lights send by way of mirrors and smooth glass is missing' \
   frame-render lamp.gltf --integrator path --size 16x9 --spp 1 -o made.exr
+# Any frame without photons lacks this light, if it matters: a pool in the sun. With a map of caustic light, it does not.
+"${PYTHON:-python3}" - <<'END' || bad 'pool.glb'
+import os, sys
+sys.path.insert(0, os.path.join(os.environ["HERE"], "..", "stress"))
+from scenes import Scene, box_mesh
+scene = Scene()
+scene.quad((-2, -1.5, 3), (2, -1.5, 3), (2, -1.5, -3), (-2, -1.5, -3), scene.material(0.6))
+scene.mesh(*box_mesh((-2.1, -1.6, -3.1), (2.1, 0, 3.1)), scene.glass(ior=1.33))
+scene.sun((-0.3, -0.9, -0.25), (3, 3, 3))
+scene.document["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = "Noon"
+scene.camera((0, 6, 5), (0, -0.5, 0), fov=0.7)
+scene.save("pool.glb")
+END
+photon-trace pool.glb --environment 1,1,1 --photons 50k --kinds caustic,indirect -o pool.photons -q && irradcache-build points pool.glb --environment 1,1,1 --photons pool.photons --point-count 200 -o pool.irradpoints -q || bad 'pool'
+missing='smooth glass is missing .* of the picture., as that of light "Noon"'
+for light in "" "--points pool.irradpoints"; do
+  expect 0 "$missing" frame-render pool.glb --environment 1,1,1 $light --size 48x27 --spp 2 -o made.exr
+done
+expect 0 '' frame-render pool.glb --environment 1,1,1 --points pool.irradpoints --photons pool.photons --size 48x27 --spp 2 -o made.exr
 # A reference does not have the random numbers of the frame of the same seed, or it would err alike.
 frame-render "$matte" --size 16x9 --spp 2 --channels RGBA -o paths.exr -q && frame-render "$matte" --size 16x9 --spp 2 --channels RGBA --integrator path -o reference.exr -q || bad 'paths'
 [ "$(tempolux-info --digest paths.exr)" != "$(tempolux-info --digest reference.exr)" ] || bad 'the reference has the random numbers of the frame'

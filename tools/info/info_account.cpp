@@ -12,7 +12,8 @@
 namespace tempolux::tools {
 namespace {
 
-constexpr std::array<const char*, 3> kLayers{"direct", "caustic", "indirect"};
+/// Frames sample direct light themselves, so its audit only tests the audit.
+constexpr std::array<const char*, 2> kLayers{"caustic", "indirect"};
 constexpr double kLimit = 0.02, kErrors = 3;  // as in FrameAudit's is_biased()
 
 /// Sums of one layer over the frames.
@@ -79,7 +80,7 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     if (sum.biased() && !sum.worst_name.empty())
       text += ", most by " + sum.worst_name + " (" + percent(sum.worst, sum.worst_error) + " of the picture)";
     account.line += (account.line.empty() ? "audit: " : ", ") + text;
-    if (sum.biased() && l > 0)
+    if (sum.biased())
       account.warnings.push_back(std::string(kLayers[l]) + " light is off by " + percent(sum.mean(), sum.error()) +
                                  " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
                                  "INDIRECT=paths mend it");
