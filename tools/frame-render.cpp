@@ -187,10 +187,8 @@ void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
   } catch (const InputError& error) { tool.warn(error.what()); }
 }
 
-void check(Options& options, const std::vector<int>& frames) {
-  if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
-    throw InputError("--output: several frames need a pattern, for example f.####.exr");
-  if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+void check(const tools::Tool& tool, Options& options) {
+  tool.check_frame_output(options.output);
   for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
     if (options.output.ends_with(other))
       throw InputError("--output " + options.output +
@@ -245,40 +243,30 @@ void check(Options& options, const std::vector<int>& frames) {
 
 void add_light_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
-  app.add_option("--integrator", options.integrator,
-                 "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by "
-                 "the given files")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
-  app.add_option("--photons", options.light.photons,
-                 ".photons file, or a pattern: indirect and caustic light; with --irradcache, or if the map has only "
-                 "caustic photons, caustic light alone")
-      ->type_name("FILE");
-  app.add_option("--dynamic", options.light.dynamic,
-                 ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the "
-                 "segment's static map")
-      ->type_name("FILE");
-  app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")
-      ->type_name("FILE");
-  app.add_option("--meshirrad", options.light.meshirrad,
-                 ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache")
-      ->type_name("FILE");
-  app.add_option("--points", options.light.points,
-                 ".irradpoints file, or a pattern: a path ends at a hit that a point represents; with --irradcache "
-                 "only paths that find no record do")
-      ->type_name("FILE");
-  app.add_option("--high", options.light.high,
-                 "high part from photonmap-split, or a pattern; --points (without --points: --photons) is then the low "
-                 "part. Without --irradcache bright points are sampled explicitly")
-      ->type_name("FILE");
-  app.add_option("--neighbours", options.light.photon_light.neighbours,
-                 "photons per density estimate of indirect light")
-      ->capture_default_str()
-      ->check(tools::number_between(2, kMaxNeighbours));
-  app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
-                 "photons per density estimate of caustic light: fewer are sharper, more are smoother")
-      ->capture_default_str()
-      ->check(tools::number_between(2, kMaxNeighbours));
+  tool.choice_option(
+      "--integrator", options.integrator, {"auto", "path", "photons", "cache"},
+      "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by "
+      "the given files");
+  tool.file_option("--photons", options.light.photons,
+                   ".photons file, or a pattern: indirect and caustic light; with --irradcache, or if the map has only "
+                   "caustic photons, caustic light alone");
+  tool.file_option("--dynamic", options.light.dynamic,
+                   ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the "
+                   "segment's static map");
+  tool.file_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light");
+  tool.file_option("--meshirrad", options.light.meshirrad,
+                   ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache");
+  tool.file_option("--points", options.light.points,
+                   ".irradpoints file, or a pattern: a path ends at a hit that a point represents; with --irradcache "
+                   "only paths that find no record do");
+  tool.file_option(
+      "--high", options.light.high,
+      "high part from photonmap-split, or a pattern; --points (without --points: --photons) is then the low "
+      "part. Without --irradcache bright points are sampled explicitly");
+  tool.number_option("--neighbours", options.light.photon_light.neighbours, 2, kMaxNeighbours,
+                     "photons per density estimate of indirect light");
+  tool.number_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours, 2, kMaxNeighbours,
+                     "photons per density estimate of caustic light: fewer are sharper, more are smoother");
   app.add_option("--influence", options.light.influence.low,
                  "up to this influence of the movers, as a share of the static irradiance, indirect light is read from "
                  "static records, updated by dynamic photons; from 2.5 times this influence on it is gathered anew; "
@@ -291,19 +279,15 @@ void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   tool.size_option("--size", options.width, options.height, "picture size in pixels");
-  app.add_option("--spp", options.frame.samples, "samples per pixel; with --pixel-error the number of first samples")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 24));
-  app.add_option("--pixel-error", options.pixel_error,
-                 "relative error X that a pixel may have: noisy pixels get n = 12 (sigma / (12 X radiance))^0.875 "
-                 "samples; 0: no further samples; -1: 0.01 with photons or a cache, else 0")
-      ->capture_default_str()
-      ->check(tools::number_between(-1.0, 1.0));
-  app.add_option("--seen-error", options.frame.seen_error,
-                 "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "
-                 "the picture's median to .18; --pixel-error then only distributes the samples; 0: off")
-      ->capture_default_str()
-      ->check(tools::number_between(0.0, 255.0));
+  tool.number_option("--spp", options.frame.samples, 1, 1 << 24,
+                     "samples per pixel; with --pixel-error the number of first samples");
+  tool.number_option("--pixel-error", options.pixel_error, -1.0, 1.0,
+                     "relative error X that a pixel may have: noisy pixels get n = 12 (sigma / (12 X radiance))^0.875 "
+                     "samples; 0: no further samples; -1: 0.01 with photons or a cache, else 0");
+  tool.number_option(
+      "--seen-error", options.frame.seen_error, 0.0, 255.0,
+      "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "
+      "the picture's median to .18; --pixel-error then only distributes the samples; 0: off");
   app.add_flag("--for-filter", options.frame.for_filter,
                "for frames that st-filter will filter: --pixel-error counts only the noise of the layer specular, "
                "which passes the filter");
@@ -311,11 +295,10 @@ void add_options(tools::Tool& tool, Options& options) {
                "do not spread light that a single sample found; without this option --pixel-error spreads it over the "
                "surrounding pixels, which keeps each layer's sum; --integrator path never spreads");
   add_light_options(tool, options);
-  app.add_option("--audit", options.audit,
-                 "report the bias of direct, caustic and indirect light, measured with separate photons and paths that "
-                 "take about this share of the frame's rays; 0: off")
-      ->capture_default_str()
-      ->check(tools::number_between(0.0, 100.0));
+  tool.number_option(
+      "--audit", options.audit, 0.0, 100.0,
+      "report the bias of direct, caustic and indirect light, measured with separate photons and paths that "
+      "take about this share of the frame's rays; 0: off");
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr, halves of spp/2 samples each; the halves are independent of each "
                "other, and of a frame with the same --seed but without --halves");
@@ -326,15 +309,11 @@ void add_options(tools::Tool& tool, Options& options) {
       ->delimiter(',')
       ->type_name("NAMES")
       ->default_str("RGBA,Z,N,id");
-  app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
-      ->type_name("FILE");
-  app.add_option("--base", options.base,
-                 "EXR file, or a pattern, from which the pixels outside --mask are copied, bit for bit")
-      ->type_name("FILE");
+  tool.file_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0");
+  tool.file_option("--base", options.base,
+                   "EXR file, or a pattern, from which the pixels outside --mask are copied, bit for bit");
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
-  app.add_option("--compression", options.compression, "EXR compression")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"zip", "none"}));
+  tool.choice_option("--compression", options.compression, {"zip", "none"}, "EXR compression");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 
@@ -351,7 +330,7 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    check(options, frames);
+    check(tool, options);
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
     warn_of_darkness(tool, input.scene());

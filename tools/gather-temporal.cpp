@@ -182,22 +182,21 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
   chain.files.write(chain.kept, frame, points, history, kept_output.is_stdout() ? "" : kept_output.path(),
-                    [&](const void* data, std::size_t size) { kept_output.write(data, size); });
+                    kept_output.sink());
   kept_output.commit();
   tool.stats().end_phase();
   count(tool, counts, number, !chain.before);
   chain.follow(std::move(frame), points);
 }
 
-void check(const Options& options, const std::vector<int>& frames) {
+void check(const tools::Tool& tool, const Options& options) {
+  const std::vector<int>& frames = tool.common().frames;
   if (options.inputs.size() != 2 || options.inputs[0] != "final")
     throw InputError("'" + options.inputs[0] + "' is not a way to gather over time: final, then the scene");
   if (frames.size() > 1) {
     if (!options.previous.empty())
       throw InputError("--previous: of one frame; with --frames each follows the one before");
-    for (const std::string* name : {&options.output, &options.cache, &options.points, &options.high})
-      if (!name->empty() && !tools::has_frame_pattern(*name))
-        throw InputError("'" + *name + "': several frames need a pattern, for example f.####.irradcache");
+    tool.check_patterns({options.output, options.cache, options.points, options.high});
     if (!std::is_sorted(frames.begin(), frames.end()))
       throw InputError("--frames: each frame follows the one before; name them upwards");
   }
@@ -209,33 +208,25 @@ void add_options(tools::Tool& tool, Options& options) {
       ->required()
       ->expected(1, 2)
       ->type_name("final SCENE");
-  app.add_option("--points", options.points, ".irradpoints file of the frame, or a pattern")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("--high", options.high,
-                 "high part from photonmap-split, .irradpoints, or a pattern; --points is then the low part. Samples "
-                 "hold the light that rays contribute; bright points are sampled explicitly in each frame")
-      ->type_name("FILE");
+  tool.file_option("--points", options.points, ".irradpoints file of the frame, or a pattern")->required();
+  tool.file_option("--high", options.high,
+                   "high part from photonmap-split, .irradpoints, or a pattern; --points is then the low part. Samples "
+                   "hold the light that rays contribute; bright points are sampled explicitly in each frame");
   tool.leave_out_of_history(
-      app.add_option("--previous", options.previous,
-                     ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
-                     "without it the frame is gathered anew")
-          ->type_name("FILE"));
-  app.add_option("--rays", options.gather.rays,
-                 "gather rays per record, one per cell; a record has up to 9 times as many cells where its neighbours "
-                 "found uneven light")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 20));
-  app.add_option("--refresh", options.temporal.refresh,
-                 "share of the cells that are traced in a frame, in records whose light changed: first the cells that "
-                 "motion concerns, then cells drawn by age, at least a quarter of this share")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1));
-  app.add_option("--error-bound", options.placement.error_bound,
-                 "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
-                 "values give more records")
-      ->capture_default_str()
-      ->check(tools::number_between(1e-3, 2.0));
+      tool.file_option("--previous", options.previous,
+                       ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
+                       "without it the frame is gathered anew"));
+  tool.number_option(
+      "--rays", options.gather.rays, 1, 1 << 20,
+      "gather rays per record, one per cell; a record has up to 9 times as many cells where its neighbours "
+      "found uneven light");
+  tool.number_option(
+      "--refresh", options.temporal.refresh, 0, 1,
+      "share of the cells that are traced in a frame, in records whose light changed: first the cells that "
+      "motion concerns, then cells drawn by age, at least a quarter of this share");
+  tool.number_option("--error-bound", options.placement.error_bound, 1e-3, 2.0,
+                     "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
+                     "values give more records");
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
   tool.output_option(options.output, ".radsamples file, or a pattern: the samples from which the next frame follows")
@@ -254,7 +245,7 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    check(options, frames);
+    check(tool, options);
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | tools::SceneInput::a_camera);
     StaticTree standing;

@@ -199,12 +199,10 @@ void check(const tools::Tool& tool, Options& options, bool several) {
     throw InputError(
         "say what to make: a frame of a scene by --scene SCENE --frame F, or what another frame shows by --view FILE");
   if (options.keys.size() > 2) throw InputError("more than two keys; give the one before and the one after the frame");
-  if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+  tool.check_frame_output(options.output);
+  tool.check_patterns({options.flow, options.mask});
   if (!options.view.empty() && (several || !options.flow.empty()))
     throw InputError("--view: shows one frame and knows no others; --frames and --flow need --scene");
-  for (const std::string* name : {&options.output, &options.flow, &options.mask})
-    if (tool.common().frames.size() > 1 && !name->empty() && !tools::has_frame_pattern(*name))
-      throw InputError(*name + ": several frames need a pattern, for example f.####.exr");
   for (const std::string& group : options.channels)
     if (group == "RGBA" || group == "layers" || has_layer_name(group))
       throw InputError("--channels: '" + group +
@@ -219,9 +217,8 @@ void add_options(tools::Tool& tool, Options& options) {
                  "one or two rendered frames, EXR with RGBA, Z and their camera; with N and id better")
       ->type_name("KEY")
       ->required();
-  app.add_option("--scene", options.scene, "glTF 2.0 scene of the keys; --frame is the frame to make")
-      ->type_name("FILE");
-  app.add_option("--view", options.view, "EXR file whose camera and Z define the picture to make")->type_name("FILE");
+  tool.file_option("--scene", options.scene, "glTF 2.0 scene of the keys; --frame is the frame to make");
+  tool.file_option("--view", options.view, "EXR file whose camera and Z define the picture to make");
   tool.output_option(options.flow, "pixel flow, EXR, or a pattern", "--flow");
   tool.output_option(options.mask, "pixels that must be traced, with causes, EXR, or a pattern", "--mask");
   app.add_flag("--separate", options.warp.separate,
@@ -230,17 +227,11 @@ void add_options(tools::Tool& tool, Options& options) {
       ->delimiter(',')
       ->type_name("NAMES")
       ->default_str("Z,N,id");
-  app.add_option("--edge-share", options.warp.edge_share,
-                 "edge pixels are masked if the keys differ by more than this share of the light")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
-  app.add_option("--slow", options.warp.slow_deg_per_s,
-                 "moving pixels slower than this are masked, degrees/s; -1: 1.41, half a pixel between two frames")
-      ->capture_default_str()
-      ->check(tools::number_between(-1));
-  app.add_option("--compression", options.compression, "EXR compression")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"zip", "none"}));
+  tool.number_option("--edge-share", options.warp.edge_share, 0, tools::kNoLimit,
+                     "edge pixels are masked if the keys differ by more than this share of the light");
+  tool.number_option("--slow", options.warp.slow_deg_per_s, -1, tools::kNoLimit,
+                     "moving pixels slower than this are masked, degrees/s; -1: 1.41, half a pixel between two frames");
+  tool.choice_option("--compression", options.compression, {"zip", "none"}, "EXR compression");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 

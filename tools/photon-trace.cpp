@@ -65,10 +65,6 @@ void count(tools::Tool& tool, const PhotonMapResult& result, const tools::Output
   tool.stats().count("refused_rays", double(refused));
 }
 
-auto sink_of(tools::Output& output) {
-  return [&output](const void* data, std::size_t size) { output.write(data, size); };
-}
-
 formats::PhotonHeader header_of(const tools::Tool& tool, const SceneFrame& frame, const EmissionTable& emission,
                                 int number) {
   formats::PhotonHeader header;
@@ -109,8 +105,8 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
       options.updating.updates()
           ? update_map(tool, options.updating,
                        {frame, photons, photon_options, header, tools::frame_name(options.output, frame.frame)},
-                       sink_of(output), kept)
-          : write_photon_map(photons, photon_options, header, sink_of(output),
+                       output.sink(), kept)
+          : write_photon_map(photons, photon_options, header, output.sink(),
                              [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
@@ -174,7 +170,7 @@ void trace_static(tools::Tool& tool, tools::SceneInput& input, const Options& op
   PhotonTracer photons(tracer, lights, photon_options);
   std::optional<MoverWatch> watch;
   if (paths_output) photons.watch(&watch.emplace(std::move(boxes)));
-  const PhotonMapResult result = write_photon_map(photons, photon_options, header, sink_of(output),
+  const PhotonMapResult result = write_photon_map(photons, photon_options, header, output.sink(),
                                                   [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   if (paths_output) {
@@ -187,7 +183,7 @@ void trace_static(tools::Tool& tool, tools::SceneInput& input, const Options& op
     paths.seed = photon_options.seed;
     paths.kinds = photon_options.kinds();
     paths.movers = hashes;
-    formats::PathsWriter writer(sink_of(*paths_output), paths);
+    formats::PathsWriter writer(paths_output->sink(), paths);
     writer.write(result.touched);
     writer.finish();
     paths_output->commit();
@@ -258,7 +254,7 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
 
   tool.stats().phase("trace", true);
   const PhotonTracer whole(tracer, lights, photon_options), without(static_tracer, static_lights, photon_options);
-  const PhotonMapResult result = write_dynamic_map(without, whole, touched, photon_options, header, sink_of(output),
+  const PhotonMapResult result = write_dynamic_map(without, whole, touched, photon_options, header, output.sink(),
                                                    [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
@@ -293,26 +289,22 @@ int main(int argc, char** argv) {
          "--kinds", options.kinds,
          "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")
       ->capture_default_str();
-  app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
+  tool.file_option("--importance", options.importance, tools::kImportanceHelp);
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
-  app.add_option("--map", options.map,
-                 "global: the scene at the frame; static: without movers of the frame's segment; dynamic: the "
-                 "difference, for touched paths")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"global", "static", "dynamic"}));
+  tool.choice_option("--map", options.map, {"global", "static", "dynamic"},
+                     "global: the scene at the frame; static: without movers of the frame's segment; dynamic: the "
+                     "difference, for touched paths");
   tool.output_option(options.paths, "with --map static: also write the paths that movers can touch, .paths", "--paths");
-  app.add_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map")
-      ->type_name("FILE");
-  tools::add_update_options(app, options.updating);
+  tool.file_option("--static", options.static_paths, "with --map dynamic: the .paths file of the segment's static map");
+  tools::add_update_options(tool, options.updating);
   tool.common_options(tools::uses_scene | tools::uses_majorants | tools::uses_seed | tools::uses_camera |
                       tools::uses_frames);
 
   return tool.run([&] {
     check(app, options);
     const std::vector<int>& frames = tool.common().frames;
-    if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
-      throw InputError("--output: several frames need a pattern, for example f.####.photons");
+    tool.check_patterns({options.output});
     tools::check_update_arguments(tool, options.map != "global", options.updating);
     tool.stats().phase("load");
     const unsigned camera = options.importance.empty() ? tools::SceneInput::a_camera : tools::SceneInput::nothing;

@@ -43,10 +43,6 @@ struct Outputs {
   tools::Output low, high;
 };
 
-auto sink_of(tools::Output& output) {
-  return [&output](const void* data, std::size_t size) { output.write(data, size); };
-}
-
 void count_cells(tools::Tool& tool, const FluxCells& cells, double edge) {
   tool.stats().count("cells", double(cells.size()));
   tool.stats().count("bright_cells", double(cells.bright_count()));
@@ -95,7 +91,7 @@ class PhotonFile {
     formats::PhotonReader reader("-", {.digest = false});
     formats::PhotonHeader whole = reader.header();
     whole.base_name.clear(), whole.base_digest.clear();
-    formats::PhotonWriter writer(sink_of(*spool_), whole);
+    formats::PhotonWriter writer(spool_->sink(), whole);
     read_all(reader, [&](const formats::PhotonBlock& block) { writer.write(block); });
     writer.finish(totals_, ledger_);
     spool_->flush();
@@ -137,8 +133,8 @@ void split_photons(tools::Tool& tool, const std::string& path, const Options& op
   file.read("cells", [&](const formats::PhotonBlock& block) { add_flux(block, cells); });
   refuse_part(options.input, file.header().part);
   cells.close(options.energy);
-  formats::PhotonWriter low(sink_of(outputs.low), part_header(tool, file.header(), "low"));
-  formats::PhotonWriter high(sink_of(outputs.high), part_header(tool, file.header(), "high"));
+  formats::PhotonWriter low(outputs.low.sink(), part_header(tool, file.header(), "low"));
+  formats::PhotonWriter high(outputs.high.sink(), part_header(tool, file.header(), "high"));
   file.read("divide", [&](const formats::PhotonBlock& block) {
     const DividedPhotons parts = divide(block, cells);
     low.write(parts.low);
@@ -169,7 +165,7 @@ void split_points(tools::Tool& tool, const std::string& path, const Options& opt
     formats::IrradpointsHeader header = file.header;
     header.history += tool.history_line();
     header.part = part;
-    formats::IrradpointsWriter writer(sink_of(output), header);
+    formats::IrradpointsWriter writer(output.sink(), header);
     writer.write(points);
     writer.finish();
   };
@@ -203,17 +199,13 @@ int main(int argc, char** argv) {
   tools::Tool tool("photonmap-split", "Divide light in two files by brightness: a low and a high part.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")
-      ->required()
-      ->type_name("FILE");
+  tool.file_option("input", options.input, ".photons or .irradpoints file; - for standard input")->required();
   tool.output_option(options.low, "the low part: light of bright cells up to their limit, and all light of other cells",
                      "--low")
       ->required();
   tool.output_option(options.high, "the high part: light of bright cells above their limit", "--high")->required();
-  app.add_option("--energy", options.energy,
-                 "a cell keeps at most this multiple of the mean irradiance in the low part")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
+  tool.number_option("--energy", options.energy, 0, tools::kNoLimit,
+                     "a cell keeps at most this multiple of the mean irradiance in the low part");
   app.add_option("--cell", options.cell,
                  "edge of a cell, metres; auto: four mean distances of points, or 16 of photons (256 photons per cell "
                  "on average)")

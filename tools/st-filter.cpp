@@ -232,21 +232,17 @@ int main(int argc, char** argv) {
                    argc, argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("input", options.frames,
-                 "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("--flow", options.flow,
-                 "pixel flow of the frames, EXR, one file per frame, or a pattern; if not given: the frames' own "
-                 "channels forward and backward")
-      ->type_name("FILE");
+  tool.file_option("input", options.frames,
+                   "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")
+      ->required();
+  tool.file_option("--flow", options.flow,
+                   "pixel flow of the frames, EXR, one file per frame, or a pattern; if not given: the frames' own "
+                   "channels forward and backward");
   app.add_option("--frames", options.range,
                  "filter these frames, each with the two before and after it in this range: 0-47")
       ->type_name("SPEC");
-  app.add_option("--position", options.position,
-                 "number of the input frame that is filtered; 1: the first; 0: the middle one")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1 << 20));
+  tool.number_option("--position", options.position, 0, 1 << 20,
+                     "number of the input frame that is filtered; 1: the first; 0: the middle one");
   app.add_option("--channels", options.channels,
                  "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; if not given: all "
                  "channels of the frame")
@@ -256,7 +252,7 @@ int main(int argc, char** argv) {
   tool.common_options(0);
   return tool.run([&] {
     tools::keep_freed_memory();
-    if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+    tool.check_frame_output(options.output);
     if (options.range.empty()) filter_files(tool, options);
     else filter_range(tool, options);
     return tools::exit_ok;

@@ -134,16 +134,14 @@ int main(int argc, char** argv) {
                    argc, argv);
   Request request;
   CLI::App& app = tool.app();
-  app.add_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
-      ->type_name("FILE")
+  tool.file_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
       ->required();
   CLI::Option* check = app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
   CLI::Option* digest = app.add_flag("--digest", request.digest, "hash of the data, without header and history");
   CLI::Option* diff = app.add_flag("--diff", request.diff, "differences of two files; exit 1 if their data differ");
   CLI::Option* account =
       app.add_flag("--account", request.account, "bias of the light of several frames together, from their audits");
-  app.add_option("--scene", request.scene, "glTF scene of the files: its objects get their names beside their ids")
-      ->type_name("FILE")
+  tool.file_option("--scene", request.scene, "glTF scene of the files: its objects get their names beside their ids")
       ->excludes(check, digest, diff, account);
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* exported = tool.output_option(
@@ -159,14 +157,10 @@ int main(int argc, char** argv) {
   app.add_option("--exposure", request.exposure, "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
       ->type_name("STOPS")
       ->capture_default_str();
-  app.add_option("--columns", request.picture.columns, "columns of --sheet; 0: about square")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1000));
-  app.add_option("--tile", request.picture.tile_width, "largest width of an image in --sheet, pixels")
-      ->type_name("PX")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 65536));
+  tool.number_option("--columns", request.picture.columns, 0, 1000, "columns of --sheet; 0: about square")
+      ->type_name("N");
+  tool.number_option("--tile", request.picture.tile_width, 1, 65536, "largest width of an image in --sheet, pixels")
+      ->type_name("PX");
   app.add_option("--mark", request.picture.marked, "files whose pictures get a border in --sheet, such as key frames")
       ->type_name("FILES")
       ->delimiter(',')

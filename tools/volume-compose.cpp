@@ -199,35 +199,20 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
 void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  app.add_option("--photons", options.photons, ".photons file with photons in media, or a pattern")
-      ->type_name("FILE")
-      ->required();
-  app.add_option(
-         "--points", options.points,
-         ".irradpoints file, or a pattern: rays from the eye find light in a peak of the phase function and end at "
-         "these points; without points photons give this light, with more noise. Read only if |g| is above about .7")
-      ->type_name("FILE");
-  app.add_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")
-      ->type_name("FILE")
-      ->required();
-  app.add_option("--direct", options.direct,
-                 "direct light: rays: lamps are sampled, with shadows; photons: by density, as all other light")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"rays", "photons"}));
-  app.add_option("--spp", options.compose.samples, "rays per pixel")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 4096));
-  app.add_option("--light-samples", options.compose.light_samples, "samples of the lamps for each ray")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 4096));
-  app.add_option("--cell", options.light.cell,
-                 "edge of the cells in which photons are summed, m; 0: that of the finest voxel")
-      ->capture_default_str()
-      ->check(tools::number_between(0));
-  app.add_option("--filter-width", options.light.filter_width,
-                 "standard deviation of the Gaussian that smooths them, cells; 0: so wide that 256 photons count")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 64));
+  tool.file_option("--photons", options.photons, ".photons file with photons in media, or a pattern")->required();
+  tool.file_option(
+      "--points", options.points,
+      ".irradpoints file, or a pattern: rays from the eye find light in a peak of the phase function and end at "
+      "these points; without points photons give this light, with more noise. Read only if |g| is above about .7");
+  tool.file_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")->required();
+  tool.choice_option("--direct", options.direct, {"rays", "photons"},
+                     "direct light: rays: lamps are sampled, with shadows; photons: by density, as all other light");
+  tool.number_option("--spp", options.compose.samples, 1, 4096, "rays per pixel");
+  tool.number_option("--light-samples", options.compose.light_samples, 1, 4096, "samples of the lamps for each ray");
+  tool.number_option("--cell", options.light.cell, 0, tools::kNoLimit,
+                     "edge of the cells in which photons are summed, m; 0: that of the finest voxel");
+  tool.number_option("--filter-width", options.light.filter_width, 0, 64,
+                     "standard deviation of the Gaussian that smooths them, cells; 0: so wide that 256 photons count");
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
@@ -242,9 +227,7 @@ int main(int argc, char** argv) {
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
-      throw InputError("--output: several frames need a pattern, for example f.####.exr");
-    if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+    tool.check_frame_output(options.output);
     options.light.direct = options.direct == "photons";
     options.compose.sample_lights = !options.light.direct;
     tool.stats().phase("load");

@@ -88,18 +88,17 @@ MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& fir
 
 }  // namespace
 
-void add_count_options(CLI::App& app, CountOptions& options) {
-  app.add_option("--photons", options.photons, ".photons file of the frame, or a pattern")->type_name("FILE");
-  app.add_option("--kinds", options.kinds,
-                 "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
-                 "caustic,indirect without a map")
+void add_count_options(Tool& tool, CountOptions& options) {
+  tool.file_option("--photons", options.photons, ".photons file of the frame, or a pattern");
+  tool.app()
+      .add_option("--kinds", options.kinds,
+                  "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
+                  "caustic,indirect without a map")
       ->delimiter(',')
       ->type_name("NAMES")
       ->default_str("indirect")
       ->check(CLI::IsMember({"direct", "caustic", "indirect"}));
-  app.add_option("--cell", options.mesh.cell, "longest edge of an element, m; 0: the filter's width")
-      ->capture_default_str()
-      ->check(number_between(0));
+  tool.number_option("--cell", options.mesh.cell, 0, kNoLimit, "longest edge of an element, m; 0: the filter's width");
 }
 
 CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const Tracer& tracer) {
@@ -142,7 +141,7 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
 
 void write_mesh(Tool& tool, const formats::MeshirradFile& file, Output& output) {
   tool.stats().phase("write");
-  formats::write_meshirrad([&](const void* data, std::size_t size) { output.write(data, size); }, file);
+  formats::write_meshirrad(output.sink(), file);
   output.commit();
   tool.stats().end_phase();
   tool.stats().count("elements", double(file.elements.size()));

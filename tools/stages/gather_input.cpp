@@ -161,7 +161,7 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   header.emitted_count = points.emitted_count;
   header.kinds = points.kinds;
   header.columns = formats::column_points_noise;
-  formats::IrradpointsWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  formats::IrradpointsWriter writer(output.sink(), header);
   writer.write(to_file(points.points, frame));
   writer.finish();
   output.commit();
@@ -186,7 +186,7 @@ formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<cons
 
 void write_records(const formats::IrradcacheHeader& header, const std::vector<formats::IrradianceCacheRecord>& records,
                    Output& output) {
-  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  formats::IrradcacheWriter writer(output.sink(), header);
   writer.write(records);
   writer.finish();
   output.commit();

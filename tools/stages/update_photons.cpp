@@ -88,40 +88,43 @@ PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t ex
 
 }  // namespace
 
-void add_update_options(CLI::App& app, UpdateArguments& arguments) {
-  app.add_option("--update", arguments.update,
-                 "map of the previous frame, or a pattern: its groups are kept, except those that are traced again; "
-                 "needs photons in media and --majorants")
-      ->type_name("FILE");
-  app.add_option("--share", arguments.share,
-                 "with --update: share of the paths that are traced again, such as 10%, including pilots")
+void add_update_options(Tool& tool, UpdateArguments& arguments) {
+  tool.file_option("--update", arguments.update,
+                   "map of the previous frame, or a pattern: its groups are kept, except those that are traced again; "
+                   "needs photons in media and --majorants");
+  tool.app()
+      .add_option("--share", arguments.share,
+                  "with --update: share of the paths that are traced again, such as 10%, including pilots")
       ->type_name("PERCENT");
   std::vector<std::string> names;
   for (const auto& [name, strategy] : kStrategies) names.push_back(name);
-  app.add_option("--strategy", arguments.strategy,
-                 "groups that are traced again first. oldest; random; census: groups whose stored photons saw the "
-                 "largest change of smoke. By pilots: fde: pilots that see another extinction; dip: pilots that smoke "
-                 "scatters at other places; hybrid: the amount of change along pilots; path: pilots that take another "
-                 "path. all: every group. Priorities are multiplied by age, except for oldest and random")
-      ->capture_default_str()
-      ->check(CLI::IsMember(names));
-  app.add_option("--pilots", arguments.pilots,
-                 "for a map that will be updated by pilots: share of each group's paths that are pilots, such as 3%; "
-                 "at least one path, at most 256")
+  tool.choice_option(
+      "--strategy", arguments.strategy, names,
+      "groups that are traced again first. oldest; random; census: groups whose stored photons saw the "
+      "largest change of smoke. By pilots: fde: pilots that see another extinction; dip: pilots that smoke "
+      "scatters at other places; hybrid: the amount of change along pilots; path: pilots that take another "
+      "path. all: every group. Priorities are multiplied by age, except for oldest and random");
+  tool.app()
+      .add_option("--pilots", arguments.pilots,
+                  "for a map that will be updated by pilots: share of each group's paths that are pilots, such as 3%; "
+                  "at least one path, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
   // For comparison with the papers, so --help does not show them: docs/methods/volume_photons.md.
-  app.add_option("--age-floor", arguments.how.age_floor,
-                 "of --update: groups as many frames old go before all others; 0: none")
+  tool.app()
+      .add_option("--age-floor", arguments.how.age_floor,
+                  "of --update: groups as many frames old go before all others; 0: none")
       ->group("")
       ->check(number_between(0, 1e6));
-  app.add_option("--age-power", arguments.how.age_power,
-                 "of --update: priorities are times age to this power; 0: as in the papers")
+  tool.app()
+      .add_option("--age-power", arguments.how.age_power,
+                  "of --update: priorities are times age to this power; 0: as in the papers")
       ->group("")
       ->check(number_between(0, 16));
-  app.add_option("--refine", arguments.refine,
-                 "add this many paths (10k, 1M) to the groups in which they reduce the noise of light in smoke most, "
-                 "instead of tracing groups again; --update is then the map of the frame itself")
+  tool.app()
+      .add_option("--refine", arguments.refine,
+                  "add this many paths (10k, 1M) to the groups in which they reduce the noise of light in smoke most, "
+                  "instead of tracing groups again; --update is then the map of the frame itself")
       ->type_name("N")
       ->capture_default_str();
 }

@@ -19,7 +19,7 @@ struct UpdateArguments {
   bool updates() const { return !update.empty(); }
 };
 
-void add_update_options(CLI::App& app, UpdateArguments& arguments);
+void add_update_options(Tool& tool, UpdateArguments& arguments);
 /// Refuses options that contradict each other, and sets `how`. `static_or_dynamic`: true if --map is "static" or
 /// "dynamic".
 void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments);
