@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <string_view>
 #include <unordered_set>
@@ -151,6 +152,11 @@ std::string frame_name(const std::string& pattern, int frame) {
     }
   }
   return name;
+}
+
+std::string name_with(const std::string& path, const std::string& ending) {
+  const std::filesystem::path name(path);
+  return (name.parent_path() / name.stem()).string() + ending + name.extension().string();
 }
 
 bool has_frame_pattern(const std::string& pattern) {
