@@ -24,7 +24,7 @@ namespace {
 struct Request {
   std::vector<std::string> files;
   bool check = false, digest = false, diff = false, json = false, account = false;
-  std::string exported, png, sheet, scene, exposure = "auto";
+  std::string exported, png, sheet, scene;
   tools::PictureOptions picture;
 };
 
@@ -82,12 +82,6 @@ const std::string& only_file(const Request& request, const char* option) {
 }
 
 int answer(tools::Tool& tool, Request& request) {
-  if (request.exposure != "auto") {
-    double stops = 0;
-    if (!CLI::detail::lexical_cast(request.exposure, stops) || !(stops > -200 && stops < 200))
-      throw InputError("--exposure: '" + request.exposure + "' is neither auto nor a number of stops");
-    request.picture.exposure_stops = stops;
-  }
   for (const std::string& file : request.files) tool.depends_on(file);
   if (request.diff) {
     if (request.files.size() != 2) throw InputError("--diff: takes two files");
@@ -154,9 +148,9 @@ int main(int argc, char** argv) {
                  "layer or channel to show, such as indirect, Z, N; none: R, G, B; for a .meshirrad file: window (33 "
                  "frames: white) or age (red: later frames, blue: earlier ones)")
       ->type_name("NAME");
-  app.add_option("--exposure", request.exposure, "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
-      ->type_name("STOPS")
-      ->capture_default_str();
+  tool.auto_option("--exposure", request.picture.exposure_stops, -200, 200,
+                   "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
+      ->type_name("STOPS");
   tool.number_option("--columns", request.picture.columns, 0, 1000, "columns of --sheet; 0: about square")
       ->type_name("N");
   tool.number_option("--tile", request.picture.tile_width, 1, 65536, "largest width of an image in --sheet, pixels")

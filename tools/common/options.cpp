@@ -246,6 +246,21 @@ template CLI::Option* Tool::number_option(const std::string&, int&, double, doub
 template CLI::Option* Tool::number_option(const std::string&, float&, double, double, const std::string&);
 template CLI::Option* Tool::number_option(const std::string&, double&, double, double, const std::string&);
 
+CLI::Option* Tool::auto_option(const std::string& names, std::optional<double>& number, double least, double most,
+                               const std::string& help) {
+  return parsed_option(state_->app, names, help, "auto", [&number, least, most](const std::string& text) {
+    double value = 0;
+    const bool valid = CLI::detail::lexical_cast(text, value) && value > least && value < most;
+    if (!valid && text != "auto") {
+      std::ostringstream limits;
+      limits << "above " << least;
+      if (most < kNoLimit) limits << " and below " << most;
+      throw InputError("'" + text + "' is neither auto nor a number " + limits.str());
+    }
+    number = valid ? std::optional(value) : std::nullopt;
+  });
+}
+
 CLI::Option* Tool::count_option(const std::string& names, std::uint64_t& count, const std::string& help) {
   return parsed_option(state_->app, names, help, format_count(count),
                        [&count](const std::string& text) { count = parse_count(text); })

@@ -113,6 +113,9 @@ class Tool {
   template <class Number>  // int, float or double
   CLI::Option* number_option(const std::string& names, Number& number, double least, double most,
                              const std::string& help);
+  /// Adds an option whose value is a number between `least` and `most`, both excluded, or the word auto: no number.
+  CLI::Option* auto_option(const std::string& names, std::optional<double>& number, double least, double most,
+                           const std::string& help);
   /// Adds an option whose value is a count ("1M"), bytes ("2GiB") or "WIDTHxHEIGHT"; the default shown by
   /// --help is the variable's value.
   CLI::Option* count_option(const std::string& names, std::uint64_t& count, const std::string& help);

@@ -1,6 +1,7 @@
 // tools/stages/update_photons.h -- photon-trace --update and --refine: makes a map from an earlier one.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -14,7 +15,7 @@ namespace tempolux::tools {
 struct UpdateArguments {
   std::string update;  ///< file or pattern; "": no earlier map
   std::string share, pilots = "0%", strategy = "oldest";
-  std::string refine = "0";
+  std::uint64_t refine = 0;  ///< further paths
   UpdateOptions how;
   bool updates() const { return !update.empty(); }
 };
