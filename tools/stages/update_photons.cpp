@@ -109,11 +109,7 @@ void add_update_options(Tool& tool, UpdateArguments& arguments) {
                  "at least one path, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
-  // For comparison with the papers, so --help does not show them: docs/methods/volume_photons.md.
-  app.add_option("--age-floor", arguments.how.age_floor,
-                 "of --update: groups as many frames old go before all others; 0: none")
-      ->group("")
-      ->check(number_between(0, 1e6));
+  // For comparison with the papers, so --help does not show it: docs/methods/volume_photons.md.
   app.add_option("--age-power", arguments.how.age_power,
                  "of --update: priorities are times age to this power; 0: as in the papers")
       ->group("")
