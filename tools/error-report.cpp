@@ -48,7 +48,7 @@ ReportInput read_input(const Options& o) {
 }
 
 Plots draw(tools::Tool& tool, const std::vector<SceneReport>& scenes) {
-  constexpr double kTimeout = 60;  // s that gnuplot may take for a plot
+  constexpr int kTimeout = 60;  // s that gnuplot may take for a plot
   Plots plots;
   for (const SceneReport& scene : scenes)
     for (const PlotFormat format : {PlotFormat::svg, PlotFormat::png}) {

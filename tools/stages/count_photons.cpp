@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "lib/gather/gather_points.h"
 #include "lib/temporal/light_jumps.h"
 #include "tools/common/option_words.h"
 
@@ -41,7 +42,7 @@ formats::PhotonMap read_map(Tool& tool, const std::string& name, const SceneFram
     throw InputError(name + ": holds a part of the light (" +
                      (map.header.part.empty() ? map.header.map : map.header.part) + "); name a global map");
   for (const std::string& kind : options.kinds)
-    if (("," + map.header.kinds + ",").find("," + kind + ",") == std::string::npos)
+    if (!holds_kind(map.header.kinds, kind))
       throw InputError(name + ": has no photons of kind " + kind + "; trace them with --kinds, or leave the kind out");
   return map;
 }
@@ -114,10 +115,9 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
   if (options.for_windows) measured = segment.measured();
   mesh = options.for_windows ? widths_of_windows(options, *measured.front(), map.header.emitted_count)
                              : with_widths(options.mesh, frame, map.photons.size());
-  const auto& o = map.header.origin;
   const auto& emitted = map.totals.emitted_flux;
   MeshSums sums(tracer, MeshCuts(mesh.cell, measured), unit_of(emitted[0] + emitted[1] + emitted[2]));
-  sums.add(map.photons, Vec3(Vec3d{o[0], o[1], o[2]} - frame.origin));
+  sums.add(map.photons, Vec3(shift_of(map.header.origin, frame)));
   file.elements = all_elements(frame, sums.cuts());
   put_sums(sums, file.elements);
   file.header.history = map.header.history;
