@@ -14,7 +14,6 @@
 #include "formats/error.h"
 #include "lib/report/gnuplot.h"
 #include "lib/report/report_page.h"
-#include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 
 using namespace tempolux;

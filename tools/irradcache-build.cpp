@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 #include "tools/stages/build_records.h"
 #include "tools/stages/importance.h"

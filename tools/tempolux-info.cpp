@@ -12,7 +12,6 @@
 
 #include "formats/error.h"
 #include "lib/scene/gltf_load.h"
-#include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 #include "tools/info/info_facts.h"
 

@@ -15,7 +15,6 @@
 #include "lib/gather/final_gather.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
-#include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
 #include "tools/stages/gather_input.h"

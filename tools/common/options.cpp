@@ -234,13 +234,13 @@ CLI::Option* Tool::file_option(const std::string& names, std::vector<std::string
 
 CLI::Option* Tool::choice_option(const std::string& names, std::string& word, const std::vector<std::string>& words,
                                  const std::string& help) {
-  return state_->choice_option(names, word, words, help);
+  return state_->app.add_option(names, word, help)->capture_default_str()->check(CLI::IsMember(words));
 }
 
 template <class Number>
 CLI::Option* Tool::number_option(const std::string& names, Number& number, double least, double most,
                                  const std::string& help) {
-  return state_->number_option(names, number, least, most, help);
+  return state_->app.add_option(names, number, help)->capture_default_str()->check(number_between(least, most));
 }
 template CLI::Option* Tool::number_option(const std::string&, int&, double, double, const std::string&);
 template CLI::Option* Tool::number_option(const std::string&, float&, double, double, const std::string&);

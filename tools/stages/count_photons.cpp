@@ -7,7 +7,6 @@
 
 #include "lib/gather/gather_points.h"
 #include "lib/temporal/light_jumps.h"
-#include "tools/common/option_words.h"
 
 namespace tempolux::tools {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "formats/text_header.h"
 #include "tools/stages/count_photons.h"
-#include "tools/common/option_words.h"
 
 namespace tempolux::tools {
 namespace {

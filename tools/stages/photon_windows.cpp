@@ -10,7 +10,6 @@
 #include "formats/text_header.h"
 #include "lib/temporal/photon_windows.h"
 #include "tools/stages/count_photons.h"
-#include "tools/common/option_words.h"
 
 namespace tempolux::tools {
 namespace {

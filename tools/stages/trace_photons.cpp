@@ -1,5 +1,6 @@
 #include "tools/stages/trace_photons.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
 #include <memory>
