@@ -25,6 +25,9 @@ struct Request {
   bool check = false, digest = false, diff = false, json = false, account = false;
   std::string exported, png, sheet, scene;
   tools::PictureOptions picture;
+
+  /// The file to write, by the one option that names it; "": none.
+  const std::string& written() const { return !sheet.empty() ? sheet : !png.empty() ? png : exported; }
 };
 
 void print(const Facts& facts, bool as_json) {
@@ -96,36 +99,21 @@ int answer(tools::Tool& tool, Request& request) {
     for (const std::string& warning : account.warnings) tool.warn(warning);
     return tools::exit_ok;
   }
-  if (!request.sheet.empty()) {
-    tools::Output output(request.sheet);
-    request.picture.progress = [&](double done) { tool.progress(done); };
-    tools::write_sheet(request.files, request.picture, output);
-    output.commit();
-  } else if (!request.png.empty()) {
-    tools::Output output(request.png);
-    tools::write_picture(only_file(request, "--png"), request.picture, output);
-    output.commit();
-  } else if (!request.exported.empty()) {
-    using Kind = tools::Output::Kind;
-    const bool ply = request.exported.ends_with(".ply");
-    if (!ply && request.exported != "-" && !request.exported.ends_with(".csv"))
-      throw InputError("--export " + request.exported + ": the name must end in .ply or .csv");
-    tools::Output output(request.exported, ply ? Kind::binary : Kind::text);
-    tools::export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);
-    output.commit();
-  } else {
-    return print_files(tool, request);
-  }
+  if (request.written().empty()) return print_files(tool, request);
+  const bool ply = request.exported.ends_with(".ply");
+  if (!request.exported.empty() && !ply && request.exported != "-" && !request.exported.ends_with(".csv"))
+    throw InputError("--export " + request.exported + ": the name must end in .ply or .csv");
+  using Kind = tools::Output::Kind;
+  tools::Output output(request.written(), request.exported.empty() || ply ? Kind::binary : Kind::text);
+  request.picture.progress = [&](double done) { tool.progress(done); };
+  if (!request.sheet.empty()) tools::write_sheet(request.files, request.picture, output);
+  else if (!request.png.empty()) tools::write_picture(only_file(request, "--png"), request.picture, output);
+  else tools::export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);
+  output.commit();
   return tools::exit_ok;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  tools::Tool tool("tempolux-info",
-                   "Show what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
-                   argc, argv);
-  Request request;
+void declare(tools::Tool& tool, Request& request) {
   CLI::App& app = tool.app();
   tool.file_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
       ->required();
@@ -163,6 +151,16 @@ int main(int argc, char** argv) {
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("tempolux-info",
+                   "Show what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
+                   argc, argv);
+  Request request;
+  declare(tool, request);
   tool.common_options(0);
   return tool.run([&] { return answer(tool, request); });
 }

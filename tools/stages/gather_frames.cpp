@@ -94,37 +94,44 @@ void read_previous(Tool& tool, SceneInput& input, const std::string& file, const
   check_identity(tool, file, header.identity, *chain.before);
 }
 
-/// Gathers one frame from the previous one in `chain`, and stores it there.
-void gather_frame(Tool& tool, SceneInput& input, const TemporalGatherOptions& options, int number, StaticTree& standing,
-                  Chain& chain) {
-  const bool single = !options.previous.empty();
-  const std::string samples = frame_name(options.output, number), cache = frame_name(options.cache, number);
-  tool.stats().phase("evaluate");
-  SceneFrame frame = input.at(number);
-  tool.stats().phase("read points");
-  FramePoints points = read_frame_points(tool, frame_name(options.points, number),
-                                         options.high.empty() ? "" : frame_name(options.high, number), frame);
-  const std::string history = points.read.history + tool.history_line(number);
-  Output kept_output(samples), cache_output(cache);
-  if (single && !chain.before) {
+/// Prepares the chain for a frame: reads the previous frame where it is a file, and forgets it in a new segment.
+void continue_chain(Tool& tool, SceneInput& input, const TemporalGatherOptions& options, const SceneFrame& frame,
+                    const FramePoints& points, Chain& chain) {
+  if (!options.previous.empty() && !chain.before) {
     tool.stats().phase("read samples");
     chain.kept = {};
     read_previous(tool, input, options.previous, frame, points, chain);
   }
   if (chain.before && chain.before->segment.first != frame.segment.first) chain.before.reset();
-  check_points(chain, frame_name(options.points, number), points);
+  check_points(chain, options.points, points);
   if (!chain.before) chain.kept = {};
+}
+
+/// Direction towards the camera from a place that it sees, as TemporalScene::eye needs it.
+std::optional<Vec3> eye_from(const CameraView& view, Vec3 place) {
+  const auto at = view.project(place);
+  if (!at) return std::nullopt;
+  return view.ray(float((*at)[0]), float((*at)[1])).origin;
+}
+
+/// Gathers one frame from the previous one in `chain`, and stores it there.
+void gather_frame(Tool& tool, SceneInput& input, TemporalGatherOptions options, int number, StaticTree& standing,
+                  Chain& chain) {
+  for (std::string* name : {&options.output, &options.cache, &options.points, &options.high})
+    *name = frame_name(*name, number);
+  tool.stats().phase("evaluate");
+  SceneFrame frame = input.at(number);
+  tool.stats().phase("read points");
+  FramePoints points = read_frame_points(tool, options.points, options.high, frame);
+  const std::string history = points.read.history + tool.history_line(number);
+  Output kept_output(options.output), cache_output(options.cache);
+  continue_chain(tool, input, options, frame, points, chain);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   const PointLookup lookup(points.read.points, points.read.spacing, point_clearance(tracer));
   const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width,
                         options.height);
-  const auto eye = [&](Vec3 place) -> std::optional<Vec3> {
-    const auto at = view.project(place);
-    if (!at) return std::nullopt;
-    return view.ray(float((*at)[0]), float((*at)[1])).origin;
-  };
   const TemporalScene scene{tracer,
                             lights,
                             lookup,
@@ -133,7 +140,7 @@ void gather_frame(Tool& tool, SceneInput& input, const TemporalGatherOptions& op
                             chain.before ? &*chain.before : nullptr,
                             points.high_shares,
                             points.high_hash,
-                            eye};
+                            [&](Vec3 place) { return eye_from(view, place); }};
   GatherOptions rays = options.gather;
   rays.seed = tool.common().seed_for_frame(number);
   std::optional<BrightPoints> bright;

@@ -1,7 +1,5 @@
 #include "tools/stages/update_photons.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "formats/error.h"
 #include "formats/photons/layout.h"
+#include "lib/core/machine_memory.h"
 #include "lib/photon/photon_ledger.h"
 #include "lib/photon/photon_refine.h"
 #include "tools/common/arguments.h"
@@ -56,7 +55,7 @@ std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& 
 /// True if the map takes at most a quarter of the memory.
 bool may_keep(const Tool& tool, std::uint64_t photons) {
   constexpr std::uint64_t bytes_of_photon = sizeof(formats::Photon) + sizeof(std::array<std::uint16_t, 2>);
-  auto memory = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+  std::uint64_t memory = machine_memory();
   if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0) memory = std::min(memory, limit);
   return photons <= memory / 4 / bytes_of_photon;
 }
