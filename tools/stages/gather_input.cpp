@@ -119,8 +119,9 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
 
 DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high,
                                       const SceneFrame& frame, LightNeeded needed) {
-  DividedPhotonMap map{load_map(tool, low), load_map(tool, high)};
+  DividedPhotonMap map{load_map(tool, low), {}};
   require_part(low, map.whole.header.part, "low", "--photons");
+  map.high = load_map(tool, high);
   require_part(high, map.high.header.part, "high", "--high");
   const formats::PhotonHeader &one = map.whole.header, &other = map.high.header;
   // Both parts must come from one map: the same paths, emitted flux and state of the scene.
