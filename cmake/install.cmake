@@ -4,13 +4,14 @@ get_property(tools GLOBAL PROPERTY TEMPOLUX_TOOLS)
 if(tools)
   install(TARGETS ${tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
-# Man pages and completion, each made by the tool from its own options.
+# Man pages, made from docs/tools, and completion, made by each tool from its own options.
 set(pages)
 foreach(tool ${tools})
   set(page ${CMAKE_BINARY_DIR}/share/man/man1/${tool}.1)
   set(completion ${CMAKE_BINARY_DIR}/share/bash-completion/completions/${tool})
-  add_custom_command(OUTPUT ${page} ${completion} DEPENDS ${tool} VERBATIM
-                     COMMAND $<TARGET_FILE:${tool}> --help-man > ${page}
+  set(text ${CMAKE_SOURCE_DIR}/docs/tools/${tool}.md)
+  add_custom_command(OUTPUT ${page} ${completion} DEPENDS ${tool} ${text} ${CMAKE_SOURCE_DIR}/cmake/man_page.awk VERBATIM
+                     COMMAND awk -v version=${PROJECT_VERSION} -f ${CMAKE_SOURCE_DIR}/cmake/man_page.awk ${text} > ${page}
                      COMMAND $<TARGET_FILE:${tool}> --help-completion > ${completion})
   list(APPEND pages ${page} ${completion})
 endforeach()

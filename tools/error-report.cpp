@@ -14,7 +14,6 @@
 #include "formats/error.h"
 #include "lib/report/gnuplot.h"
 #include "lib/report/report_page.h"
-#include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 
 using namespace tempolux;
@@ -48,7 +47,7 @@ ReportInput read_input(const Options& o) {
 }
 
 Plots draw(tools::Tool& tool, const std::vector<SceneReport>& scenes) {
-  constexpr double kTimeout = 60;  // s that gnuplot may take for a plot
+  constexpr int kTimeout = 60;  // s that gnuplot may take for a plot
   Plots plots;
   for (const SceneReport& scene : scenes)
     for (const PlotFormat format : {PlotFormat::svg, PlotFormat::png}) {

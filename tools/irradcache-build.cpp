@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 #include "tools/stages/build_records.h"
 #include "tools/stages/importance.h"
@@ -35,7 +34,8 @@ void refuse_unread(const CLI::App& app, const std::string& step, const std::vect
     if (app.get_option(name)->count() > 0) throw InputError(name + ": " + step + " does not read it; leave it out");
 }
 
-void check(const CLI::App& app, const Options& options, const std::vector<int>& frames) {
+void check(tools::Tool& tool, const Options& options) {
+  const CLI::App& app = tool.app();
   const std::string mode = options.mode();
   if (mode != "both" && mode != "points" && mode != "records")
     throw InputError("'" + options.inputs[0] + "' is not a step: it is points, records, or nothing for both");
@@ -63,8 +63,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (options.point_count < 1 || options.point_count > kMaxPoints)
     throw InputError("--point-count: " + std::to_string(options.point_count) + " is not from 1 to " +
                      std::to_string(kMaxPoints));
-  if (mode == "points" && frames.size() > 1 && !tools::has_frame_pattern(options.output))
-    throw InputError("--output: several frames need a pattern, for example f.####.irradpoints");
+  if (mode == "points") tool.check_patterns({options.output});
 }
 
 void add_options(tools::Tool& tool, Options& options) {
@@ -73,44 +72,33 @@ void add_options(tools::Tool& tool, Options& options) {
       ->required()
       ->expected(1, 2)
       ->type_name("[points|records] SCENE");
-  app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light")
-      ->type_name("FILE");
-  app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
-      ->type_name("FILE");
-  app.add_option("--high", options.high,
-                 "high part from photonmap-split; --points or --photons is then the low part, in the same format. "
-                 "Records sample bright points explicitly; points hold the light of both parts")
-      ->type_name("FILE");
+  tool.file_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light");
+  tool.file_option("--points", options.points, ".irradpoints file of this frame, instead of --photons");
+  tool.file_option("--high", options.high,
+                   "high part from photonmap-split; --points or --photons is then the low part, in the same format. "
+                   "Records sample bright points explicitly; points hold the light of both parts");
   tool.count_option("--point-count", options.point_count,
                     "irradiance points per side of all static surfaces; movers get as many per area");
-  app.add_option("--importance", options.importance, tools::kImportanceHelp)->type_name("FILE");
-  app.add_option("--map", options.map,
-                 "global: the scene at the frame; static: points and records of the static scene of the frame's "
-                 "segment, from its static map and points")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"global", "static"}));
-  app.add_option("--update", options.update,
-                 "static file to update to this frame: .irradpoints, with --photons (the static map) and --dynamic; or "
-                 ".irradcache, with --points and --dynamic")
-      ->type_name("FILE");
-  app.add_option(
-         "--dynamic", options.dynamic,
-         "with --update: .photons file of this frame from photon-trace --map dynamic. For records the files of earlier "
-         "frames may follow: where movers changed the light in those frames, records are gathered anew, too")
-      ->type_name("FILE");
-  app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 4096));
-  app.add_option("--rays", options.gather.rays,
-                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 1 << 20));
-  app.add_option("--error-bound", options.placement.error_bound,
-                 "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
-                 "values give more records. A record counts where normals differ by less than 50 degrees times this "
-                 "value, but at least 5 and at most 20 degrees")
-      ->capture_default_str()
-      ->check(tools::number_between(1e-3, 2.0));
+  tool.file_option("--importance", options.importance, tools::kImportanceHelp);
+  tool.choice_option("--map", options.map, {"global", "static"},
+                     "global: the scene at the frame; static: points and records of the static scene of the frame's "
+                     "segment, from its static map and points");
+  tool.file_option(
+      "--update", options.update,
+      "static file to update to this frame: .irradpoints, with --photons (the static map) and --dynamic; or "
+      ".irradcache, with --points and --dynamic");
+  tool.file_option(
+      "--dynamic", options.dynamic,
+      "with --update: .photons file of this frame from photon-trace --map dynamic. For records the files of earlier "
+      "frames may follow: where movers changed the light in those frames, records are gathered anew, too");
+  tool.number_option("--light-samples", options.point.light_samples, 1, 4096, "shadow rays per point for direct light");
+  tool.number_option("--rays", options.gather.rays, 1, 1 << 20,
+                     "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many");
+  tool.number_option(
+      "--error-bound", options.placement.error_bound, 1e-3, 2.0,
+      "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "
+      "values give more records. A record counts where normals differ by less than 50 degrees times this "
+      "value, but at least 5 and at most 20 degrees");
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
   tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();
@@ -128,7 +116,7 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    check(tool.app(), options, frames);
+    check(tool, options);
     options.point.count = std::uint32_t(options.point_count);
     const bool makes_points = options.mode() == "points" || !options.photons.empty();
     std::optional<tools::Importance> importance;

@@ -94,31 +94,27 @@ void plan_range(tools::Tool& tool, const Options& options, const std::string& ar
 
 /// Options that choose the methods.
 void add_methods(tools::Tool& tool, Options& options) {
-  CLI::App& app = tool.app();
   Wish& wish = options.wish;
-  const auto choice = [&](const char* name, std::string& value, const char* help,
-                          const std::vector<std::string>& values) {
-    app.add_option(name, value, help)->capture_default_str()->check(CLI::IsMember(values));
-  };
-  choice("--quality", options.quality, "draft: more noise, in less than half of the time; final", {"draft", "final"});
-  choice("--method", options.method,
-         "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
-         "walkthrough where it pays; preview: fast, with light textures from the photons of many frames",
-         {"frames", "walkthrough", "auto", "preview"});
-  choice("--filter", options.filter,
-         "number of frames in the filter's window, 1: each frame alone; a frame is filtered where the halves of its "
-         "samples show that it helps; none: no filter; auto: 1, or none with --words pixels:...",
-         {"auto", "none", "1", "3", "5", "7", "9"});
-  choice("--indirect", wish.indirect,
-         "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
-         {"auto", "records", "gather", "paths"});
-  choice("--moving", wish.moving,
-         "what a frame takes from the static light of its segment: anew: nothing; light: photons and points; records: "
-         "photons, points and records; time: photons and points, and records keep their incoming light from frame to "
-         "frame; auto: the cheapest by a pilot",
-         {"auto", "anew", "light", "records", "time"});
-  choice("--split", wish.split, "on: bright points are sampled explicitly; auto: where a pilot finds that it pays",
-         {"auto", "on", "off"});
+  tool.choice_option("--quality", options.quality, {"draft", "final"},
+                     "draft: more noise, in less than half of the time; final");
+  tool.choice_option(
+      "--method", options.method, {"frames", "walkthrough", "auto", "preview"},
+      "frames: every frame is rendered; walkthrough: key frames are rendered, frames between them are warped; auto: "
+      "walkthrough where it pays; preview: fast, with light textures from the photons of many frames");
+  tool.choice_option(
+      "--filter", options.filter, {"auto", "none", "1", "3", "5", "7", "9"},
+      "number of frames in the filter's window, 1: each frame alone; a frame is filtered where the halves of its "
+      "samples show that it helps; none: no filter; auto: 1, or none with --words pixels:...");
+  tool.choice_option(
+      "--indirect", wish.indirect, {"auto", "records", "gather", "paths"},
+      "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot");
+  tool.choice_option(
+      "--moving", wish.moving, {"auto", "anew", "light", "records", "time"},
+      "what a frame takes from the static light of its segment: anew: nothing; light: photons and points; records: "
+      "photons, points and records; time: photons and points, and records keep their incoming light from frame to "
+      "frame; auto: the cheapest by a pilot");
+  tool.choice_option("--split", wish.split, {"auto", "on", "off"},
+                     "on: bright points are sampled explicitly; auto: where a pilot finds that it pays");
 }
 
 /// Options that replace figures of the preset.
@@ -127,9 +123,6 @@ void add_figures(tools::Tool& tool, Options& options) {
   Wish& wish = options.wish;
   const auto text = [&](const char* name, std::string& value, const char* type, const char* help) {
     app.add_option(name, value, help)->type_name(type);
-  };
-  const auto number = [&](const char* name, auto& value, double least, double most, const char* help) {
-    return app.add_option(name, value, help)->capture_default_str()->check(tools::number_between(least, most));
   };
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
   app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")
@@ -143,7 +136,7 @@ void add_figures(tools::Tool& tool, Options& options) {
                  "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
-  number("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
+  tool.number_option("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
   app.add_option(
          "--words", options.words,
          "options of a stage instead of the preset's, such as 'pixels:--spp 4 --pixel-error 0'. Stages: points, "
@@ -156,13 +149,14 @@ void add_figures(tools::Tool& tool, Options& options) {
        "with smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%");
   app.add_option("--strategy", wish.strategy, "groups of photons that --update traces, as photon-trace --strategy")
       ->capture_default_str();
-  number("--key-distance", wish.key_distance, 2, 1000, "frames between the first keys of a walkthrough");
-  number("--halve-above", wish.threshold, 0, 1,
-         "an interval between keys is halved if a viewer sees errors in more than this share of its pixels (AQM), such "
-         "as 5%")
+  tool.number_option("--key-distance", wish.key_distance, 2, 1000, "frames between the first keys of a walkthrough");
+  tool.number_option("--halve-above", wish.threshold, 0, 1,
+                     "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
+                     "(AQM), such "
+                     "as 5%")
       ->transform(tools::percent([] {}));
   text("--report", options.report, "FRAMES", "frames to compare with path tracing; ends: the first and the last");
-  number("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
+  tool.number_option("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 
 #include "formats/error.h"
 #include "lib/scene/gltf_load.h"
-#include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 #include "tools/info/info_facts.h"
 
@@ -24,8 +23,11 @@ namespace {
 struct Request {
   std::vector<std::string> files;
   bool check = false, digest = false, diff = false, json = false, account = false;
-  std::string exported, png, sheet, scene, exposure = "auto";
+  std::string exported, png, sheet, scene;
   tools::PictureOptions picture;
+
+  /// The file to write, by the one option that names it; "": none.
+  const std::string& written() const { return !sheet.empty() ? sheet : !png.empty() ? png : exported; }
 };
 
 void print(const Facts& facts, bool as_json) {
@@ -82,12 +84,6 @@ const std::string& only_file(const Request& request, const char* option) {
 }
 
 int answer(tools::Tool& tool, Request& request) {
-  if (request.exposure != "auto") {
-    double stops = 0;
-    if (!CLI::detail::lexical_cast(request.exposure, stops) || !(stops > -200 && stops < 200))
-      throw InputError("--exposure: '" + request.exposure + "' is neither auto nor a number of stops");
-    request.picture.exposure_stops = stops;
-  }
   for (const std::string& file : request.files) tool.depends_on(file);
   if (request.diff) {
     if (request.files.size() != 2) throw InputError("--diff: takes two files");
@@ -103,47 +99,30 @@ int answer(tools::Tool& tool, Request& request) {
     for (const std::string& warning : account.warnings) tool.warn(warning);
     return tools::exit_ok;
   }
-  if (!request.sheet.empty()) {
-    tools::Output output(request.sheet);
-    request.picture.progress = [&](double done) { tool.progress(done); };
-    tools::write_sheet(request.files, request.picture, output);
-    output.commit();
-  } else if (!request.png.empty()) {
-    tools::Output output(request.png);
-    tools::write_picture(only_file(request, "--png"), request.picture, output);
-    output.commit();
-  } else if (!request.exported.empty()) {
-    using Kind = tools::Output::Kind;
-    const bool ply = request.exported.ends_with(".ply");
-    if (!ply && request.exported != "-" && !request.exported.ends_with(".csv"))
-      throw InputError("--export " + request.exported + ": the name must end in .ply or .csv");
-    tools::Output output(request.exported, ply ? Kind::binary : Kind::text);
-    tools::export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);
-    output.commit();
-  } else {
-    return print_files(tool, request);
-  }
+  if (request.written().empty()) return print_files(tool, request);
+  const bool ply = request.exported.ends_with(".ply");
+  if (!request.exported.empty() && !ply && request.exported != "-" && !request.exported.ends_with(".csv"))
+    throw InputError("--export " + request.exported + ": the name must end in .ply or .csv");
+  using Kind = tools::Output::Kind;
+  tools::Output output(request.written(), request.exported.empty() || ply ? Kind::binary : Kind::text);
+  request.picture.progress = [&](double done) { tool.progress(done); };
+  if (!request.sheet.empty()) tools::write_sheet(request.files, request.picture, output);
+  else if (!request.png.empty()) tools::write_picture(only_file(request, "--png"), request.picture, output);
+  else tools::export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);
+  output.commit();
   return tools::exit_ok;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  tools::Tool tool("tempolux-info",
-                   "Show what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
-                   argc, argv);
-  Request request;
+void declare(tools::Tool& tool, Request& request) {
   CLI::App& app = tool.app();
-  app.add_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
-      ->type_name("FILE")
+  tool.file_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
       ->required();
   CLI::Option* check = app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
   CLI::Option* digest = app.add_flag("--digest", request.digest, "hash of the data, without header and history");
   CLI::Option* diff = app.add_flag("--diff", request.diff, "differences of two files; exit 1 if their data differ");
   CLI::Option* account =
       app.add_flag("--account", request.account, "bias of the light of several frames together, from their audits");
-  app.add_option("--scene", request.scene, "glTF scene of the files: its objects get their names beside their ids")
-      ->type_name("FILE")
+  tool.file_option("--scene", request.scene, "glTF scene of the files: its objects get their names beside their ids")
       ->excludes(check, digest, diff, account);
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* exported = tool.output_option(
@@ -156,17 +135,13 @@ int main(int argc, char** argv) {
                  "layer or channel to show, such as indirect, Z, N; none: R, G, B; for a .meshirrad file: window (33 "
                  "frames: white) or age (red: later frames, blue: earlier ones)")
       ->type_name("NAME");
-  app.add_option("--exposure", request.exposure, "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
-      ->type_name("STOPS")
-      ->capture_default_str();
-  app.add_option("--columns", request.picture.columns, "columns of --sheet; 0: about square")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1000));
-  app.add_option("--tile", request.picture.tile_width, "largest width of an image in --sheet, pixels")
-      ->type_name("PX")
-      ->capture_default_str()
-      ->check(tools::number_between(1, 65536));
+  tool.auto_option("--exposure", request.picture.exposure_stops, -200, 200,
+                   "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
+      ->type_name("STOPS");
+  tool.number_option("--columns", request.picture.columns, 0, 1000, "columns of --sheet; 0: about square")
+      ->type_name("N");
+  tool.number_option("--tile", request.picture.tile_width, 1, 65536, "largest width of an image in --sheet, pixels")
+      ->type_name("PX");
   app.add_option("--mark", request.picture.marked, "files whose pictures get a border in --sheet, such as key frames")
       ->type_name("FILES")
       ->delimiter(',')
@@ -176,6 +151,16 @@ int main(int argc, char** argv) {
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("tempolux-info",
+                   "Show what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
+                   argc, argv);
+  Request request;
+  declare(tool, request);
   tool.common_options(0);
   return tool.run([&] { return answer(tool, request); });
 }

@@ -235,6 +235,12 @@ Rgb MediaLight::scattered(Vec3 point) const {
   return sum;
 }
 
+Vec3 eye_for_phase(const CameraView& view, const Box3& bounds) {
+  if (!view.orthographic()) return view.eye();
+  const Ray middle = view.ray(0.5f * float(view.width()), 0.5f * float(view.height()));
+  return middle.origin - middle.direction * (1e4f * std::max(1.0f, bounds.diagonal()));
+}
+
 std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView& view, const MediaLight& light,
                                       const std::vector<float>& depth, const ComposeOptions& options,
                                       RayCounts& counts) {

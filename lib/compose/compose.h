@@ -55,6 +55,10 @@ class MediaLight {
   std::vector<FluenceVolume> volumes_;
 };
 
+/// The eye position for MediaLight; that of an orthographic camera is so far away that its rays are parallel.
+/// `bounds`: of the scene.
+Vec3 eye_for_phase(const CameraView& view, const Box3& bounds);
+
 struct ComposeOptions {
   int samples = 4;        ///< rays per pixel
   int light_samples = 2;  ///< places per ray at which direct light is sampled, and from which rays start

@@ -43,7 +43,7 @@ constexpr bool kMemoryIsLimited = true;
 /// Only the first line of the child's standard error is passed on; the remainder is read and dropped, so that the child
 /// does not wait.
 constexpr std::size_t kMostWords = 1024;
-constexpr std::size_t kPiece = 1 << 16;  ///< capacity of a pipe in Linux
+constexpr std::size_t kPiece = 1 << 16;  ///< bytes passed at once
 
 [[noreturn]] void fail(const std::string& program, const std::string& what, int error) {
   throw ResourceError(program + ": " + what + ": " + std::strerror(error));
@@ -75,19 +75,11 @@ struct Stream {
   Descriptor ours, theirs;
 };
 
-/// A socket instead of a pipe: writing to a socket whose reader has closed it returns an error, writing to such a pipe
-/// sends SIGPIPE.
-void open_input(const std::string& program, Stream& stream) {
+/// Opens a socket, which is used in one direction. Writing to a socket whose reader has closed it returns an error;
+/// writing to such a pipe would send SIGPIPE.
+void open_stream(const std::string& program, Stream& stream) {
   std::array<int, 2> ends{};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    fail(program, "no socket for its input", errno);
-  stream.ours.reset(ends[0]);
-  stream.theirs.reset(ends[1]);
-}
-
-void open_output(const std::string& program, Stream& stream) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(program, "no pipe for its output", errno);
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail(program, "no socket for it", errno);
   stream.ours.reset(ends[0]);
   stream.theirs.reset(ends[1]);
 }
@@ -154,7 +146,7 @@ class Child {
     const rlim_t seconds = rlim_t(limits.processor_s);
     if (kMemoryIsLimited) set(RLIMIT_AS, limits.memory_bytes, limits.memory_bytes);
     set(RLIMIT_CPU, seconds, seconds + 1);
-    set(RLIMIT_FSIZE, 0, 0);
+    set(RLIMIT_FSIZE, limits.file_bytes, limits.file_bytes);
     set(RLIMIT_CORE, 0, 0);
   }
 
@@ -306,9 +298,7 @@ ChildResult run_child(const std::string& program, const std::vector<std::string>
                       std::span<const unsigned char> input, const ChildLimits& limits) {
   const Clock::time_point deadline = Clock::now() + std::chrono::seconds(limits.wall_s);
   Stream in, out, words;
-  open_input(program, in);
-  open_output(program, out);
-  open_output(program, words);
+  for (Stream* stream : {&in, &out, &words}) open_stream(program, *stream);
   Child child(SpawnPlan(in, out, words).start(program, arguments));
   for (Stream* stream : {&in, &out, &words}) stream->theirs.close();
   child.limit(program, limits);
@@ -322,6 +312,7 @@ ChildResult run_child(const std::string& program, const std::vector<std::string>
   if (result.trouble.empty()) result.trouble = ending(child.status(), exchange.words(), limits);
   else child.end();
   result.output = exchange.take();
+  result.words = exchange.words();
   return result;
 }
 

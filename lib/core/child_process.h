@@ -20,6 +20,7 @@ namespace tempolux {
 struct ChildLimits {
   std::uint64_t memory_bytes = 1ull << 30;  ///< address space including libraries (about 20 MB): RLIMIT_AS
   std::uint64_t output_bytes = 1ull << 30;  ///< a child that prints more is killed
+  std::uint64_t file_bytes = 0;             ///< largest file that it may write: RLIMIT_FSIZE
   int processor_s = 60;                     ///< RLIMIT_CPU
   int wall_s = 300;                         ///< from start to end; stops children that wait for ever
 };
@@ -32,6 +33,7 @@ struct ChildResult {
   /// more than 1024 bytes", "ended with code 1", or the first line of its standard error if its exit code was not 0.
   /// Empty: it ended with code 0.
   std::string trouble;
+  std::string words;  ///< the beginning of its standard error
 };
 
 /// Default memory limit of a child: `wanted`, but at most half of what this process may use (the machine's memory, or a
@@ -47,7 +49,7 @@ std::string helper_program(const std::string& name, const std::string& purpose,
 
 /// Runs a program to its end: writes `input` to its standard input and closes it, reads its standard output and
 /// standard error, and waits. The program gets `arguments` after its name, this process's environment, no other open
-/// files, and default signals. It cannot write files (RLIMIT_FSIZE is 0) and leaves no core. A child that exceeds a
+/// files, and default signals. It leaves no core. A child that exceeds a
 /// limit is killed; no child outlives the call. If this process is killed, the child ends at the end of its input, at a
 /// closed output, or at its limit of processor time.
 ///

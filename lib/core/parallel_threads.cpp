@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "lib/core/parallel.h"
@@ -73,50 +73,22 @@ void parallel_chunks(std::size_t count, std::size_t chunk_size,
 void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take) {
-  const std::size_t places = std::max<std::size_t>(1, in_flight);
-  std::vector<std::shared_ptr<void>> made(places);
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::size_t next = 0, taken = 0;
-  bool taking = false;
-  std::atomic<bool> stop{false};
-  const auto work = [&] {
-    std::unique_lock lock(mutex);
-    for (;;) {
-      changed.wait(lock, [&] { return stop || next == chunk_count || next < taken + places; });
-      if (stop || next == chunk_count) return;
-      const std::size_t i = next++;
-      lock.unlock();
-      std::shared_ptr<void> item = make(i);
-      lock.lock();
-      made[i % places] = std::move(item);
-      while (!taking && taken < next && made[taken % places]) {
-        taking = true;
-        item = std::move(made[taken % places]);
-        lock.unlock();
-        take(taken, item.get());
-        item.reset();
-        lock.lock();
-        taking = false;
-        ++taken;
-        changed.notify_all();
-      }
-    }
-  };
-  by_all(
-      [&] {
-        try {
-          work();
-        } catch (...) {
-          {
-            const std::lock_guard lock(mutex);  // otherwise a thread that is about to wait could miss the signal
-            stop = true;
-          }
-          changed.notify_all();
-          throw;
-        }
-      },
-      stop);
+  if (in_flight < 2) {
+    for (std::size_t i = 0; i < chunk_count; ++i) take(i, make(i).get());
+    return;
+  }
+  // Results are made in waves. While threads make a wave, one of them takes the wave before.
+  std::vector<std::shared_ptr<void>> made, ready;
+  for (std::size_t first = 0; first < chunk_count || !ready.empty(); first += ready.size()) {
+    std::size_t taken = first - ready.size();
+    made.assign(std::min(in_flight / 2, chunk_count - first), nullptr);
+    parallel_chunks(1 + made.size(), 1, [&](std::size_t job, std::size_t) {
+      if (job > 0) made[job - 1] = make(first + job - 1);
+      else
+        for (std::shared_ptr<void>& result : ready) take(taken++, std::exchange(result, nullptr).get());
+    });
+    ready.swap(made);
+  }
 }
 
 }  // namespace tempolux

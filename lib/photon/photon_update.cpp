@@ -81,12 +81,9 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
   std::vector<double> priority(count);
   for (std::uint32_t g = 0; g < count; ++g) {
     const double age = std::max(0, frame - previous.ledger[g].frame);
-    const bool due = options.age_floor > 0 && age >= options.age_floor;
-    const double wanted = options.strategy == UpdateStrategy::random ? 1
-                          : options.strategy == UpdateStrategy::oldest
-                              ? age
-                              : std::pow(age, options.age_power) * previous.change[g];
-    priority[g] = due ? INFINITY : wanted;
+    priority[g] = options.strategy == UpdateStrategy::random   ? 1
+                  : options.strategy == UpdateStrategy::oldest ? age
+                                                               : std::pow(age, options.age_power) * previous.change[g];
   }
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
     if (priority[a] != priority[b]) return priority[a] > priority[b];

@@ -19,7 +19,6 @@ namespace tempolux {
 struct UpdateOptions {
   UpdateStrategy strategy = UpdateStrategy::oldest;
   std::uint64_t most_groups = 0;  ///< limit of groups traced again
-  int age_floor = 0;              ///< frames: groups of this age and older come before all others; 0: none
   /// Priorities by census and pilots are multiplied by age^age_power. 0 is the papers' rule, under which some groups
   /// may never be traced again.
   double age_power = 1;

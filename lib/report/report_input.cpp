@@ -5,16 +5,15 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json_file.h"
 
 namespace tempolux {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// A value in a document, with its place for messages, such as "run.json: runs[2].x".
 struct Place {
@@ -73,19 +72,7 @@ std::string string_of(const Place& place, const std::string& key, const std::str
 
 /// Opens a document and checks its schema and major version. `keep` owns it.
 Place open_document(const std::string& path, const std::string& schema, Json& keep) {
-  constexpr std::uintmax_t kLargest = 256u << 20;
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) throw InputError(path + ": cannot be read; is the name right?");
-  if (size > kLargest) throw InputError(path + ": larger than 256 MiB; this is no " + schema + " file");
-  try {
-    keep = Json::parse(file);
-  } catch (const Json::parse_error& bad) {
-    throw InputError(path + ": byte " + std::to_string(bad.byte) + ": not JSON");
-  } catch (const Json::out_of_range&) {
-    throw InputError(path + ": a number is too large for 64 bits of floating point");
-  }
+  keep = read_json(path);
   const Place top{keep, path + ": "};
   if (!keep.is_object() || string_of(top, "schema") != schema)
     throw InputError(path + ": not a " + schema + " file: its \"schema\" is another");

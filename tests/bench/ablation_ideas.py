@@ -17,7 +17,7 @@ class Idea:
 IDEAS = (
     # ---- samples of light
     Idea("suns apart", "a ray to a sun beside that to another light", "frames",
-         (("tools/frame-render.cpp", "!yardstick && lights.has_suns()}", "false}"),)),
+         (("tools/stages/render_frame.cpp", "!yardstick && lights.has_suns()}", "false}"),)),
     Idea("matte rays meet lamps", "a ray that leaves a matte surface counts lamps it meets, weighed against light samples", "frames",
          (("lib/render/path_tracer.cpp", "if (has_diffuse) diffuse *= mis_power(pdf, at.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));", ""),
           ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),
@@ -36,7 +36,7 @@ IDEAS = (
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
     # Stays whatever codes say: without it filtered frames have blotches (docs/notebook/outliers.md).
     Idea("outliers spread", "light that one sample alone claims goes to the pixels around", "frames",
-         (("tools/frame-render.cpp", "frame.spread_outliers = !options.keep_outliers &&", "frame.spread_outliers = false &&"),)),
+         (("tools/stages/render_frame.cpp", "frame.spread_outliers = !options.keep_outliers &&", "frame.spread_outliers = false &&"),)),
     # ---- photons and points
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),

@@ -4,8 +4,8 @@ import subprocess
 MOST_CHANGES = 30     # of the code that a verdict judges: after more it is expired
 
 SCENE = ["lib/core", "lib/image", "lib/scene", "lib/trace"]
-PHOTONS = [*SCENE, "lib/material", "lib/light", "lib/photon", "formats/photons", "tools/photon-trace.cpp"]
-PATHS = [*SCENE, "lib/material", "lib/light", "lib/render", "tools/frame-render.cpp"]
+PHOTONS = [*SCENE, "lib/material", "lib/light", "lib/photon", "formats/photons", "tools/stages/trace_photons.cpp"]
+PATHS = [*SCENE, "lib/material", "lib/light", "lib/render", "tools/stages/render_frame.cpp"]
 ALL = ["formats", "lib", "tools", "Makefile.example", "pipelines"]     # of parts that are not listed: whole frames
 JUDGES = {
     "path-tracer": PATHS, "references": PATHS, "photon-rate": PHOTONS, "photon-growth": PHOTONS, "nearest": ["lib/core", "lib/density"],

@@ -1,17 +1,23 @@
-# Every option that --help shows is in the man page and in the completion of its tool; both are sound.
+# Every option that --help shows is in the man page and in the completion of its tool; both are sound. The page in
+# docs/tools has the tool's purpose, usage and options as --help says them.
 failed=0
 bad() { echo "$tool: $*"; failed=1; }
 for path in "$BUILD"/bin/*; do
   [ -x "$path" ] || continue
   tool=$(basename "$path")
-  "$path" --help-man >page.1 2>errors.txt || bad "--help-man exits $?"
+  page=$HERE/../../docs/tools/$tool.md
+  awk -v version=1.0 -f "$HERE/../../cmake/man_page.awk" "$page" >page.1 2>errors.txt || bad "man page: awk exits $?"
+  "$path" --help-markdown >table 2>>errors.txt || bad "--help-markdown exits $?"
+  grep '^|' "$page" | cmp -s - table || bad "its options differ from docs/tools/$tool.md; run docs/make_tools.sh"
+  "$path" --help | sed -n '1p; s/^Usage: /    /p' >head
+  sed -n '3p; 5p' "$page" | cmp -s - head || bad "purpose or usage differ from docs/tools/$tool.md"
   "$path" --help-completion >completion 2>>errors.txt || bad "--help-completion exits $?"
   [ -s errors.txt ] && bad "writes to standard error: $(cat errors.txt)"
   sed 's/\\-/-/g' page.1 >plain
   for section in NAME SYNOPSIS DESCRIPTION OPTIONS 'EXIT STATUS' FILES EXAMPLES 'SEE ALSO'; do
     grep -A1 "^\.SH $section\$" plain | tail -1 | grep -q '^[^.]\|^\.TP\|^\.PP' || bad "man page without $section"
   done
-  grep -A1 '^.SH DESCRIPTION' plain | tail -1 | grep -q '^\.SH' && bad "DESCRIPTION is empty: tools/common/manual_texts.cpp"
+  grep -A1 '^.SH DESCRIPTION' plain | tail -1 | grep -q '^\.SH' && bad "DESCRIPTION is empty: docs/tools/$tool.md"
   "$path" --help | sed -n '/^Options:/,$s/^  \(-[^ ]*\).*/\1/p' | tr ',' '\n' >options
   [ "$(wc -l <options)" -gt 9 ] || bad "--help shows $(wc -l <options) options"
   while read -r option; do

@@ -11,7 +11,6 @@ for tool in photon-trace irradcache-build gather-temporal frame-render st-filter
   grep -nE 'INT|FLOAT|NONNEGATIVE|POSITIVE|[0-9]x\)|\[\[|179769' help.txt && bad "$tool --help: see above"
 done
 irradcache-build --help | grep -x 'Usage: irradcache-build \[OPTIONS\] \[points|records\] SCENE' >/dev/null || bad "$(irradcache-build --help | sed -n 2p)"
-irradcache-build --help-man | grep 'OPTIONS.*points|records' >/dev/null || bad 'SYNOPSIS without points|records'
 aqm-compare --help | grep -x 'Usage: aqm-compare \[OPTIONS\] test \[reference\]' >/dev/null || bad "$(aqm-compare --help | sed -n 2p)"
 frame-render --help | grep -A2 -e '--neighbours N' | tr -d '\n' | grep -q '(2 to 512) \[50\]' || bad 'limits of --neighbours'
 

@@ -117,7 +117,7 @@ refuses 'not those of' $build --photons l.photons --high bh2.photons -o refused
 refuses 'leave out --update' irradcache-build points "$room" --frame 1 --map static --photons l.photons --high h.photons -o refused
 refuses 'not a part of light' $frame --points p.irradpoints --high h.irradpoints -o refused
 
-refuses 'neither auto nor a length' photonmap-split p.photons --low refused --high other --cell -1
+refuses 'neither auto nor a number above 0' photonmap-split p.photons --low refused --high other --cell -1
 refuses 'neither photons nor irradiance points' photonmap-split "$room" --low refused --high other
 refuses 'two outputs' photonmap-split p.photons --low refused --high refused
 refuses 'p.photons' photonmap-split p.photons --low refused --high p.photons

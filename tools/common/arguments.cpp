@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <string_view>
 #include <unordered_set>
@@ -82,30 +83,27 @@ std::string digits_of(int frame, int width, bool zeros) {
   return text;
 }
 
-/// Computes "12" or "1.5" times `factor` exactly; false if the result is not whole or reaches 2^63.
+/// Parses all of `text` as a number.
+template <class Number>
+bool parse_whole(std::string_view text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+/// Computes "12" or "1.5" times `factor` exactly; false if the result is not whole or reaches 2^63. At most 6 digits
+/// after the point, so that their product with a factor of at most 2^40 fits.
 bool scaled(std::string_view digits, std::uint64_t factor, std::uint64_t& value) {
   constexpr std::uint64_t kLimit = std::uint64_t{1} << 63;
   const std::size_t point = digits.find('.');
-  const std::string_view whole = digits.substr(0, point);
-  const std::string_view part = point == std::string_view::npos ? "" : digits.substr(point + 1);
-  if (whole.empty() || part.size() > 9 || (point != std::string_view::npos && part.empty())) return false;
-  std::uint64_t integer = 0, fraction = 0, power = 1;
-  for (const char c : whole) {
-    if (c < '0' || c > '9' || integer > kLimit / 10) return false;
-    integer = integer * 10 + std::uint64_t(c - '0');
+  std::uint64_t whole = 0, part = 0, power = 1;
+  if (!parse_whole(digits.substr(0, point), whole) || whole > kLimit / factor) return false;
+  if (point != std::string_view::npos) {
+    const std::string_view after = digits.substr(point + 1);
+    if (after.size() > 6 || !parse_whole(after, part)) return false;
+    for (std::size_t i = 0; i < after.size(); ++i) power *= 10;
   }
-  for (const char c : part) {
-    if (c < '0' || c > '9') return false;
-    fraction = fraction * 10 + std::uint64_t(c - '0');
-    power *= 10;
-  }
-  if (integer > kLimit / factor) return false;
-  while (fraction != 0 && fraction % 10 == 0) fraction /= 10, power /= 10;
-  if (fraction == 0) power = 1;
-  if (factor % power * fraction % power != 0) return false;
-  // No product reaches 2^64: factor <= 2^40, fraction < power <= 10^9.
-  const std::uint64_t rest = factor / power * fraction + factor % power * fraction / power;
-  value = integer * factor + rest;
+  if (part * factor % power != 0) return false;
+  value = whole * factor + part * factor / power;
   return value < kLimit;
 }
 
@@ -151,6 +149,11 @@ std::string frame_name(const std::string& pattern, int frame) {
     }
   }
   return name;
+}
+
+std::string name_with(const std::string& path, const std::string& ending) {
+  const std::filesystem::path name(path);
+  return (name.parent_path() / name.stem()).string() + ending + name.extension().string();
 }
 
 bool has_frame_pattern(const std::string& pattern) {
@@ -205,9 +208,7 @@ void parse_size(const std::string& text, int& width, int& height) {
   constexpr int kMaxSide = 65536;
   const auto number = [&](std::string_view part) {
     int value = 0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    const bool whole = error == std::errc{} && end == part.data() + part.size();
-    if (!whole || value < 1 || value > kMaxSide)
+    if (!parse_whole(part, value) || value < 1 || value > kMaxSide)
       bad(text, "not a size; write WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 640x360");
     return value;
   };
@@ -223,8 +224,7 @@ std::array<float, 3> parse_color(const std::string& text) {
   std::string_view rest = text;
   for (std::size_t channel = 0; channel < 3; ++channel) {
     const std::string_view part = rest.substr(0, rest.find(','));
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), color[channel]);
-    if (error != std::errc{} || end != part.data() + part.size() || !(color[channel] >= 0 && color[channel] <= 1e30f))
+    if (!parse_whole(part, color[channel]) || !(color[channel] >= 0 && color[channel] <= 1e30f))
       bad(text, "not a colour; write R,G,B, three numbers from 0 on, such as 0.2,0.3,0.5, or one for grey");
     if (channel == 0 && part.size() == rest.size()) return {color[0], color[0], color[0]};
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));

@@ -17,6 +17,8 @@ std::vector<int> parse_frames(const std::string& text);
 /// "%04d" are as in printf; "%%" is a per cent sign. All patterns in the name are replaced, also in folders; a name
 /// without a pattern stays. Throws InputError for any other use of '%'.
 std::string frame_name(const std::string& pattern, int frame);
+/// "f.0012.exr" with "_a" becomes "f.0012_a.exr".
+std::string name_with(const std::string& path, const std::string& ending);
 bool has_frame_pattern(const std::string& pattern);
 
 /// "250000", "10k", "1.5M", "1G": decimal factors 10^3, 10^6, 10^9; must come out whole and below 2^63.

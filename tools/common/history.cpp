@@ -1,5 +1,6 @@
 // tools/common/history.cpp -- a run's line of history, and its rule for make.
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include "tools/common/tool_state.h"
@@ -23,11 +24,8 @@ std::string quoted(const std::string& word) {
 }
 
 std::string without_folder(const std::string& name) {
-  const std::size_t end = name.find_last_not_of('/');
-  if (end == std::string::npos) return name;
-  const std::size_t slash = name.rfind('/', end);
-  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
-  return name.substr(begin, end + 1 - begin);
+  const std::filesystem::path path(name);
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
 /// The longest name of an option: "photons" for "-n,--photons".

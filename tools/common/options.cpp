@@ -37,8 +37,9 @@ std::string format_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + suffixes[power];
 }
 
-void seed_options(CLI::App& app, Common& common) {
-  app.add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
+void seed_options(Tool& tool, Common& common) {
+  tool.app()
+      .add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
       ->type_name("N")
       ->capture_default_str()
       ->check([](const std::string& text) -> std::string {
@@ -47,31 +48,25 @@ void seed_options(CLI::App& app, Common& common) {
         const bool whole = error == std::errc{} && end == text.data() + text.size();
         return whole ? "" : "'" + text + "' is not a whole number from 0 to 2^64-1";
       });
-  app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
-      ->type_name("MODE")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"fixed", "frame"}));
+  tool.choice_option("--seed-mode", common.seed_mode, {"fixed", "frame"},
+                     "fixed: one seed for all frames; frame: another for each")
+      ->type_name("MODE");
 }
 
 /// Options of the scene's time and lights.
-void scene_options(CLI::App& app, Common& common) {
-  app.add_option("--fps", common.fps, "frames per second: frame f is at f / fps seconds")
-      ->type_name("RATE")
-      ->capture_default_str()
-      ->check(number_between(1e-3, 1e6));
-  app.add_option("--segment", common.segment_length,
-                 "frames in a segment; an object is static if it does not change within a segment")
-      ->type_name("FRAMES")
-      ->capture_default_str()
-      ->check(number_between(1, 1e6));
-  app.add_option("--animation", common.animation,
-                 "play only this animation of the scene; all play together if not given")
+void scene_options(Tool& tool, Common& common) {
+  tool.number_option("--fps", common.fps, 1e-3, 1e6, "frames per second: frame f is at f / fps seconds")
+      ->type_name("RATE");
+  tool.number_option("--segment", common.segment_length, 1, 1e6,
+                     "frames in a segment; an object is static if it does not change within a segment")
+      ->type_name("FRAMES");
+  tool.app()
+      .add_option("--animation", common.animation,
+                  "play only this animation of the scene; all play together if not given")
       ->type_name("NAME");
-  app.add_option("--light-units", common.light_units,
-                 "raw: lights unchanged; spec: point, spot and sun lights divided by 683 lm/W")
-      ->type_name("UNITS")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"raw", "spec"}));
+  tool.choice_option("--light-units", common.light_units, {"raw", "spec"},
+                     "raw: lights unchanged; spec: point, spot and sun lights divided by 683 lm/W")
+      ->type_name("UNITS");
 }
 
 class HelpFormatter : public CLI::Formatter {
@@ -129,35 +124,30 @@ std::string version_text(const std::string& tool) {
 }
 
 void Tool::environment_options() {
-  CLI::App& app = state_->app;
   Common& common = state_->common;
-  CLI::Option* light = app.add_option("--environment", common.environment,
-                                      "light around the scene: a latitude-longitude map, .hdr or .exr, or R,G,B, one "
-                                      "radiance from all directions, W/m^2/sr. The middle of a map is +Z, its top +Y; "
-                                      "maps made for Blender's axes need --environment-rotation 90")
+  CLI::Option* light = state_->app
+                           .add_option("--environment", common.environment,
+                                       "light around the scene: a latitude-longitude map, .hdr or .exr, or R,G,B, one "
+                                       "radiance from all directions, W/m^2/sr. The middle of a map is +Z, its top +Y; "
+                                       "maps made for Blender's axes need --environment-rotation 90")
                            ->type_name("LIGHT");
-  app.add_option("--environment-strength", common.environment_strength,
-                 "radiance of a map's pixel of value 1, W/m^2/sr")
+  number_option("--environment-strength", common.environment_strength, 0, 1e30,
+                "radiance of a map's pixel of value 1, W/m^2/sr")
       ->type_name("X")
-      ->capture_default_str()
-      ->needs(light)
-      ->check(number_between(0, 1e30));
-  app.add_option("--environment-rotation", common.environment_rotation_deg,
-                 "turns the map about +Y, from +Z towards +X, degrees")
+      ->needs(light);
+  number_option("--environment-rotation", common.environment_rotation_deg, -1e6, 1e6,
+                "turns the map about +Y, from +Z towards +X, degrees")
       ->type_name("DEG")
-      ->capture_default_str()
-      ->needs(light)
-      ->check(number_between(-1e6, 1e6));
+      ->needs(light);
 }
 
 void Tool::volume_options() {
   CLI::App& app = state_->app;
   VolumeOptions& volume = state_->common.volume;
-  app.add_option("--volume", volume.files,
-                 "OpenVDB file, or a pattern such as smoke.####.vdb, of a medium in metres of world space; replaces "
-                 "the media that the scene names; none: no media; repeat it for several media. smoke.vdb:soot reads "
-                 "the grid soot, smoke.vdb:soot:1 the second grid of that name, else density or the only density grid")
-      ->type_name("FILE")
+  file_option("--volume", volume.files,
+              "OpenVDB file, or a pattern such as smoke.####.vdb, of a medium in metres of world space; replaces "
+              "the media that the scene names; none: no media; repeat it for several media. smoke.vdb:soot reads "
+              "the grid soot, smoke.vdb:soot:1 the second grid of that name, else density or the only density grid")
       ->allow_extra_args(false);
   parsed_option(app, "--volume-frames", "frames that have a file; other frames use the nearest one [all]", "",
                 [&volume](const std::string& text) {
@@ -200,16 +190,15 @@ void Tool::common_options(unsigned flags) {
                    "name of the camera; auto: the scene's first camera, or a new one that shows the whole content")
         ->type_name("NAME")
         ->capture_default_str();
-  if (flags & uses_seed) seed_options(app, common);
+  if (flags & uses_seed) seed_options(*this, common);
   if (flags & uses_scene) {
-    scene_options(app, common);
+    scene_options(*this, common);
     environment_options();
     volume_options();
     if (flags & uses_majorants)
-      app.add_option("--majorants", common.volume.majorants,
-                     "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
-                     "segment; needed for maps that are updated")
-          ->type_name("FILE");
+      file_option("--majorants", common.volume.majorants,
+                  "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
+                  "segment; needed for maps that are updated");
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
@@ -230,9 +219,46 @@ void Tool::common_options(unsigned flags) {
 }
 
 CLI::Option* Tool::output_option(std::string& path, const std::string& help, const std::string& names) {
-  CLI::Option* option = state_->app.add_option(names, path, help)->type_name("FILE");
+  CLI::Option* option = file_option(names, path, help);
   leave_out_of_history(option);
   return option;
+}
+
+CLI::Option* Tool::file_option(const std::string& names, std::string& file, const std::string& help) {
+  return state_->app.add_option(names, file, help)->type_name("FILE");
+}
+
+CLI::Option* Tool::file_option(const std::string& names, std::vector<std::string>& files, const std::string& help) {
+  return state_->app.add_option(names, files, help)->type_name("FILE");
+}
+
+CLI::Option* Tool::choice_option(const std::string& names, std::string& word, const std::vector<std::string>& words,
+                                 const std::string& help) {
+  return state_->app.add_option(names, word, help)->capture_default_str()->check(CLI::IsMember(words));
+}
+
+template <class Number>
+CLI::Option* Tool::number_option(const std::string& names, Number& number, double least, double most,
+                                 const std::string& help) {
+  return state_->app.add_option(names, number, help)->capture_default_str()->check(number_between(least, most));
+}
+template CLI::Option* Tool::number_option(const std::string&, int&, double, double, const std::string&);
+template CLI::Option* Tool::number_option(const std::string&, float&, double, double, const std::string&);
+template CLI::Option* Tool::number_option(const std::string&, double&, double, double, const std::string&);
+
+CLI::Option* Tool::auto_option(const std::string& names, std::optional<double>& number, double least, double most,
+                               const std::string& help) {
+  return parsed_option(state_->app, names, help, "auto", [&number, least, most](const std::string& text) {
+    double value = 0;
+    const bool valid = CLI::detail::lexical_cast(text, value) && value > least && value < most;
+    if (!valid && text != "auto") {
+      std::ostringstream limits;
+      limits << "above " << least;
+      if (most < kNoLimit) limits << " and below " << most;
+      throw InputError("'" + text + "' is neither auto nor a number " + limits.str());
+    }
+    number = valid ? std::optional(value) : std::nullopt;
+  });
 }
 
 CLI::Option* Tool::count_option(const std::string& names, std::uint64_t& count, const std::string& help) {
@@ -251,6 +277,17 @@ CLI::Option* Tool::size_option(const std::string& names, int& width, int& height
   return parsed_option(state_->app, names, help, std::to_string(width) + "x" + std::to_string(height),
                        [&width, &height](const std::string& text) { parse_size(text, width, height); })
       ->type_name("WxH");
+}
+
+void Tool::check_patterns(const std::vector<std::string>& names) const {
+  for (const std::string& name : names)
+    if (state_->common.frames.size() > 1 && !name.empty() && !has_frame_pattern(name))
+      throw InputError("'" + name + "': several frames need a pattern, for example f.####.exr");
+}
+
+void Tool::check_frame_output(const std::string& name) const {
+  check_patterns({name});
+  if (name == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
 }
 
 void Tool::leave_out_of_history(const CLI::Option* option) { state_->left_out_of_history.insert(option); }

@@ -314,6 +314,9 @@ void Output::write(const void* data, std::size_t size) {
   state_->put(static_cast<const char*>(data), size);
   state_->bytes_written += size;
 }
+std::function<void(const void*, std::size_t)> Output::sink() {
+  return [this](const void* data, std::size_t size) { write(data, size); };
+}
 std::uint64_t Output::written() const { return state_->bytes_written; }
 
 void Output::commit() { state_->commit(true); }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -33,6 +35,8 @@ class Output {
 
   /// Writes bytes through a buffer of 1 MiB; throws ResourceError with the reason.
   void write(const void* data, std::size_t size);
+  /// write() as a function, for the writers in formats/; valid as long as the output stays in its place.
+  std::function<void(const void* data, std::size_t size)> sink();
   std::uint64_t written() const;  ///< bytes passed to write() so far
   std::ostream& stream();         ///< the same buffer as a std::ostream; errors throw as above
 

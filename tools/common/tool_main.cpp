@@ -175,11 +175,10 @@ void Tool::State::parse() {
   if (common.threads == 0) common.threads = usable_processor_count();
 }
 
-/// Writes a manual for the build (cmake/install.cmake). True if the user asked for nothing else.
+/// Writes a part of the manual (docs/make_tools.sh, cmake/install.cmake). True if the user asked for nothing else.
 bool Tool::State::print_manual() const {
   const std::string wish = argc == 2 ? argv[1] : "";
-  if (wish == "--help-man") std::cout << man_page(app);
-  else if (wish == "--help-markdown") std::cout << markdown_page(app);
+  if (wish == "--help-markdown") std::cout << option_table(app);
   else if (wish == "--help-completion") std::cout << bash_completion(app);
   else return false;
   return true;

@@ -15,6 +15,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,6 +45,9 @@ enum class InputRole {
   of_scene,     ///< a file of the scene: the same, but --depfile may name state files instead
   replaceable,  ///< read completely before anything is written, so an output may replace it, as in --records c -o c
 };
+
+/// For number_option: any finite number from `least` on.
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 enum CommonOptions : unsigned {
   uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --volume... --state --allow-stale
@@ -101,6 +105,17 @@ class Tool {
 
   /// Adds -o,--output (or another option that names an output); history lines do not contain it.
   CLI::Option* output_option(std::string& path, const std::string& help, const std::string& names = "-o,--output");
+  /// Adds an option whose value is the name of a file, one of `words`, or a number from `least` to `most`.
+  CLI::Option* file_option(const std::string& names, std::string& file, const std::string& help);
+  CLI::Option* file_option(const std::string& names, std::vector<std::string>& files, const std::string& help);
+  CLI::Option* choice_option(const std::string& names, std::string& word, const std::vector<std::string>& words,
+                             const std::string& help);
+  template <class Number>  // int, float or double
+  CLI::Option* number_option(const std::string& names, Number& number, double least, double most,
+                             const std::string& help);
+  /// Adds an option whose value is a number between `least` and `most`, both excluded, or the word auto: no number.
+  CLI::Option* auto_option(const std::string& names, std::optional<double>& number, double least, double most,
+                           const std::string& help);
   /// Adds an option whose value is a count ("1M"), bytes ("2GiB") or "WIDTHxHEIGHT"; the default shown by
   /// --help is the variable's value.
   CLI::Option* count_option(const std::string& names, std::uint64_t& count, const std::string& help);
@@ -108,6 +123,11 @@ class Tool {
   CLI::Option* size_option(const std::string& names, int& width, int& height, const std::string& help);
   /// Leaves an option out of history_line(): it does not affect the output's content.
   void leave_out_of_history(const CLI::Option* option);
+
+  /// Throws InputError if the run has several frames and a name has no pattern for their numbers; skips empty names.
+  void check_patterns(const std::vector<std::string>& names) const;
+  /// The same for the name of an EXR output, which cannot be standard output.
+  void check_frame_output(const std::string& name) const;
 
   /// Parses, runs and reports. Returns the exit code for main. --stats and --depfile are written if the body returned
   /// 0, or 1 from a comparison, but not after an error.

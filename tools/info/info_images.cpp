@@ -11,6 +11,7 @@
 #include "lib/image/preview.h"
 #include "lib/image/statistics.h"
 #include "lib/image/why_mask.h"
+#include "tools/common/file_head.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
@@ -18,16 +19,8 @@ namespace {
 
 /// Loads an EXR with or without NaN, only R, G and B if wanted and present; any other format as lib/image reads it.
 Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
-  std::string magic(4, '\0');
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    magic.resize(std::fread(magic.data(), 1, magic.size(), file));
-    std::fclose(file);
-  }
-  if (magic != std::string("\x76\x2f\x31\x01", 4)) return load_image(path);
-  ExrReadOptions options;
-  options.allow_nan = allow_nan;
-  options.only_rgb = only_rgb;
-  return load_exr(path, options);
+  if (!head_of(path).starts_with("\x76\x2f\x31\x01")) return load_image(path);
+  return load_exr(path, {.allow_nan = allow_nan, .only_rgb = only_rgb});
 }
 
 /// Loads the channels that a picture of the image needs.

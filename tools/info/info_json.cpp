@@ -1,37 +1,16 @@
 // tools/info/info_json.cpp -- tempolux-info on JSON files: statistics, comparisons, plans.
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/json_file.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 256u << 20;
-constexpr int kMaxDepth = 32;
-
 [[noreturn]] void bad(const std::string& path, const std::string& why) { throw InputError(path + ": " + why); }
-
-Facts parse(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::file_size(path, error) > kMaxBytes && !error) bad(path, "more than 256 MiB of JSON");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) bad(path, "cannot be opened");
-  const auto limit_depth = [&](int depth, Facts::parse_event_t, Facts&) {
-    if (depth > kMaxDepth) bad(path, "nested deeper than 32 levels; this is no file of ours");
-    return true;
-  };
-  try {
-    return Facts::parse(std::istreambuf_iterator<char>(file), {}, limit_depth);
-  } catch (const nlohmann::json::parse_error& parse_error) {
-    bad(path, "byte " + std::to_string(parse_error.byte) + ": not JSON; make it anew");
-  }
-}
 
 /// The name of the format, such as "tempolux.stats"; a plan has its name in `format`.
 std::string schema_of(const Facts& document) {
@@ -58,7 +37,7 @@ void check_comparison(const std::string& path, const Facts& document) {
 }
 
 Facts load(const std::string& path) {
-  Facts document = parse(path);
+  Facts document = read_json(path);
   const std::string schema = schema_of(document);
   if (schema.empty()) bad(path, "JSON, but not of ours: it has no \"schema\": \"tempolux...\"");
   const Facts version = document.value("version", Facts());

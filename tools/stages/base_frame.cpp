@@ -1,7 +1,5 @@
 #include "tools/stages/base_frame.h"
 
-#include <cmath>
-
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
@@ -18,16 +16,6 @@ std::vector<std::uint8_t> read_mask(const std::string& name, const Picture& pict
   return nonzero_pixels(image);
 }
 
-/// True if the matrix is there and differs. Matrices are stored as float32, so those of one camera are equal to the
-/// bit.
-bool is_other(const Image& image, const char* name, const std::array<double, 16>& matrix) {
-  const auto found = image.matrices.find(name);
-  if (found == image.matrices.end()) return false;
-  for (std::size_t i = 0; i < 16; ++i)
-    if (float(found->second[i]) != float(matrix[i])) return true;
-  return false;
-}
-
 }  // namespace
 
 BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string& base, const SceneFrame& frame,
@@ -36,8 +24,7 @@ BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string
   tool.depends_on(mask);
   tool.depends_on(base, InputRole::replaceable);
   check_identity(tool, base, identity_in(result.base), frame);
-  if (is_other(result.base, "worldToCamera", picture.world_to_camera) ||
-      is_other(result.base, "worldToNDC", picture.world_to_ndc)) {
+  if (shows_other_camera(result.base, picture.camera)) {
     const std::string message = base + ": seen by another camera than frame " + std::to_string(frame.frame) + " is";
     if (!tool.common().allow_stale) throw InputError(message + "; give a base of this view, or pass --allow-stale");
     tool.warn(message);

@@ -1,12 +1,11 @@
 // tools/stages/base_frame.h -- reads --mask and --base: the pixels to trace, and the frame that gives the other pixels.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "lib/image/image.h"
+#include "lib/image/frame_identity.h"
 #include "tools/common/scene_input.h"
 
 namespace tempolux::tools {
@@ -19,7 +18,7 @@ struct BaseFrame {
 /// Size and camera of the picture to render.
 struct Picture {
   int width = 0, height = 0;
-  std::array<double, 16> world_to_camera{}, world_to_ndc{};  ///< as in its attributes (frames.md 3)
+  CameraMatrices camera;
 };
 
 /// Reads both files. Throws InputError if the mask has another size, or if the base shows another state of the scene

@@ -1,7 +1,6 @@
 #include "tools/stages/build_records.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -92,8 +91,7 @@ std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options,
     const bool own = maps.empty();
     const formats::PhotonMap map =
         own ? read_photons(tool, file, frame, LightNeeded::all, "dynamic") : read_earlier_change(tool, file, frame);
-    const std::array<double, 3>& origin = map.header.origin;
-    maps.emplace_back(standing, map.photons, density, Vec3d{origin[0], origin[1], origin[2]} - frame.origin);
+    maps.emplace_back(standing, map.photons, density, shift_of(map.header.origin, frame));
   }
   return maps;
 }

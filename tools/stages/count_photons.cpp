@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "lib/gather/gather_points.h"
 #include "lib/temporal/light_jumps.h"
-#include "tools/common/option_words.h"
 
 namespace tempolux::tools {
 namespace {
@@ -41,7 +41,7 @@ formats::PhotonMap read_map(Tool& tool, const std::string& name, const SceneFram
     throw InputError(name + ": holds a part of the light (" +
                      (map.header.part.empty() ? map.header.map : map.header.part) + "); name a global map");
   for (const std::string& kind : options.kinds)
-    if (("," + map.header.kinds + ",").find("," + kind + ",") == std::string::npos)
+    if (!holds_kind(map.header.kinds, kind))
       throw InputError(name + ": has no photons of kind " + kind + "; trace them with --kinds, or leave the kind out");
   return map;
 }
@@ -88,18 +88,17 @@ MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& fir
 
 }  // namespace
 
-void add_count_options(CLI::App& app, CountOptions& options) {
-  app.add_option("--photons", options.photons, ".photons file of the frame, or a pattern")->type_name("FILE");
-  app.add_option("--kinds", options.kinds,
-                 "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
-                 "caustic,indirect without a map")
+void add_count_options(Tool& tool, CountOptions& options) {
+  tool.file_option("--photons", options.photons, ".photons file of the frame, or a pattern");
+  tool.app()
+      .add_option("--kinds", options.kinds,
+                  "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
+                  "caustic,indirect without a map")
       ->delimiter(',')
       ->type_name("NAMES")
       ->default_str("indirect")
       ->check(CLI::IsMember({"direct", "caustic", "indirect"}));
-  app.add_option("--cell", options.mesh.cell, "longest edge of an element, m; 0: the filter's width")
-      ->capture_default_str()
-      ->check(number_between(0));
+  tool.number_option("--cell", options.mesh.cell, 0, kNoLimit, "longest edge of an element, m; 0: the filter's width");
 }
 
 CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const Tracer& tracer) {
@@ -115,10 +114,9 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
   if (options.for_windows) measured = segment.measured();
   mesh = options.for_windows ? widths_of_windows(options, *measured.front(), map.header.emitted_count)
                              : with_widths(options.mesh, frame, map.photons.size());
-  const auto& o = map.header.origin;
   const auto& emitted = map.totals.emitted_flux;
   MeshSums sums(tracer, MeshCuts(mesh.cell, measured), unit_of(emitted[0] + emitted[1] + emitted[2]));
-  sums.add(map.photons, Vec3(Vec3d{o[0], o[1], o[2]} - frame.origin));
+  sums.add(map.photons, Vec3(shift_of(map.header.origin, frame)));
   file.elements = all_elements(frame, sums.cuts());
   put_sums(sums, file.elements);
   file.header.history = map.header.history;
@@ -142,7 +140,7 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
 
 void write_mesh(Tool& tool, const formats::MeshirradFile& file, Output& output) {
   tool.stats().phase("write");
-  formats::write_meshirrad([&](const void* data, std::size_t size) { output.write(data, size); }, file);
+  formats::write_meshirrad(output.sink(), file);
   output.commit();
   tool.stats().end_phase();
   tool.stats().count("elements", double(file.elements.size()));

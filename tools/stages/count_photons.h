@@ -17,7 +17,7 @@ struct CountOptions {
   int frames = 33;           ///< frames in a full window
 };
 /// The options --photons, --kinds and --cell.
-void add_count_options(CLI::App& app, CountOptions& options);
+void add_count_options(Tool& tool, CountOptions& options);
 
 struct CountedPhotons {
   formats::MeshirradFile file;  ///< its header is complete except for the filter and the history, which is the map's

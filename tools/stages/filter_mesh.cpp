@@ -6,7 +6,6 @@
 
 #include "formats/text_header.h"
 #include "tools/stages/count_photons.h"
-#include "tools/common/option_words.h"
 
 namespace tempolux::tools {
 namespace {
@@ -52,26 +51,21 @@ int filter_mesh(int argc, char** argv) {
   Options options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  add_count_options(app, options.count);
+  add_count_options(tool, options.count);
   app.get_option("--photons")->required();
   auto* counts =
       app.add_flag("--counts", options.count.for_windows,
                    "count alone, by elements that all frames of the segment share: for gather-temporal density");
-  app.add_option("--filter", options.filter, "how elements are smoothed")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"none", "box", "gaussian"}))
+  tool.choice_option("--filter", options.filter, {"none", "box", "gaussian"}, "how elements are smoothed")
       ->excludes(counts);
-  app.add_option(
-         "--filter-width", options.count.mesh.filter.width,
-         "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that 256 photons count in the mean")
-      ->capture_default_str()
-      ->check(number_between(0));
+  tool.number_option(
+      "--filter-width", options.count.mesh.filter.width, 0, kNoLimit,
+      "half a box's edge, or a Gaussian's standard deviation, m; 0: so wide that 256 photons count in the mean");
   tool.output_option(options.output, ".meshirrad file, or a pattern; - for standard output")->required();
   tool.common_options(uses_scene | uses_frames);
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    if (frames.size() > 1 && !has_frame_pattern(options.output))
-      throw InputError("--output: several frames need a pattern, for example m.####.meshirrad");
+    tool.check_patterns({options.output});
     using Kind = MeshFilter::Kind;
     options.count.mesh.filter.kind = options.filter == "none"  ? Kind::none
                                      : options.filter == "box" ? Kind::box

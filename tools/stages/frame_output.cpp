@@ -1,17 +1,9 @@
 #include "tools/stages/frame_output.h"
 
-#include "lib/image/frame_identity.h"
 #include "lib/image/object_names.h"
 
 namespace tempolux::tools {
 namespace {
-
-/// "f.0012.exr" becomes "f.0012_a.exr".
-std::string half_name(const std::string& path, char letter) {
-  const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
-  const std::size_t end = dot == std::string::npos || (slash != std::string::npos && dot < slash) ? path.size() : dot;
-  return path.substr(0, end) + '_' + letter + path.substr(end);
-}
 
 /// Objects whose names the frame stores: those in id.object, and those that the account names.
 std::set<std::uint32_t> objects_of(const Image& data, const FrameDescription& description) {
@@ -22,22 +14,12 @@ std::set<std::uint32_t> objects_of(const Image& data, const FrameDescription& de
   return objects;
 }
 
-void describe(const FrameDescription& description, int samples, Image& image) {
-  image.text["tempolux:history"] = description.history;
-  set_identity(image, description.identity);
-  image.numbers["tempolux:frame"] = description.frame;
-  image.numbers["tempolux:samples"] = samples;
-  image.numbers["framesPerSecond"] = description.fps;
-  image.matrices["worldToCamera"] = description.world_to_camera;
-  image.matrices["worldToNDC"] = description.world_to_ndc;
-}
-
 }  // namespace
 
 FrameOutputs::FrameOutputs(const std::string& path, bool halves) {
   outputs_.emplace_back(path);
   if (!halves) return;
-  for (char letter : {'a', 'b'}) outputs_.emplace_back(half_name(path, letter));
+  for (const char* half : {"_a", "_b"}) outputs_.emplace_back(name_with(path, half));
 }
 
 void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
@@ -49,7 +31,9 @@ void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const
     Image image = data;
     add_colour_channels(*parts[i], channels, image);
     if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
-    describe(description, parts[i]->samples, image);
+    describe_frame(image, description.identity, description.frame, description.fps, description.history,
+                   description.camera);
+    image.numbers["tempolux:samples"] = parts[i]->samples;
     set_object_names(image, objects, description.object_names);
     if (i == 0)  // of the mean of all samples
       for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;

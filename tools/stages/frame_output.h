@@ -1,13 +1,13 @@
 // tools/stages/frame_output.h -- writes the EXR files of one rendered frame: the mean and, on request, its halves.
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "formats/identity.h"
 #include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
 #include "lib/render/frame_renderer.h"
 #include "tools/common/tool_main.h"
 
@@ -19,7 +19,7 @@ struct FrameDescription {
   std::string history;
   int frame = 0;
   double fps = 24;
-  std::array<double, 16> world_to_camera{}, world_to_ndc{};
+  CameraMatrices camera;
   std::map<std::string, double> account;  ///< account_of()
   std::vector<std::string> object_names;  ///< by id.object
 };

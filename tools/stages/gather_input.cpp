@@ -46,9 +46,13 @@ void check_photons(Tool& tool, const std::string& file, const formats::PhotonHea
   check_kinds(tool, file, header.kinds, kinds, frame, "trace it with --kinds caustic,indirect");
 }
 
-}  // namespace
-
-namespace {
+/// Throws InputError unless the file is this part of photonmap-split's output. `option`: the option that names it.
+void require_part(const std::string& file, const std::string& found, const std::string& part,
+                  const std::string& option) {
+  if (found == part) return;
+  throw InputError(file + ": is " + (found.empty() ? "not a part of light" : "the " + found + " part") + "; give " +
+                   option + " the " + part + " part that photonmap-split writes");
+}
 
 GatherPoints checked_points(Tool& tool, const std::string& file, const formats::IrradpointsFile& in,
                             const SceneFrame& frame) {
@@ -58,31 +62,30 @@ GatherPoints checked_points(Tool& tool, const std::string& file, const formats::
           in.header.history, in.header.emitted_count};
 }
 
-/// Loads one of the files of photonmap-split.
-formats::IrradpointsFile load_part(Tool& tool, const std::string& file, const std::string& part,
-                                   const std::string& option) {
+formats::IrradpointsFile load_points(Tool& tool, const std::string& file) {
   tool.depends_on(file);
-  formats::IrradpointsFile in = formats::load_irradpoints(file);
-  if (in.header.part != part)
-    throw InputError(file + ": is " +
-                     (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " +
-                     option + " the " + part + " part that photonmap-split writes");
-  return in;
+  return formats::load_irradpoints(file);
+}
+
+formats::PhotonMap load_map(Tool& tool, const std::string& file) {
+  tool.depends_on(file);
+  return formats::load_photons(file);
 }
 
 }  // namespace
 
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
-  tool.depends_on(file);
-  const formats::IrradpointsFile in = formats::load_irradpoints(file);
+  const formats::IrradpointsFile in = load_points(tool, file);
   refuse_part(file, in.header.part);
   return checked_points(tool, file, in, frame);
 }
 
 DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file, const std::string& high_file,
                                         const SceneFrame& frame) {
-  formats::IrradpointsFile low = load_part(tool, low_file, "low", "--points");
-  const formats::IrradpointsFile high = load_part(tool, high_file, "high", "--high");
+  formats::IrradpointsFile low = load_points(tool, low_file);
+  require_part(low_file, low.header.part, "low", "--points");
+  const formats::IrradpointsFile high = load_points(tool, high_file);
+  require_part(high_file, high.header.part, "high", "--high");
   check_identity(tool, high_file, high.header.identity, frame);
   DividedGatherPoints divided;
   divided.high_shares = tempolux::join_parts(low.records, high.records);
@@ -96,8 +99,7 @@ DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file,
 
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
                                 const std::string& wanted) {
-  tool.depends_on(file);
-  formats::PhotonMap map = formats::load_photons(file);
+  formats::PhotonMap map = load_map(tool, file);
   check_photons(tool, file, map.header, frame, needed, wanted);
   return map;
 }
@@ -117,18 +119,10 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
 
 DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high,
                                       const SceneFrame& frame, LightNeeded needed) {
-  DividedPhotonMap map;
-  for (const bool is_high : {false, true}) {
-    const std::string& file = is_high ? high : low;
-    const std::string part = is_high ? "high" : "low";
-    formats::PhotonMap& in = is_high ? map.high : map.whole;
-    tool.depends_on(file);
-    in = formats::load_photons(file);
-    if (in.header.part != part)
-      throw InputError(
-          file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") +
-          "; give " + (is_high ? "--high" : "--photons") + " the " + part + " part that photonmap-split writes");
-  }
+  DividedPhotonMap map{load_map(tool, low), {}};
+  require_part(low, map.whole.header.part, "low", "--photons");
+  map.high = load_map(tool, high);
+  require_part(high, map.high.header.part, "high", "--high");
   const formats::PhotonHeader &one = map.whole.header, &other = map.high.header;
   // Both parts must come from one map: the same paths, emitted flux and state of the scene.
   if (one.emitted_count != other.emitted_count || one.origin != other.origin || one.columns != other.columns ||
@@ -141,8 +135,7 @@ DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const 
 }
 
 formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame) {
-  tool.depends_on(file);
-  formats::PhotonMap map = formats::load_photons(file);
+  formats::PhotonMap map = load_map(tool, file);
   if (map.header.map != "dynamic") throw InputError(file + ": a " + map.header.map + " map; give a dynamic one");
   formats::Identity identity = map.header.identity;
   identity.moving_geometry.clear(), identity.lights.clear(), identity.materials.clear();
@@ -161,7 +154,7 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   header.emitted_count = points.emitted_count;
   header.kinds = points.kinds;
   header.columns = formats::column_points_noise;
-  formats::IrradpointsWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  formats::IrradpointsWriter writer(output.sink(), header);
   writer.write(to_file(points.points, frame));
   writer.finish();
   output.commit();
@@ -186,7 +179,7 @@ formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<cons
 
 void write_records(const formats::IrradcacheHeader& header, const std::vector<formats::IrradianceCacheRecord>& records,
                    Output& output) {
-  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  formats::IrradcacheWriter writer(output.sink(), header);
   writer.write(records);
   writer.finish();
   output.commit();

@@ -59,9 +59,7 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
       options.irradcache.empty() && options.points.empty() && options.meshirrad.empty() &&
       (options.photons_alone || formats::PhotonReader(name, {.digest = false}).header().kinds != "caustic");
   const LightNeeded needed = alone ? LightNeeded::all : LightNeeded::caustic;
-  const auto shift = [&](const formats::PhotonMap& map) {
-    return Vec3d{map.header.origin[0], map.header.origin[1], map.header.origin[2]} - frame.origin;
-  };
+  const auto shift = [&](const formats::PhotonMap& map) { return shift_of(map.header.origin, frame); };
   tool.stats().phase("read photons");
   formats::PhotonMap map;
   Vec3d moved{};

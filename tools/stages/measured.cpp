@@ -1,15 +1,15 @@
 #include "tools/stages/measured.h"
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json_file.h"
 
 namespace tempolux::tools {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// "AQM 8 % with 6250 photons a frame (9.6 % with 3125); asked: 10 %"
 std::string in_words(const Json& chosen, const Json& tried, double share) {
@@ -42,17 +42,13 @@ Measured chosen_of(const Json& segment, double share) {
 }  // namespace
 
 std::map<int, Measured> measured_photons(const std::string& path, double share) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(path + ": cannot open; make measure METHOD=preview writes it");
+  const Json table = read_json(path);
   std::map<int, Measured> measured;
   try {
-    const Json table = Json::parse(stream);
     if (table.at("format") != "tempolux measured") throw InputError("another format");
     for (const Json& segment : table.at("segments"))
       measured[segment.at("first").get<int>()] = chosen_of(segment, share);
-  } catch (const Json::exception& error) {
-    throw InputError(path + ": " + error.what() + "; make measure METHOD=preview writes it anew");
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     throw InputError(path + ": " + error.what() + "; make measure METHOD=preview writes it anew");
   }
   return measured;

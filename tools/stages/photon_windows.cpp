@@ -11,7 +11,6 @@
 #include "formats/text_header.h"
 #include "lib/temporal/photon_windows.h"
 #include "tools/stages/count_photons.h"
-#include "tools/common/option_words.h"
 
 namespace tempolux::tools {
 namespace {
@@ -169,14 +168,11 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
   if (lit > 0) tool.stats().set("mean_window." + std::to_string(number), frames / lit);
 }
 
-void check(const Options& options, const std::vector<int>& frames) {
+void check(const Tool& tool, const Options& options) {
   if (options.counts.empty() == options.count.photons.empty())
     throw InputError(
         "--photons or --counts: name the photons of the frames, or what st-filter mesh --counts made of them");
-  if (frames.size() > 1 && !has_frame_pattern(options.output))
-    throw InputError("--output: several frames need a pattern, for example d.####.meshirrad");
-  if (frames.size() > 1 && !options.count.photons.empty() && !has_frame_pattern(options.count.photons))
-    throw InputError("--photons: several frames need a pattern, for example p.####.photons");
+  tool.check_patterns({options.output, options.count.photons});
 }
 
 }  // namespace
@@ -190,29 +186,23 @@ int photon_windows(int argc, char** argv) {
   options.count.for_windows = true;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  add_count_options(app, options.count);
+  add_count_options(tool, options.count);
   tool.leave_out_of_history(
       app.add_option("--counts", options.counts,
                      "in place of photons: .meshirrad files of st-filter mesh --counts, of the frame and those around "
                      "it, or a pattern")
           ->type_name("FILE..."));
-  app.add_option("--reach", options.window.reach, "frames that a window reaches to each side at most")
-      ->capture_default_str()
-      ->check(number_between(0, 127));
-  app.add_option("--false-alarms", options.window.false_alarms,
-                 "share of windows that end too early although light is constant")
-      ->capture_default_str()
-      ->check(number_between(1e-9, 0.5));
-  app.add_option("--filter-width", options.count.mesh.filter.width,
-                 "deviation of the narrowest Gaussian by which elements are smoothed, m; 0: half of --cell")
-      ->capture_default_str()
-      ->check(number_between(0));
+  tool.number_option("--reach", options.window.reach, 0, 127, "frames that a window reaches to each side at most");
+  tool.number_option("--false-alarms", options.window.false_alarms, 1e-9, 0.5,
+                     "share of windows that end too early although light is constant");
+  tool.number_option("--filter-width", options.count.mesh.filter.width, 0, kNoLimit,
+                     "deviation of the narrowest Gaussian by which elements are smoothed, m; 0: half of --cell");
   tool.output_option(options.output, ".meshirrad file, or a pattern")->required();
   tool.common_options(uses_scene | uses_frames);
   return tool.run([&] {
     std::vector<int> frames = tool.common().frames;
     std::ranges::sort(frames);  // each frame is read once
-    check(options, frames);
+    check(tool, options);
     options.count.frames = 2 * options.window.reach + 1;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);

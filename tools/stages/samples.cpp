@@ -11,12 +11,14 @@
 #include <set>
 
 #include "formats/error.h"
+#include "lib/core/json_file.h"
 #include "lib/plan/graph_builder.h"
 
 namespace tempolux::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 constexpr double kWidth = 128;  ///< width in pixels of the larger sample, at most half of the picture's
 constexpr int kFewerRays = 4;   ///< of a record
@@ -69,9 +71,9 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
                             const std::vector<std::vector<std::string>>& files) {
   Cost sum;
   for (const std::vector<std::string>& names : files) {
-    std::ifstream stream(folder + "/" + beside(names.front(), ".json"));
-    if (!stream) return std::nullopt;
-    const nlohmann::json json = nlohmann::json::parse(stream);
+    const std::string stats = folder + "/" + beside(names.front(), ".json");
+    if (!fs::exists(stats)) return std::nullopt;
+    const Json json = read_json(stats);
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
       if (has_channel(std::string(stage.work), phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
@@ -90,7 +92,7 @@ std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage,
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish) {
   const Planned& whole = planner.planned();
   const double large = std::min(0.5, kWidth / wish.width);
-  nlohmann::json json = {{"scales", {large / 2, large}}};
+  Json json = {{"scales", {large / 2, large}}};
   PlanFolder out(folder);
   for (std::size_t i = 0; i < kSamples.size(); ++i) {
     const double scale = json["scales"][i];
@@ -123,9 +125,9 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
 }
 
 std::vector<StageEstimate> estimate_from(const std::string& folder) {
-  std::ifstream stream(folder + "/samples.json");
-  if (!stream) throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
-  const nlohmann::json json = nlohmann::json::parse(stream);
+  if (!fs::exists(folder + "/samples.json"))
+    throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
+  const Json json = read_json(folder + "/samples.json");
   std::vector<StageEstimate> estimates;
   for (const StageInfo& stage : kStages) {
     const std::string name(stage.name);

@@ -1,7 +1,5 @@
 #include "tools/stages/update_photons.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "formats/error.h"
 #include "formats/photons/layout.h"
+#include "lib/core/machine_memory.h"
 #include "lib/photon/photon_ledger.h"
 #include "lib/photon/photon_refine.h"
 #include "tools/common/arguments.h"
@@ -42,7 +41,7 @@ bool is_still(const formats::Identity& a, const formats::Identity& b) {
 
 /// --refine reads the map of the frame itself, --update the map of the previous frame.
 std::string previous_name(const UpdateArguments& arguments, int frame) {
-  return frame_name(arguments.update, parse_count(arguments.refine) > 0 ? frame : frame - 1);
+  return frame_name(arguments.update, arguments.refine > 0 ? frame : frame - 1);
 }
 
 /// Number of groups that fit into the share besides `spent` paths of pilots.
@@ -56,7 +55,7 @@ std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& 
 /// True if the map takes at most a quarter of the memory.
 bool may_keep(const Tool& tool, std::uint64_t photons) {
   constexpr std::uint64_t bytes_of_photon = sizeof(formats::Photon) + sizeof(std::array<std::uint16_t, 2>);
-  auto memory = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+  std::uint64_t memory = machine_memory();
   if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0) memory = std::min(memory, limit);
   return photons <= memory / 4 / bytes_of_photon;
 }
@@ -88,46 +87,40 @@ PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t ex
 
 }  // namespace
 
-void add_update_options(CLI::App& app, UpdateArguments& arguments) {
-  app.add_option("--update", arguments.update,
-                 "map of the previous frame, or a pattern: its groups are kept, except those that are traced again; "
-                 "needs photons in media and --majorants")
-      ->type_name("FILE");
+void add_update_options(Tool& tool, UpdateArguments& arguments) {
+  tool.file_option("--update", arguments.update,
+                   "map of the previous frame, or a pattern: its groups are kept, except those that are traced again; "
+                   "needs photons in media and --majorants");
+  CLI::App& app = tool.app();
   app.add_option("--share", arguments.share,
                  "with --update: share of the paths that are traced again, such as 10%, including pilots")
       ->type_name("PERCENT");
   std::vector<std::string> names;
   for (const auto& [name, strategy] : kStrategies) names.push_back(name);
-  app.add_option("--strategy", arguments.strategy,
-                 "groups that are traced again first. oldest; random; census: groups whose stored photons saw the "
-                 "largest change of smoke. By pilots: fde: pilots that see another extinction; dip: pilots that smoke "
-                 "scatters at other places; hybrid: the amount of change along pilots; path: pilots that take another "
-                 "path. all: every group. Priorities are multiplied by age, except for oldest and random")
-      ->capture_default_str()
-      ->check(CLI::IsMember(names));
+  tool.choice_option(
+      "--strategy", arguments.strategy, names,
+      "groups that are traced again first. oldest; random; census: groups whose stored photons saw the "
+      "largest change of smoke. By pilots: fde: pilots that see another extinction; dip: pilots that smoke "
+      "scatters at other places; hybrid: the amount of change along pilots; path: pilots that take another "
+      "path. all: every group. Priorities are multiplied by age, except for oldest and random");
   app.add_option("--pilots", arguments.pilots,
                  "for a map that will be updated by pilots: share of each group's paths that are pilots, such as 3%; "
                  "at least one path, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
-  // For comparison with the papers, so --help does not show them: docs/methods/volume_photons.md.
-  app.add_option("--age-floor", arguments.how.age_floor,
-                 "of --update: groups as many frames old go before all others; 0: none")
-      ->group("")
-      ->check(number_between(0, 1e6));
+  // For comparison with the papers, so --help does not show it: docs/methods/volume_photons.md.
   app.add_option("--age-power", arguments.how.age_power,
                  "of --update: priorities are times age to this power; 0: as in the papers")
       ->group("")
       ->check(number_between(0, 16));
-  app.add_option("--refine", arguments.refine,
-                 "add this many paths (10k, 1M) to the groups in which they reduce the noise of light in smoke most, "
-                 "instead of tracing groups again; --update is then the map of the frame itself")
-      ->type_name("N")
-      ->capture_default_str();
+  tool.count_option(
+      "--refine", arguments.refine,
+      "add this many paths (10k, 1M) to the groups in which they reduce the noise of light in smoke most, "
+      "instead of tracing groups again; --update is then the map of the frame itself");
 }
 
 void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments) {
-  const bool refines = parse_count(arguments.refine) > 0;
+  const bool refines = arguments.refine > 0;
   arguments.how.strategy = kStrategies.at(arguments.strategy);
   if (static_or_dynamic && arguments.updates()) throw InputError("--update: only with --map global");
   if (!arguments.updates() && refines)
@@ -142,9 +135,7 @@ void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArgu
   if (tool.common().volume.majorants.empty())
     throw InputError(
         "--update: needs the --majorants of the segment (scene-plan writes state/FRAME-KEY.majorants): without them "
-        "photons "
-        "look at "
-        "other places in each frame");
+        "photons look at other places in each frame");
 }
 
 std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& photons, int frame) {
@@ -163,8 +154,7 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   const int frame = map.frame.frame;
   const std::string name = previous_name(arguments, frame);
   tool.depends_on(name, InputRole::replaceable);
-  if (const std::uint64_t extra = parse_count(arguments.refine); extra > 0)
-    return refine_map(tool, name, extra, map, sink);
+  if (arguments.refine > 0) return refine_map(tool, name, arguments.refine, map, sink);
   // If nothing has changed no group is traced, so changes need not be measured.
   const bool is_here = kept.name == name && kept.map.is_kept();
   const formats::PhotonHeader before =

@@ -1,6 +1,7 @@
 // tools/stages/update_photons.h -- photon-trace --update and --refine: makes a map from an earlier one.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -14,12 +15,12 @@ namespace tempolux::tools {
 struct UpdateArguments {
   std::string update;  ///< file or pattern; "": no earlier map
   std::string share, pilots = "0%", strategy = "oldest";
-  std::string refine = "0";
+  std::uint64_t refine = 0;  ///< further paths
   UpdateOptions how;
   bool updates() const { return !update.empty(); }
 };
 
-void add_update_options(CLI::App& app, UpdateArguments& arguments);
+void add_update_options(Tool& tool, UpdateArguments& arguments);
 /// Refuses options that contradict each other, and sets `how`. `static_or_dynamic`: true if --map is "static" or
 /// "dynamic".
 void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments);

@@ -121,7 +121,7 @@ TEST(ComparisonTest, TextSaysWhatMustNotBeQuoted) {
 }
 
 TEST(ComparisonTest, ReaderRefusesWhatIsNotAComparison) {
-  EXPECT_EQ(refusal("{"), ": byte 2: not JSON");
+  EXPECT_EQ(refusal("{"), ": byte 2: not JSON; make it anew");
   EXPECT_EQ(refusal("[]"), ": not a tempolux.comparison file: its \"schema\" is another");
   EXPECT_EQ(refusal(R"({"schema": "tempolux.stats", "version": "1.0"})"),
             ": not a tempolux.comparison file: its \"schema\" is another");
@@ -134,7 +134,7 @@ TEST(ComparisonTest, ReaderRefusesWhatIsNotAComparison) {
   document["total"]["mse"] = 1;
   document["mode"] = "own_halves";
   EXPECT_EQ(refusal(document.dump()), ": compares two halves of one image: its noise, not its error");
-  EXPECT_EQ(refusal(std::string(200000, '[')), ": byte 200001: not JSON");
+  EXPECT_EQ(refusal(std::string(200000, '[')), ": nested deeper than 32 levels; this is no file of ours");
 }
 
 }  // namespace

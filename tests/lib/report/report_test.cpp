@@ -93,7 +93,7 @@ TEST(GnuplotTest, DrawsTheSamePlotTwiceAndTellsOnWhatItFails) {
   } catch (const ResourceError& error) {
     EXPECT_NE(std::string(error.what()).find("undefined function"), std::string::npos) << error.what();
   }
-  EXPECT_THROW(run_gnuplot("pause 60\n", 0.2), ResourceError);
+  EXPECT_THROW(run_gnuplot("pause 60\n", 1), ResourceError);
 }
 
 TEST(ReportInputTest, RunsOnTheCommandLineAreCheckedBeforeFilesAreOpened) {

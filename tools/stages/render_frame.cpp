@@ -1,0 +1,244 @@
+#include "tools/stages/render_frame.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "formats/error.h"
+#include "lib/core/random.h"
+#include "lib/image/exr_io.h"
+#include "lib/material/smooth_material.h"
+#include "lib/render/audit.h"
+#include "lib/render/coverage_channel.h"
+#include "lib/render/influence_channels.h"
+#include "lib/render/pilot_photons.h"
+#include "lib/render/see_photons.h"
+#include "lib/render/seen_channels.h"
+#include "lib/render/seen_spheres.h"
+#include "lib/scene/light_units.h"
+#include "tools/stages/base_frame.h"
+#include "tools/stages/frame_account.h"
+#include "tools/stages/frame_output.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// The neighbouring frames that motion needs; empty if it is not requested.
+struct MotionFrame {
+  std::optional<SceneFrame> frame;
+  std::optional<CameraView> view;
+  MotionFrame(SceneInput& input, const RenderOptions& options, int camera, int number) {
+    if (std::find(options.channels.begin(), options.channels.end(), "motion") == options.channels.end()) return;
+    frame = input.at(number, false);
+    view.emplace(frame->camera(camera), frame->origin, options.width, options.height);
+  }
+  NeighbourFrame get() const { return {frame ? &*frame : nullptr, view ? &*view : nullptr}; }
+};
+
+void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer) {
+  Stats& stats = tool.stats();
+  stats.count("camera_rays", double(rendered.rays.camera));
+  stats.count("bounce_rays", double(rendered.rays.bounce));
+  stats.count("shadow_rays", double(rendered.rays.shadow));
+  stats.count("noise_rays",
+              double(rendered.noise_rays.camera + rendered.noise_rays.bounce + rendered.noise_rays.shadow));
+  stats.count("lookups", double(rendered.rays.lookups));
+  stats.count("refused_rays", double(tracer.refused_ray_count()));
+  stats.count("gathered_in_pixels", double(rendered.rays.gathered));
+  stats.count("points_read", double(rendered.rays.points_read));
+  stats.set("samples_per_pixel", rendered.samples_per_pixel);
+  stats.set("mean_radiance", rendered.mean_radiance);
+  stats.set("spread", rendered.spread);
+  if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
+}
+
+/// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
+/// a reference any such light counts. Other frames may lack as much as an audit tolerates: photons of these lights
+/// measure the light.
+void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionTable& table,
+                           const CameraView& view, const KnownLight* known, const RenderedFrame& rendered) {
+  constexpr std::uint64_t kPaths = 1 << 15;
+  const SceneFrame& frame = scene.frame();
+  const auto shines =
+      std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
+  const std::uint32_t smooth = shines == frame.lights.end() ? kNone : first_smooth_material(frame);
+  if (smooth == kNone || (known && known->has_caustic())) return;
+  char share[48] = "";
+  if (known) {
+    const formats::PhotonBlock photons = pilot_photons(
+        scene.tracer, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), "caustic", kPaths, 0);
+    const SeenPhotons missing = see_photons(scene, view, photons).caustic;
+    if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
+    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing.mean / rendered.mean_radiance);
+  }
+  const std::string &material = frame.materials[smooth].name, &light = shines->light.name;
+  tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
+            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
+            (light.empty() ? "" : ", as that of light \"" + light + "\"") +
+            ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
+}
+
+/// Measures the bias of the frame's layers. Photons find the light of lamps, camera paths that of sun and sky: few
+/// photons of sun and sky are in view, and few paths meet a bright spot beside a lamp. No path meets a sun by way of a
+/// mirror or smooth glass; then photons find all light.
+std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const RenderScene& scene,
+                              const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
+                              const RenderedFrame& rendered) {
+  if (!(options.audit > 0)) return {};
+  tool.stats().phase("audit", true);
+  Image ids{view.width(), view.height(), {}, {}, {}, {}};
+  add_data_channels(scene, view, {"id"}, {}, {}, ids);
+  const Tracer& tracer = scene.tracer;
+  const bool hidden = scene.lights.has_suns() && first_smooth_material(tracer.frame()) != kNone,
+             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
+  const AuditEffort effort = audit_effort(options.audit, rendered.rays, photons, paths,
+                                          mix64(frame_options.seed + std::uint64_t(tracer.frame().frame)));
+  FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
+  if (photons)
+    audit.add_photons(tracer, aimed_lights(tracer, table, view, hidden ? Lights::Which::all : Lights::Which::placed),
+                      effort);
+  if (paths) {
+    const Lights distant(tracer.frame(), table, Lights::Which::distant);
+    audit.add_paths({tracer, distant, distant.has_suns()}, effort);
+  }
+  return audit.entries();
+}
+
+/// Options of the frame `number`, without mask and known light.
+FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
+  const bool yardstick = options.integrator == "path";
+  FrameOptions frame = options.frame;
+  frame.seed = tool.common().seed_for_frame(number);
+  // With the frame's own random numbers a reference would have the frame's noise, and the frame's error would seem too
+  // small.
+  if (yardstick) frame.seed = mix64(frame.seed ^ 0x7265666572656e63ull);
+  frame.spread_outliers = !options.keep_outliers && !yardstick;
+  frame.progress = [&tool](double fraction) { tool.progress(fraction); };
+  return frame;
+}
+
+void render(Tool& tool, SceneInput& input, const RenderOptions& options, int number, StaticTree& standing) {
+  FrameOutputs outputs(frame_name(options.output, number), options.frame.halves);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(number);
+  if (options.integrator == "path" && number == tool.common().frames.front()) {
+    // With photons or a cache, the tools that made them have given this warning.
+    if (const std::string doubt = doubt_of_light_units(input.scene());
+        tool.common().light_units == "raw" && !doubt.empty())
+      tool.warn(doubt);
+  }
+  const int camera = input.scene().camera_node(tool.common().camera);
+  const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
+  const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
+  FrameOptions frame_options = options_of(tool, options, number);
+  BaseFrame base;
+  if (!options.mask.empty()) {
+    const Picture picture{options.width, options.height, {view.world_to_camera(), view.world_to_ndc()}};
+    base = read_base_frame(tool, frame_name(options.mask, number), frame_name(options.base, number), frame, picture);
+    frame_options.mask = base.mask;
+  }
+  tool.stats().phase("build");
+  const Tracer tracer(frame, standing);
+  const Lights lights(frame, input.emission(frame.frame));
+  const bool yardstick = options.integrator == "path";
+  const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
+  const IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
+
+  tool.stats().phase("render", true);
+  if (!yardstick) frame_options.known = &light.get();
+  const RenderedFrame rendered = render_frame(scene, view, frame_options);
+
+  if (number == tool.common().frames.front())
+    warn_of_missing_light(tool, scene, input.emission(frame.frame), view, frame_options.known, rendered);
+  const std::vector<AuditEntry> audited =
+      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
+  tool.stats().phase("data channels", true);
+  Image image{options.width, options.height, {}, {}, {}, {}};
+  add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
+  add_coverage_channel(scene, view, options.channels, image);
+  add_seen_channels(scene, view, options.channels, image);
+  add_influence_channels(scene, view, light.get().localised, options.channels, image);
+  tool.stats().phase("write");
+  const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
+                                                                              : ExrWriteOptions::Compression::zip};
+  const FrameDescription description{
+      identity_of(frame),        light.history() + tool.history_line(number),   frame.frame,
+      input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account_of(rendered, audited),
+      input.scene().object_names};
+  outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
+  tool.stats().end_phase();
+  count_work(tool, rendered, tracer);
+  report_account(tool, rendered, audited, frame_options, input.scene().object_names);
+}
+
+/// A scene without light may be intended (unlit materials, depth only), but a black frame needs an explanation.
+void warn_of_darkness(Tool& tool, const Scene& scene) {
+  if (std::ranges::any_of(scene.materials, &Material::unlit)) return;
+  try {
+    require_lights(scene);
+  } catch (const InputError& error) { tool.warn(error.what()); }
+}
+
+}  // namespace
+
+void check(const Tool& tool, RenderOptions& options) {
+  tool.check_frame_output(options.output);
+  for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
+    if (options.output.ends_with(other))
+      throw InputError("--output " + options.output +
+                       ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
+  if (options.integrator == "photons" && !(options.light.irradcache.empty() && options.light.points.empty()))
+    throw InputError("--integrator photons reads no cache and no points; leave them out, or the integrator");
+  if (!options.light.meshirrad.empty() &&
+      !(options.light.irradcache.empty() && options.light.points.empty() && options.integrator == "auto"))
+    throw InputError(
+        "--meshirrad and --irradcache, --points or --integrator: a light texture is all indirect light by itself; "
+        "leave out one");
+  if (options.integrator == "photons" && options.light.photons.empty())
+    throw InputError("--integrator photons: name the photon map with --photons FILE");
+  if (!options.light.dynamic.empty() && options.light.photons.empty())
+    throw InputError(
+        "--dynamic: what movers change is nothing alone; name the segment's static map with --photons FILE");
+  if (!options.light.high.empty() && options.light.points.empty() &&
+      (options.light.photons.empty() || !options.light.dynamic.empty()))
+    throw InputError("--high: name the low part of the same map with --points FILE or --photons FILE");
+  if (!options.light.high.empty() && !options.light.points.empty() && !options.light.irradcache.empty())
+    throw InputError(
+        "--high: records of --irradcache hold the high part; give irradcache-build records --high, and the whole "
+        "points here");
+  if (options.integrator == "cache" && options.light.irradcache.empty())
+    throw InputError("--integrator cache: name the cache with --irradcache FILE");
+  if (options.integrator == "path" && !options.traces_paths())
+    throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
+  options.light.photons_alone = options.integrator == "photons";
+  options.light.influence.high *= options.light.influence.low / InfluenceThresholds{}.low;  // the same ratio
+  if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
+  if (!options.base.empty() && options.frame.halves)
+    throw InputError(
+        "--halves: pixels of --base are the same in both, so that they are not independent; leave out one");
+  if (!options.base.empty() && options.half_float)
+    throw InputError("--half: would round the pixels of --base, which are kept bit for bit; leave out one");
+  if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.01;
+  else options.frame.pixel_error = options.pixel_error;
+  const bool halves = options.frame.halves;
+  if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
+  if (halves && options.pixel_error > 0)
+    throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
+  if (halves && options.frame.seen_error > 0)
+    throw InputError("--seen-error: halves take the same samples everywhere; leave out one");
+  if (options.frame.seen_error > 0 && options.pixel_error < 0)
+    options.frame.pixel_error = pixel_error_of_codes(options.frame.seen_error);
+  if (options.frame.seen_error > 0 && !(options.frame.pixel_error > 0))
+    throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
+  if (halves) options.frame.pixel_error = 0;
+  options.frame.sample_halves = wants_sample_halves(options.channels);
+  check_channels(options.channels);
+}
+
+void render_frames(Tool& tool, SceneInput& input, const RenderOptions& options) {
+  warn_of_darkness(tool, input.scene());
+  StaticTree standing;
+  for (const int frame : tool.common().frames) render(tool, input, options, frame, standing);
+}
+
+}  // namespace tempolux::tools

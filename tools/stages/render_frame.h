@@ -1,0 +1,34 @@
+// tools/stages/render_frame.h -- frame-render: renders the frames of one scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/render/frame_renderer.h"
+#include "tools/common/scene_input.h"
+#include "tools/stages/indirect_light.h"
+
+namespace tempolux::tools {
+
+struct RenderOptions {
+  std::string scene, output, integrator = "auto", compression = "zip", mask, base;
+  std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
+  FrameOptions frame;
+  IndirectLightOptions light;
+  double pixel_error = -1;
+  bool half_float = false, keep_outliers = false;
+  int width = 640, height = 360;
+  double audit = 0;  ///< share of the frame's camera rays
+
+  bool traces_paths() const {
+    return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty();
+  }
+};
+
+/// Throws InputError for options that contradict each other, and sets the options that follow from others.
+void check(const Tool& tool, RenderOptions& options);
+
+/// Renders the frames of the run and writes their files.
+void render_frames(Tool& tool, SceneInput& input, const RenderOptions& options);
+
+}  // namespace tempolux::tools

@@ -1,0 +1,166 @@
+#include "tools/stages/warp_frames.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "lib/aqm/animation_quality.h"
+#include "lib/image/frame_identity.h"
+#include "lib/image/why_mask.h"
+#include "lib/render/frame_renderer.h"
+#include "lib/warp/flow_of_view.h"
+#include "lib/warp/warped_image.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// The output files of one frame: created before the work, committed together.
+struct Outputs {
+  Output frame;
+  std::optional<Output> flow, mask;
+  std::vector<Output> candidates;
+
+  Outputs(const WarpFramesOptions& o, int number) : frame(frame_name(o.output, number)) {
+    if (!o.flow.empty()) flow.emplace(frame_name(o.flow, number));
+    if (!o.mask.empty()) mask.emplace(frame_name(o.mask, number));
+    for (std::size_t k = 0; o.warp.separate && k < o.keys.size(); ++k)
+      candidates.emplace_back(name_with(frame_name(o.output, number), "_" + std::to_string(k + 1)));
+  }
+  void commit() {
+    frame.commit();
+    if (flow) flow->commit();
+    if (mask) mask->commit();
+    for (Output& candidate : candidates) candidate.commit();
+  }
+};
+
+void count_work(Tool& tool, const WarpedFrame& warped) {
+  Stats& stats = tool.stats();
+  std::uint64_t traced = 0;
+  for (const WhyCount& cause : count_whys(warped.why)) {
+    std::string name = "traced_" + cause.name;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    stats.count(name, double(cause.first));
+    traced += cause.first;
+  }
+  stats.count("pixels", double(warped.why.size()));
+  stats.count("traced", double(traced));
+}
+
+/// Writes a warped frame and takes its colours; `bare` has the size and the attributes.
+void write(Tool& tool, const WarpFramesOptions& options, Outputs& outputs, WarpedFrame&& warped, const PixelFlow* flow,
+           Image image, const Image& bare) {
+  tool.stats().phase("write");
+  add_colour(warped, image);
+  save_exr(outputs.frame.temporary_path(), image, options.exr());
+  for (std::size_t k = 0; k < outputs.candidates.size(); ++k) {
+    Image candidate = bare;
+    add_candidate(warped, k, candidate);
+    save_exr(outputs.candidates[k].temporary_path(), candidate, options.exr());
+  }
+  if (outputs.mask) {
+    Image mask = bare;
+    mask.add_ids(kWhyChannel).ids = warped.why;
+    save_exr(outputs.mask->temporary_path(), mask, options.exr());
+  }
+  if (outputs.flow) {
+    Image image_of_flow = bare;
+    add_flow_channels(*flow, image_of_flow);
+    save_exr(outputs.flow->temporary_path(), image_of_flow, options.exr());
+  }
+  outputs.commit();
+  tool.stats().end_phase();
+  count_work(tool, warped);
+}
+
+/// Adds the requested channels besides colour.
+void add_data(const WarpFramesOptions& options, SceneInput& input, FramesOfScene& frames, const Tracer& tracer,
+              const SceneView& seen, int number, Image& image) {
+  const auto plain = [](const std::string& c) { return c == "Z" || c == "N" || c == "id"; };
+  if (std::all_of(options.channels.begin(), options.channels.end(), plain)) {
+    seen.add_channels(options.channels, image);
+    return;
+  }
+  const Lights lights(frames.at(number), input.emission(frames.at(number).frame));
+  const NeighbourFrame next{&frames.at(number + 1), &frames.view(number + 1)};
+  const NeighbourFrame previous{&frames.at(number - 1), &frames.view(number - 1)};
+  add_data_channels({tracer, lights}, frames.view(number), options.channels, next, previous, image);
+}
+
+void warp_frame(Tool& tool, const WarpFramesOptions& options, SceneInput& input, const std::vector<LoadedKey>& keys,
+                FramesOfScene& frames, StaticTree& standing, int number) {
+  Outputs outputs(options, number);
+  tool.stats().phase("evaluate");
+  const SceneFrame& frame = frames.at(number, true);
+  const KeysOfFrame placed(tool, keys, frames, number);
+  tool.stats().phase("build");
+  const Tracer tracer(frame, standing);
+  tool.stats().phase("look", true);
+  const SceneView seen(tracer, frames.view(number));
+  tool.stats().phase("flow", true);
+  const PixelFlow flow = flow_of_view(seen, {&frames.at(number + 1), &frames.camera(number + 1)},
+                                      {&frames.at(number - 1), &frames.camera(number - 1)}, input.time().fps);
+  tool.stats().phase("warp", true);
+  WarpTarget target{&seen.camera(), &seen.seen(), {}, &flow.speed, {}, {}};
+  VisionOptions viewer{vision::display_named("office")};
+  viewer.display.pixels_per_degree = kPixelsPerDegree;
+  viewer.frames_per_second = input.time().fps;
+  target.see_gloss = [&](const GlossInDoubt& doubt) {
+    return error_probability(doubt.picture, doubt.error, doubt.counted, flow, viewer);
+  };
+  target.look = [&](std::span<const RasterPoint> at, FacePoint* points) { seen.look(at, points); };
+  if (!has_layer(*keys[0].key, "specular")) {
+    target.gloss = seen.gloss();
+    if (std::find(target.gloss.begin(), target.gloss.end(), 1) != target.gloss.end())
+      tool.warn(keys[0].file +
+                ": has no layer specular: everything that mirrors, shines or lets through is masked; render keys "
+                "with --channels RGBA,specular,Z,N,id");
+  }
+  WarpedFrame warped = warp(target, placed.get(), options.warp);
+
+  Image image{frames.view(number).width(), frames.view(number).height(), {}, {}, {}, {}};
+  describe_frame(image, identity_of(frame), frame.frame, input.time().fps, keys[0].history + tool.history_line(number),
+                 {frames.view(number).world_to_camera(), frames.view(number).world_to_ndc()});
+  const Image bare = image;
+  tool.stats().phase("data channels", true);
+  add_data(options, input, frames, tracer, seen, number, image);
+  write(tool, options, outputs, std::move(warped), &flow, std::move(image), bare);
+}
+
+}  // namespace
+
+void warp_frames(Tool& tool, const WarpFramesOptions& options, const std::vector<LoadedKey>& keys) {
+  SceneInput input(tool, options.scene, SceneInput::a_camera);
+  FramesOfScene frames(tool, input, keys[0].key->camera().width(), keys[0].key->camera().height());
+  StaticTree standing;
+  for (const int number : tool.common().frames) {
+    std::vector<int> kept{number};
+    for (const LoadedKey& key : keys) kept.push_back(key.frame.value_or(number));
+    frames.keep(kept);
+    warp_frame(tool, options, input, keys, frames, standing, number);
+  }
+}
+
+void warp_view(Tool& tool, const WarpFramesOptions& options, const std::vector<LoadedKey>& keys) {
+  Outputs outputs(options, 0);
+  const Image other = load_exr(options.view, {.our_names = true});
+  tool.depends_on(options.view);
+  const FrameCamera camera = camera_of(other, options.view);
+  const SeenSurfaces seen = seen_in(other, options.view);
+  const formats::Identity identity = identity_in(other);
+  const KeysOfFrame placed(keys, camera, identity);
+  tool.stats().phase("warp", true);
+  WarpedFrame warped = warp({&camera, &seen, {}, nullptr, {}, {}}, placed.get(), options.warp);
+  if (std::find(warped.why.begin(), warped.why.end(), 0u) == warped.why.end())
+    tool.warn(options.view + ": the keys give none of its pixels; do they show the same scene?");
+  Image image{other.width, other.height, {}, {}, other.numbers, other.matrices};
+  image.numbers.erase("tempolux:samples");
+  image.text["tempolux:history"] = keys[0].history + tool.history_line();
+  set_identity(image, identity);
+  const Image bare = image;
+  for (const Channel& channel : other.channels)
+    if (is_data_channel(channel.name)) image.channels.push_back(channel);
+  write(tool, options, outputs, std::move(warped), nullptr, std::move(image), bare);
+}
+
+}  // namespace tempolux::tools
