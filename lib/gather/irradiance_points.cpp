@@ -312,11 +312,11 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
       point.direct = lights.empty()
                          ? Rgb(0.0f)
                          : direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
-      float unused;
-      Rgb of_caustic{0.0f}, of_indirect{0.0f};
-      point.caustic = caustic.estimate(point.position, scattering.lit(point.normal), unused, &of_caustic);
-      point.indirect = indirect.estimate(point, random, point.radius, &of_indirect);
-      point.noise = of_caustic + of_indirect;
+      const FootprintLight light = caustic.estimate(point.position, scattering.lit(point.normal));
+      Rgb noise{0.0f};
+      point.indirect = indirect.estimate(point, random, point.radius, &noise);
+      point.caustic = light.irradiance;
+      point.noise = light.noise + noise;
     }
   });
 }
@@ -328,8 +328,7 @@ void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std
       IrradiancePoint& point = points[i];
       const Scattering scattering =
           density.directed() ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
-      float unused;
-      point.caustic = density.estimate(point.position, scattering.lit(point.normal), unused);
+      point.caustic = density.estimate(point.position, scattering.lit(point.normal)).irradiance;
     }
   });
 }

@@ -18,10 +18,8 @@ namespace tempolux {
 /// only colour varies, and the sine of the polar angle inside a cell, which is replaced by the cell's mean.
 class EnvironmentLight {
  public:
-  /// The environment must outlive this object. Memory: 4 bytes per pixel and 260 per row. `uniform`: directions are
-  /// drawn as if `uniform` times the mean luminance were added to every pixel; with 1, half of the directions are
-  /// uniform over the sphere.
-  explicit EnvironmentLight(const Environment& environment, double uniform = 0);
+  /// The environment must outlive this object. Memory: 4 bytes per pixel and 260 per row.
+  explicit EnvironmentLight(const Environment& environment);
 
   /// A place in the map: the cell (row, column) and the position inside it, in [0, 1]. Look-ups that need several
   /// values for one direction compute the place once.
@@ -47,8 +45,6 @@ class EnvironmentLight {
   /// Density [1/sr] with which sample() gives `direction` (unit).
   double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
   double pdf_solid_angle(const Place& place, Vec3 direction) const;
-  /// Inverse of sample(): the numbers (u1, u2) for which it gives this direction, up to rounding.
-  Vec2 numbers_of(Vec3 direction) const;
 
  private:
   struct Corners {
@@ -60,7 +56,7 @@ class EnvironmentLight {
     double upper_left, upper_right, lower_left, lower_right;
     double at(double x, double y) const;
   };
-  Luminances luminances(const Corners& corners) const;
+  static Luminances luminances(const Corners& corners);
   Corners corners(std::uint32_t row, std::uint32_t column) const;
   double polar(std::uint32_t row) const;  ///< angle from +Y of a row's upper edge
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
@@ -73,7 +69,6 @@ class EnvironmentLight {
 
   const Environment& environment_;
   std::uint32_t width_, height_;
-  double uniform_ = 0;  ///< W/m^2/sr, added to the luminance that directions are drawn by
   Rgbd integral_{0.0};
   std::vector<double> row_end_;  ///< cumulative probability of the height + 1 rows of cells
   /// Cumulative share of each cell in its row; a cell that emits has a share of at least 1

@@ -170,7 +170,7 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) c
 }
 
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
-                              Vec3, From from) const {
+                              From from) const {
   const Impl& m = *impl_;
   if (m.first_slot[surface] == kNone) return 0;
   const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];

@@ -125,13 +125,6 @@ Lights::Lights(Lights&&) noexcept = default;
 bool Lights::has_distant() const { return impl_->any_distant; }
 bool Lights::has_placed() const { return !impl_->tree.empty(); }
 
-std::vector<Lights::Sun> Lights::suns() const {
-  std::vector<Sun> suns;
-  for (const std::uint32_t i : impl_->suns)
-    suns.push_back({-impl_->frame->lights[i].direction, impl_->frame->lights[i].light.intensity});
-  return suns;
-}
-
 bool Lights::empty() const { return impl_->slots.empty(); }
 std::size_t Lights::count() const { return impl_->slots.size(); }
 const std::vector<EmissionSlot>& Lights::slots() const { return impl_->slots; }

@@ -93,12 +93,6 @@ class Lights {
   bool has_distant() const;
   /// True if any light inside the scene shines.
   bool has_placed() const;
-  /// A directional light that shines: irradiance of a surface that faces it, and the direction towards it.
-  struct Sun {
-    Vec3 wi;
-    Rgb irradiance;
-  };
-  std::vector<Sun> suns() const;
   /// Which lights sample() chooses from. A caller that samples the directional lights separately passes not_suns.
   enum class From : std::uint8_t { all, not_suns };
   bool has_suns() const;
@@ -121,9 +115,9 @@ class Lights {
   bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const;
   /// Density [1/sr] with which sample() at (point, normal) chooses the position `on_light` of this emissive triangle,
   /// seen from its front (or back, if two-sided); 0 if it emits nothing. The triangle's own plane decides which side is
-  /// seen, as in sample(); light_normal is not used.
+  /// seen, as in sample().
   float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
-                        Vec3 light_normal, From from = From::all) const;
+                        From from = From::all) const;
   /// Radiance [W/m^2/sr] that the material emits at a hit towards `wo` (unit, away from the surface). Textures are
   /// averaged over `width` m. Zero from the back of a one-sided emitter.
   Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;

@@ -86,11 +86,9 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
   const Bsdf bsdf(material, front);
   const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
-  float smooth_over = 0;
-  Rgb noise(0.0f);
-  const LitSurface lit{front ? normal : -normal, seen->normal, seen->normal, &bsdf};
-  const Rgb irradiance = density.estimate(seen->surface.position, lit, smooth_over, &noise);
-  return {channel_mean(weight * irradiance), cell_at(u.x, u.y), channel_mean(weight * noise)};
+  const FootprintLight light =
+      density.estimate(seen->surface.position, {front ? normal : -normal, seen->normal, seen->normal, &bsdf});
+  return {channel_mean(weight * light.irradiance), cell_at(u.x, u.y), channel_mean(weight * light.noise)};
 }
 
 /// Place of camera ray i of kLooks in the picture, in [0, 1).
