@@ -9,9 +9,6 @@
 
 namespace tempolux {
 
-/// Computes M rings and N sectors for about `rays` cells of equal weight, N about pi M.
-void gather_strata(int rays, int& rings, int& sectors);
-
 /// Incoming radiance in cells (j, k) with index j N + k. Ring j holds sin^2 of the angle to the normal in [j, j+1) / M;
 /// sector k holds azimuths in [k, k+1) 2 pi / N. All cells contribute equally to the irradiance.
 class Hemisphere {

@@ -194,7 +194,6 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
                             TemporalCounts& counts) const {
   thread_local std::vector<std::uint16_t> ages;
   thread_local std::vector<std::uint32_t> drawn;
-  thread_local AgeDraw lot;
   formats::RadsamplesRecord& r = kept.record;
   std::vector<std::uint8_t>& marks = marked.marks;
   const SurfacePoint place = place_of(kept);
@@ -207,8 +206,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   }
   // Draws by age from all cells, including marked ones. If marked cells were left out, a cell that is marked in every
   // frame would keep its direction for good, and more and more cells would end in such directions.
-  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), mix64(r.key + r.updates),
-           drawn);
+  draw_by_age(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), mix64(r.key + r.updates),
+              drawn);
   for (const std::uint32_t c : drawn) {
     marks[c] = aged;
     kept.samples[c].flags = std::uint16_t((kept.samples[c].flags & ~formats::kMaxAge) | 1);
