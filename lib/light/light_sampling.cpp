@@ -36,7 +36,7 @@ double Lights::Impl::sum_distant(Vec3 normal) const {
 /// of the distant lights.
 double Lights::Impl::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
   total = distant_irradiance(normal, from);
-  return total > 0 ? share_of_distant(total, tree.importance(point, normal)) : 0;
+  return total > 0 ? share_of_distant(total, tree.start(point, normal).sum) : 0;
 }
 
 /// u in [0, 1) chooses among the distant lights; the environment comes first.

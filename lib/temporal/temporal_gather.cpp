@@ -7,6 +7,7 @@
 
 #include "lib/core/check.h"
 #include "lib/core/parallel.h"
+#include "lib/gather/cache_files.h"
 #include "lib/scene/deform.h"
 #include "lib/scene/moving_objects.h"
 #include "lib/temporal/light_changes.h"
@@ -94,9 +95,8 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
   Vec3 turned{};
   for (std::size_t axis = 0; axis < 3; ++axis) turned = turned + now[axis] * dot(before[axis], normal);
   turned = normalize(turned);
-  const Vec3 position = place_of(kept).position;
-  r.position = {position.x, position.y, position.z};
-  if (length2(turned) > 0) r.normal = {turned.x, turned.y, turned.z};
+  r.position = array_of(place_of(kept).position);
+  if (length2(turned) > 0) r.normal = array_of(turned);
 }
 
 /// Traces the marked cells along the rays that belong to their ages.
@@ -145,10 +145,10 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, con
   PlacementOptions placement = placement_;
   if (!born && outlived(place, kept.record, made)) placement.min_radius_px *= kLeastOfHidden;
   limit_radius(made, kept.record.footprint, placement);
-  made.clearance = result_of(kept.record).clearance;
+  made.clearance = stored_values(kept.record).clearance;
   const bool look_again = born || near_a_mover(kept, *changes, kept.record.clearance_reach);
   if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
-  keep_result(made, kept.record);
+  store_values(made, kept.record);
 }
 
 /// Samples the bright points anew for a record whose cells do not change.
@@ -160,8 +160,8 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts
   KeptHemisphere kept;
   formats::RadsamplesRecord& r = kept.record;
   const SurfacePoint& place = seen.surface;
-  r.position = {place.position.x, place.position.y, place.position.z};
-  r.normal = {seen.normal.x, seen.normal.y, seen.normal.z};
+  r.position = array_of(place.position);
+  r.normal = array_of(seen.normal);
   r.key = gather_key(place.position, seen.normal, gather_options_.seed);
   r.surface = place.surface;
   r.triangle = place.triangle;
@@ -306,7 +306,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
 /// records that do not fade is larger by 1 than when the record was placed.
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
-    IrradianceRecord record = result_of(k.record);
+    IrradianceRecord record = stored_values(k.record);
     record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames,
                              std::numeric_limits<float>::min());
     TEMPOLUX_CHECK(store.add(record));
@@ -330,7 +330,7 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
     batch[slot] = birth(seen, gathered);
-    return result_of(batch[slot].record);
+    return stored_values(batch[slot].record);
   };
   source.added = [&](std::size_t slot) {
     batch[slot].record.birth_weight = store.weight_of_earlier(std::uint32_t(store.records().size() - 1), {});

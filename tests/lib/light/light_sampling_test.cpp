@@ -266,7 +266,7 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
     constexpr int kSteps = 1 << 16;
     for (int i = 0; i < kSteps; ++i) {
       LightTree::Choice c;
-      if (!tree.choose(point, normal, (float(i) + 0.5f) / kSteps, c)) {
+      if (!tree.choose(tree.start(point, normal), point, normal, (float(i) + 0.5f) / kSteps, c)) {
         ++lost;
         continue;
       }
