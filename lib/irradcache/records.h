@@ -33,7 +33,6 @@ struct IrradianceRecord {
 struct InterpolationOptions {
   /// A record counts if the cosine between its normal and the surface's is above least_cosine, in [0, 1).
   float least_cosine = 0.94f;
-  bool only_read = false;  ///< all records are added in one call
 };
 
 /// least_cosine of records placed with this error bound (lib/gather/place_records.h). On curved surfaces a bright spot
@@ -60,10 +59,10 @@ class RecordStore {
 
   /// False, and the record is refused and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
-  /// Adds many records. A store with only_read takes all its records in one call: each list is built once, in one piece
-  /// of memory.
-  void add(std::span<const IrradianceRecord> records);
-  /// Gives a record a smaller radius. Not for stores with only_read.
+  void add(std::span<const IrradianceRecord> records) {
+    for (const IrradianceRecord& record : records) add(record);
+  }
+  /// Gives a record a smaller radius.
   void shrink(std::uint32_t record, float radius);
   std::span<const IrradianceRecord> records() const { return records_; }
   std::uint64_t refused() const { return refused_; }
@@ -132,18 +131,9 @@ class RecordStore {
     std::vector<std::uint32_t> members;
     /// records that may be valid in a cell, by the hash of the cell; the number of buckets is a power of two
     std::vector<Bucket> buckets;
-    /// With only_read, in place of buckets: bucket b is eights[first[b]] to eights[first[b + 1]].
-    std::vector<std::uint32_t> first;
-    std::vector<Eight> eights;
   };
   Level& level_of(float radius);
-  Level* keep(const IrradianceRecord& record);
   void list(Level& level, std::uint32_t record) const;
-  /// Calls body(cell) for the cells that a record may be valid in.
-  template <class Body>
-  void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
-  Entry entry_of(std::uint32_t record) const;
-  void pack(Level& level) const;
   /// Calls found(entry), in order, for the entries that a slightly widened test of place and normal accepts, until
   /// found returns true.
   template <class Found>
