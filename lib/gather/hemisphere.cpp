@@ -30,6 +30,17 @@ void Hemisphere::reset(int rings, int sectors) {
   inverse_distance.assign(radiance.size(), 0.0f);
 }
 
+IrradianceRecord Hemisphere::record(const SurfacePoint& place, Vec3 normal) const {
+  const Frame frame(normal);
+  IrradianceRecord record;
+  record.position = place.position;
+  record.normal = normal;
+  record.object = place.object;
+  translational_gradient(frame, record);
+  irradiance_and_rotational_gradient(frame, record);
+  return record;
+}
+
 void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const {
   const int M = rings_, N = sectors_;
   Rgbd sum{0.0};

@@ -2,7 +2,6 @@
 
 #include "lib/core/random.h"
 #include "lib/gather/cache_files.h"
-#include "lib/gather/gathered_record.h"
 #include "lib/gather/hemisphere.h"
 
 namespace tempolux {
@@ -47,7 +46,7 @@ IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& pla
     sky.radiance[c] = rgb_of(formats::decode_rgbe(sample.rgbe));
     if (sample.distance != 0) sky.inverse_distance[c] = 1 / std::max(units.decode(sample.distance), closest);
   }
-  return gathered_record(sky, place, kept.normal());
+  return sky.record(place, kept.normal());
 }
 
 formats::RadsamplesFile head_of(const KeptHemispheres& kept) {
