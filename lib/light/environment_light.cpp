@@ -90,29 +90,16 @@ void EnvironmentLight::build_distribution() {
   for (const double w : row_weight) total += w;
   row_end_.reserve(row_weight.size());
   for (const double w : row_weight) row_end_.push_back(total > 0 ? (sum += w) / total : 0);
-
-  row_guide_ = Guide<64>([&](double u) { return row_for(u, {0, height_}); }, height_);
-  cell_guides_.resize(height_ + 1);
-  parallel_chunks(height_ + 1, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row)
-      cell_guides_[row] = Guide<64>(
-          [&](double u) {
-            return column_for(std::uint32_t(row), u, {0, width_ - 1});
-          },
-          width_ - 1);
-  });
 }
 
-/// Finds the row of cells that u1 falls in, among the given rows.
-std::uint32_t EnvironmentLight::row_for(double u1, Guide<64>::Range rows) const {
-  return std::uint32_t(std::upper_bound(row_end_.begin() + rows.first, row_end_.begin() + rows.last, u1) -
-                       row_end_.begin());
+/// The row of cells that u1 falls in.
+std::uint32_t EnvironmentLight::row_for(double u1) const {
+  return std::uint32_t(std::upper_bound(row_end_.begin(), row_end_.end() - 1, u1) - row_end_.begin());
 }
 
-std::uint32_t EnvironmentLight::column_for(std::uint32_t row, double u2, Guide<64>::Range columns) const {
-  const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
-  return std::uint32_t(
-      std::upper_bound(ends + columns.first, ends + columns.last, std::uint32_t(u2 * ends[width_ - 1])) - ends);
+std::uint32_t EnvironmentLight::column_for(std::uint32_t row, double u2) const {
+  const std::uint32_t *ends = &cell_end_[std::size_t(row) * width_], *const last = ends + width_ - 1;
+  return std::uint32_t(std::upper_bound(ends, last, std::uint32_t(u2 * *last)) - ends);
 }
 
 EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
@@ -150,12 +137,12 @@ double EnvironmentLight::pdf(const Place& place, const Luminances& at, double si
 
 bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   if (!(row_end_.back() > 0)) return false;
-  std::uint32_t row = row_for(u1, row_guide_.range(u1));
+  std::uint32_t row = row_for(u1);
   while (row > 0 && !(row_end_[row] > row_end_[row - 1])) --row;
   const double row_first = row > 0 ? row_end_[row - 1] : 0;
   const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
   const double units = u2 * ends[width_ - 1];
-  const std::uint32_t column = column_for(row, u2, cell_guides_[row].range(u2));
+  const std::uint32_t column = column_for(row, u2);
   const double first = column > 0 ? ends[column - 1] : 0;
 
   // First draws the position along the row, from the luminances of the cell's left and right side; then the position

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "lib/core/guide.h"
 #include "lib/core/vec.h"
 #include "lib/scene/environment.h"
 
@@ -18,7 +17,7 @@ namespace tempolux {
 /// only colour varies, and the sine of the polar angle inside a cell, which is replaced by the cell's mean.
 class EnvironmentLight {
  public:
-  /// The environment must outlive this object. Memory: 4 bytes per pixel and 260 per row.
+  /// The environment must outlive this object. Memory: 4 bytes per pixel.
   explicit EnvironmentLight(const Environment& environment);
 
   /// A place in the map: the cell (row, column) and the position inside it, in [0, 1]. Look-ups that need several
@@ -62,8 +61,8 @@ class EnvironmentLight {
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
   double probability(std::uint32_t row, std::uint32_t column) const;
   double pdf(const Place& place, const Luminances& at, double sin_polar) const;
-  std::uint32_t row_for(double u1, Guide<64>::Range rows) const;
-  std::uint32_t column_for(std::uint32_t row, double u2, Guide<64>::Range columns) const;
+  std::uint32_t row_for(double u1) const;
+  std::uint32_t column_for(std::uint32_t row, double u2) const;
   void integrate();
   void build_distribution();
 
@@ -73,8 +72,6 @@ class EnvironmentLight {
   std::vector<double> row_end_;  ///< cumulative probability of the height + 1 rows of cells
   /// Cumulative share of each cell in its row; a cell that emits has a share of at least 1
   std::vector<std::uint32_t> cell_end_;
-  Guide<64> row_guide_;                 ///< of row_end_
-  std::vector<Guide<64>> cell_guides_;  ///< search guides into cell_end_, by row
 };
 
 }  // namespace tempolux

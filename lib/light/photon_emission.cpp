@@ -19,16 +19,9 @@ namespace {
 
 }  // namespace
 
-/// The first slot whose part of [0, 1) ends above u; rounding may leave the sum a little below 1. The bisection has no
-/// branches, since processors cannot predict them for random u.
+/// The first slot whose part of [0, 1) ends above u; rounding may leave the sum a little below 1.
 std::size_t Lights::slot_at(double u) const {
-  const double* first = cumulative_.data();
-  for (std::size_t count = cumulative_.size(); count > 1;) {
-    const std::size_t half = count / 2;
-    first += first[half - 1] <= u ? half : 0;
-    count -= half;
-  }
-  auto slot = std::size_t(first - cumulative_.data());
+  auto slot = std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u) - cumulative_.begin());
   while (slot > 0 && !(slots_[slot].probability > 0)) --slot;
   return slot;
 }
