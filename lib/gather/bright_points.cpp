@@ -78,13 +78,12 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   const AimSphere around{
       Vec3d(box.lower + box.upper) * 0.5,
       (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
-  const std::vector<PlacedSite> placed =
-      place_sites(tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
-                  [&](Vec3 position) {
-                    thread_local NeighbourList near;
-                    index.find_nearest({.point = position, .max_radius = reach}, 1, near);
-                    return near.count() > 0;
-                  });
+  const std::vector<PlacedSite> placed = place_sites(
+      tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed, [&](Vec3 position) {
+        thread_local NeighbourList near;
+        index.find_nearest({.point = position, .max_radius = reach}, 1, near);
+        return near.count() > 0;
+      });
   std::vector<std::optional<Site>> found(placed.size());
   parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) found[i] = site_at(placed[i].place, placed[i].area);

@@ -19,7 +19,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// Times Reach::offset(): smallest radius of an ellipsoid whose height float positions resolve.
 constexpr float kThin = 64;
-constexpr float kLift = 1e-4f;  ///< share of a radius: largest error at the rim from the rounding of stored normals
+constexpr float kLift = 1e-4f;    ///< share of a radius: largest error at the rim from the rounding of stored normals
 constexpr int kMostHalvings = 6;  ///< of a footprint's radius, if hardly any of the footprint is surface
 constexpr std::size_t kLeavesAtOnce = 16;
 /// Probes that must arrive if a footprint is not a whole disc. Their noise equals that of one photon among k.

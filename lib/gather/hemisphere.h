@@ -21,8 +21,8 @@ class Hemisphere {
   /// Makes all cells dark and empty.
   void reset(int rings, int sectors);
 
-  /// The record of a place with irradiance and gradients, without radii. `normal`: unit, on the lit side, the axis of the
-  /// hemisphere.
+  /// The record of a place with irradiance and gradients, without radii. `normal`: unit, on the lit side, the axis of
+  /// the hemisphere.
   IrradianceRecord record(const SurfacePoint& place, Vec3 normal) const;
 
   /// A number with a random sign whose mean square is at least the variance of the irradiance [W/m^2]:

@@ -59,8 +59,8 @@ Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
   return {std::move(pieces), std::move(areas)};
 }
 
-/// The point at the share u.x of a side of the ground, whose areas are running sums. The normal is 0 if the triangle has
-/// no area.
+/// The point at the share u.x of a side of the ground, whose areas are running sums. The normal is 0 if the triangle
+/// has no area.
 IrradiancePoint point_on(const Surface& surface, Ground& ground, Vec2 u, bool back) {
   const std::vector<TrianglePiece>& pieces = ground.pieces;
   const std::span<const double> cumulative = std::span<double>(ground.areas);
@@ -97,8 +97,8 @@ struct SideOfSurface {
   bool back;
 };
 
-/// The points of a scrambled Sobol sequence, uniform by area, that have a normal and that `wanted` accepts. `key`: of the
-/// sequence.
+/// The points of a scrambled Sobol sequence, uniform by area, that have a normal and that `wanted` accepts. `key`: of
+/// the sequence.
 template <class Wanted>
 std::vector<IrradiancePoint> spread(const SideOfSurface& side, std::uint64_t key, const Wanted& wanted) {
   constexpr std::size_t kChunk = 4096;

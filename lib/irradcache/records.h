@@ -23,9 +23,10 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
-  Clearance clearance;       ///< the record does not count outside of it; measured about `normal`
-  std::uint32_t object = 0;  ///< the object it lies on
-  /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (lib/gather/hemisphere.h); 0: unknown
+  Clearance clearance;                  ///< the record does not count outside of it; measured about `normal`
+  std::uint32_t object = 0;             ///< the object it lies on
+  /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (lib/gather/hemisphere.h); 0:
+  /// unknown
   Rgb noise{0.0f};
   Rgb points_noise{0.0f};  ///< W/m^2: the part of `noise` from the points that were read; not in files
 };

@@ -41,7 +41,7 @@ double Lights::distant_share(Vec3 point, Vec3 normal, From from, double& total) 
 
 /// u in [0, 1) chooses among the distant lights; the environment comes first.
 bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
-                                  LightSample& s) const {
+                            LightSample& s) const {
   const double left = u * total;
   if (left < environment_weight_ || total <= environment_weight_)
     return sample_environment(point, u_float, left / environment_weight_, share * environment_weight_ / total, s);
@@ -107,8 +107,8 @@ bool Lights::sample_placed(const PlacedLight& placed, Vec3 point, double probabi
 
 /// Draws a point on the light in the slot, which was chosen with this probability. With `joint`, `left` is the
 /// remainder of the number that chose the slot and replaces u.x.
-inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u,
-                                      bool joint, LightSample& sample) const {
+inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+                                LightSample& sample) const {
   if (slot >= triangles_.size())
     return sample_placed(frame_->lights[slots_[slot].light], point, probability, sample) &&
            is_finite(sample.facing_irradiance);
@@ -130,7 +130,7 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
 }
 
 bool Lights::sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from,
-                          LightSample& sample) const {
+                        LightSample& sample) const {
   sample = {};
   const LightTree::Start start = tree_.start(point, normal);
   const double distant = distant_irradiance(normal, from),
@@ -145,8 +145,8 @@ bool Lights::sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool jo
 }
 
 /// Draws a sample of a light inside the scene; `probability` is the probability of choosing any of them.
-bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal,
-                               float u_choice, Vec2 u, bool joint, LightSample& sample) const {
+bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice,
+                         Vec2 u, bool joint, LightSample& sample) const {
   if (tree_.empty()) return false;
   LightTree::Choice choice;
   if (!tree_.choose(start, point, normal, u_choice, choice)) return false;

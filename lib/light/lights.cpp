@@ -111,7 +111,7 @@ std::vector<LightBounds> Lights::tree_bounds() const {
   bounds.reserve(tree_slot_.size());
   for (const std::uint32_t slot : tree_slot_)
     bounds.push_back(slot < triangles_.size() ? bounds_of(triangles_[slot])
-                                             : bounds_of(frame_->lights[slots_[slot].light]));
+                                              : bounds_of(frame_->lights[slots_[slot].light]));
   return bounds;
 }
 

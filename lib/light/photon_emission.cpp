@@ -35,7 +35,7 @@ Vec2 Lights::direction_numbers(std::size_t slot, const std::array<double, 4>& u)
 
 /// `u0` is u[0], stretched. `direction` is relative to the emitting side's normal.
 void Lights::emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
-                                 PhotonEmission& e) const {
+                           PhotonEmission& e) const {
   const TriangleLight& t = triangles_[slot];
   // Heitz' map from the square to the triangle, as in sample_triangle, in double precision.
   const double half = 0.5 * std::min(u0, u[1]), b1 = u0 - half, b2 = u[1] - half;
@@ -51,7 +51,7 @@ void Lights::emit_triangle(std::size_t slot, double u0, const std::array<double,
 }
 
 void Lights::emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u,
-                                 PhotonEmission& e) const {
+                           PhotonEmission& e) const {
   if (placed.light.kind != PunctualLight::Kind::directional) {
     // A point light has no extent, so the first two numbers give the direction.
     e.origin = placed.position;
@@ -72,8 +72,7 @@ void Lights::emit_punctual(const PlacedLight& placed, double u0, const std::arra
 }
 
 /// Flux is radiance / density x pi R^2, or Aim's weight in place of pi R^2.
-void Lights::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u,
-                                    PhotonEmission& e) const {
+void Lights::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const {
   EnvironmentLight::Sample from;
   if (!environment_->sample(u0, u[1], from)) {
     e.travel = {0, -1, 0};

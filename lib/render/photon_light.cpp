@@ -23,8 +23,9 @@ struct Remembered {
 
   static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
   bool holds_at(const PhotonLight* map, Vec3 place, const LitSurface& surface) const {
-    return of == map && length2(place - position) < light.alike_within * light.alike_within && dot(surface.geometric, geometric) > kAlike &&
-           dot(surface.shading, shading) > kAlike && std::abs(let_in_by(surface) - let_in) < kAlikeCoat;
+    return of == map && length2(place - position) < light.alike_within * light.alike_within &&
+           dot(surface.geometric, geometric) > kAlike && dot(surface.shading, shading) > kAlike &&
+           std::abs(let_in_by(surface) - let_in) < kAlikeCoat;
   }
 };
 

@@ -304,8 +304,8 @@ TEST(Lights, SurviveExtremeNumbers) {
                   std::isfinite(s.pdf_solid_angle));
     }
     for (std::uint32_t surface = 0; surface < 5; ++surface)
-      EXPECT_TRUE(std::isfinite(
-          lights.pdf_solid_angle(point, {}, surface, 0, scene.frame.surfaces[surface].positions[1])));
+      EXPECT_TRUE(
+          std::isfinite(lights.pdf_solid_angle(point, {}, surface, 0, scene.frame.surfaces[surface].positions[1])));
     const std::array<double, 4> u = {random.get1(i, Purpose::emit, 1), random.get1(i, Purpose::emit, 2),
                                      random.get1(i, Purpose::emit, 3), random.get1(i, Purpose::emit, 4)};
     const PhotonEmission e = lights.emit(u);

@@ -214,8 +214,7 @@ TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   const FootprintDensity density(tracer, photons, {.neighbours = 25, .max_radius = 1});
   double sum = 0;
   for (float x = -0.0299f; x < 0.03f; x += 0.002f)
-    for (float z = -0.0299f; z < 0.03f; z += 0.002f)
-      sum += double(on_floor(density, {x, 0, z}).g) * 4e-6;
+    for (float z = -0.0299f; z < 0.03f; z += 0.002f) sum += double(on_floor(density, {x, 0, z}).g) * 4e-6;
   EXPECT_NEAR(sum, 1, 0.02);
 }
 
