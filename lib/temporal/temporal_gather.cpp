@@ -74,13 +74,6 @@ TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& 
       gather_(scene.tracer, scene.lights, scene.lookup, gather),
       strata_(gather.rays) {}
 
-const GatherStrata& TemporalGather::strata_of(int rings, int sectors) const {
-  if (strata_.rings == rings && strata_.sectors == sectors) return strata_;
-  thread_local GatherStrata other;  // for a file that was made with another number of rays
-  if (other.rings != rings || other.sectors != sectors) other = GatherStrata(rings, sectors);
-  return other;
-}
-
 SurfacePoint TemporalGather::place_of(const KeptHemisphere& kept) const {
   const auto& r = kept.record;
   return scene_.tracer.surface_point({0, r.surface, r.triangle, r.barycentric[0], r.barycentric[1]});
@@ -101,10 +94,10 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
 
 /// Traces the marked cells along the rays that belong to their ages.
 void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
-                           const GatherStrata& strata, std::span<const std::uint8_t> marks,
-                           GatherCounts& counts) const {
+                           std::span<const std::uint8_t> marks, GatherCounts& counts) const {
   thread_local GatherRays shot;
   shot.clear();
+  const GatherStrata strata(kept.record.rings, kept.record.sectors);
   for (const std::uint32_t c : strata.order) {
     if (!is_traced(marks[c]) || shot.aim(directions, c, kept.draw_of(c))) continue;
     kept.samples[c] = {{}, 0, formats::age_of(kept.samples[c])};
@@ -151,11 +144,6 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, con
   store_values(made, kept.record);
 }
 
-/// Samples the bright points anew for a record whose cells do not change.
-void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const {
-  finish(place_of(kept), kept, &changes, counts);
-}
-
 KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts) const {
   KeptHemisphere kept;
   formats::RadsamplesRecord& r = kept.record;
@@ -174,7 +162,7 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts
   kept.samples.resize(strata_.cells());
   kept.anchors.assign(strata_.cells(), kNone);
   const std::vector<std::uint8_t> marks(strata_.cells(), all);
-  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata_, marks, counts);
+  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), marks, counts);
   finish(place, kept, nullptr, counts);
   return kept;
 }
@@ -221,7 +209,7 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     if (marks[ahead] == scaled) __builtin_prefetch(&changes.ratios[kept.anchors[ahead]]);
     if (marks[c] == scaled) scale_radiance(kept, c, changes.ratios[kept.anchors[c]]);
   }
-  shoot(place, kept, directions, strata_of(r.rings, r.sectors), marks, counts.update);
+  shoot(place, kept, directions, marks, counts.update);
   finish(place, kept, &changes, counts.update);
 }
 
@@ -259,7 +247,7 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
       if (gone[i] || !(marked[i].changed || changes.divided)) continue;
       KeptHemisphere& k = kept.records[i];
       if (marked[i].changed) update(k, changes, aged_share, marked[i], local);
-      else sample_explicit(k, changes, local.update);
+      else finish(place_of(k), k, &changes, local.update);  // samples the bright points anew
       std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
