@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
@@ -23,34 +22,6 @@ constexpr double kSitesPerPoint = 16;
 constexpr float kFadeFrom = 4, kFadeTo = 6;
 /// The edge of the cells that group photons which no point represents is kBesideLamp spacings over this number.
 constexpr float kCellsPerReach = 8;
-
-/// The cubes of space that may hold a requested point.
-class NearPoints {
- public:
-  explicit NearPoints(float edge) : inverse_(1 / double(edge)) {}
-  void add(Vec3 p) {
-    const std::array<std::int64_t, 3> c = cube(p);
-    for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z) cubes_.insert(key({c[0] + x, c[1] + y, c[2] + z}));
-  }
-  bool may_hold(Vec3 p) const { return cubes_.contains(key(cube(p))); }
-
- private:
-  std::array<std::int64_t, 3> cube(Vec3 p) const {
-    std::array<std::int64_t, 3> c;
-    for (int a = 0; a < 3; ++a)
-      c[std::size_t(a)] = std::int64_t(std::floor(std::clamp(double(p[a]) * inverse_, -1e15, 1e15)));
-    return c;
-  }
-  static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
-    std::uint64_t k = 0;
-    for (const std::int64_t a : c) k = mix64(k ^ std::uint64_t(a));
-    return k;
-  }
-  double inverse_;
-  std::unordered_set<std::uint64_t> cubes_;  ///< hashes of cubes; a collision costs only a needless look-up
-};
 
 /// Hash of a cube and of the axis to which the normal is closest.
 std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
@@ -87,27 +58,32 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
 /// Places sites of the points that have a high part.
 void BrightPoints::place_high(const Lights& lights, const BrightOptions& options) {
   const PointLookup& points = points_;
-  // A point represents places up to PointLookup::kReach spacings away.
-  NearPoints near(PointLookup::kReach * points.spacing());
+  std::vector<formats::Photon> bright;  // the points as photons, to find them by place
   std::vector<std::uint32_t> objects;
   Box3 box;
   for (std::uint32_t i = 0; i < high_.size(); ++i) {
     if (!(high_[i] > 0)) continue;
-    near.add(points.points()[i].position);
-    box.add(points.points()[i].position);
+    const Vec3 position = points.points()[i].position;
+    bright.emplace_back().position = {position.x, position.y, position.z};
+    box.add(position);
     objects.push_back(points.points()[i].object);
   }
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   const double spacing = double(points.spacing());
-  // Points may be requested up to one cube outside of `near`. The pieces of a sphere's surfaces hold all surface
-  // within 3/4 of the sphere's radius.
+  // A point represents places up to kReach spacings away; the reach is doubled, because a site lies slightly off its
+  // surface. The pieces of a sphere's surfaces hold all surface within 3/4 of the sphere's radius.
+  const PhotonIndex index(bright);
+  const float reach = 2 * PointLookup::kReach * points.spacing();
   const AimSphere around{
       Vec3d(box.lower + box.upper) * 0.5,
       (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
-  const std::vector<PlacedSite> placed =
-      place_sites(tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
-                  [&](Vec3 position) { return near.may_hold(position); });
+  const std::vector<PlacedSite> placed = place_sites(
+      tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed, [&](Vec3 position) {
+        thread_local NeighbourList near;
+        index.find_nearest({.point = position, .max_radius = reach}, 1, near);
+        return near.count() > 0;
+      });
   std::vector<std::optional<Site>> found(placed.size());
   parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) found[i] = site_at(placed[i].place, placed[i].area);

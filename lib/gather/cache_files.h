@@ -1,6 +1,8 @@
 // lib/gather/cache_files.h -- converts points and records between memory and their files.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -11,6 +13,46 @@
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
+
+inline std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
+inline std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
+inline Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+inline Rgb rgb_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+
+/// Copies a record's place, light, radii and clearance to a record of a file, .irradcache or .radsamples.
+template <class FileRecord>
+void store_values(const IrradianceRecord& record, FileRecord& to) {
+  to.position = array_of(record.position);
+  to.normal = array_of(record.normal);
+  to.object = std::uint16_t(record.object);
+  to.irradiance = array_of(record.irradiance);
+  for (std::size_t c = 0; c < 3; ++c) {
+    to.rotational[c] = array_of(record.rotational[c]);
+    to.translational[c] = array_of(record.translational[c]);
+  }
+  to.radius = record.radius;
+  to.radius_unclamped = record.radius_unclamped;
+  to.clearance_reach = record.clearance.reach;
+  to.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(record.clearance.shares);
+}
+/// The record with the values of store_values(). A clearance of reach 0 was not measured.
+template <class FileRecord>
+IrradianceRecord stored_values(const FileRecord& from) {
+  IrradianceRecord record;
+  record.position = vec_of(from.position);
+  record.normal = vec_of(from.normal);
+  record.object = from.object;
+  record.irradiance = rgb_of(from.irradiance);
+  for (std::size_t c = 0; c < 3; ++c) {
+    record.rotational[c] = vec_of(from.rotational[c]);
+    record.translational[c] = vec_of(from.translational[c]);
+  }
+  record.radius = from.radius;
+  record.radius_unclamped = from.radius_unclamped;
+  if (from.clearance_reach > 0)
+    record.clearance = {from.clearance_reach, std::bit_cast<Clearance::Shares>(from.clearance)};
+  return record;
+}
 
 /// Points as file records: static or dynamic by the surface on which they lie (all surfaces of an object move
 /// together).

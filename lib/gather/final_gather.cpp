@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "lib/gather/bright_points.h"
-#include "lib/gather/gathered_record.h"
 #include "lib/gather/hemisphere.h"
 
 namespace tempolux {
@@ -101,7 +100,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.inverse_distance[shot.cells[i]] = 1 / std::max(shot.distance[i], closest);  // 0 if the ray meets nothing
     points_noise += shot.sources[i].noise * (kPi / float(strata.cells()));
   }
-  IrradianceRecord record = gathered_record(sky, from, normal);
+  IrradianceRecord record = sky.record(from, normal);
   record.radius_unclamped = distance(from, normal, counts);
   record.noise = sky.noise(key);
   record.points_noise = points_noise;

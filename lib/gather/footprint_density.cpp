@@ -19,8 +19,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// Times Reach::offset(): smallest radius of an ellipsoid whose height float positions resolve.
 constexpr float kThin = 64;
-constexpr float kLift = 1e-4f;  ///< share of a radius: largest error at the rim from the rounding of stored normals
-constexpr float kAlmost = 0.999999f;
+constexpr float kLift = 1e-4f;    ///< share of a radius: largest error at the rim from the rounding of stored normals
 constexpr int kMostHalvings = 6;  ///< of a footprint's radius, if hardly any of the footprint is surface
 constexpr std::size_t kLeavesAtOnce = 16;
 /// Probes that must arrive if a footprint is not a whole disc. Their noise equals that of one photon among k.
@@ -45,7 +44,6 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
   directed_ = photons.directed();
   if (directed_) arriving_from_.resize(index_.size());
   if (!(options_.max_radius > 0)) options_.max_radius = photon_reach(index_, options.neighbours, kMinCos, kFlattening);
-  const float margin = options_.margin * options_.max_radius;
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   leaves_ = std::make_unique<Leaf[]>(leaves);
   extents_ = std::make_unique<std::atomic<Extent>[]>(index_.size());
@@ -70,7 +68,6 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
       }
       const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
       leaf.flat[lane] = flattening * flattening - 1;
-      leaf.narrow2[lane] = radius < kAlmost * options_.max_radius ? (radius + margin) * (radius + margin) : -1;
     }
   });
   build_tree();
@@ -86,7 +83,7 @@ float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList
   return std::max(std::min(radius, options_.max_radius), area_.offset());
 }
 
-/// Builds the tree over the boxes of all footprints, with their margins.
+/// Builds the tree over the boxes of all footprints.
 void FootprintDensity::build_tree() {
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   std::vector<Box3> boxes(leaves);
@@ -94,7 +91,7 @@ void FootprintDensity::build_tree() {
     for (std::size_t i = first * kLeaf; i < std::min(last * kLeaf, index_.size()); ++i) {
       const Leaf& leaf = leaves_[i / kLeaf];
       const std::size_t lane = i % kLeaf;
-      const float radius = std::sqrt(std::max(leaf.narrow2[lane], 1 / leaf.inverse_r2[lane]));
+      const float radius = outer_radius(std::uint32_t(i));
       const auto half = [&](float n) {  // half extent of the ellipsoid's box
         return radius * std::sqrt(std::max(0.0f, 1 - n * n + n * n / (leaf.flat[lane] + 1))) * 1.0001f + area_.offset();
       };
@@ -106,16 +103,14 @@ void FootprintDensity::build_tree() {
   tree_ = BoxTree(std::move(boxes));
 }
 
-/// Finds the footprints that cover a position. Returns true if all footprints within the margin have the largest
-/// radius.
-bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
+/// Finds the footprints that cover a position.
+void FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
   struct Entry {
     std::size_t level, node;
   };
   constexpr std::size_t kChildren = BoxTree::kChildren;
   std::array<Entry, (kChildren - 1) * 12 + 1> stack;  // 2^31 photons need 9 levels
   std::size_t depth = 0;
-  bool wide = true;
   stack[depth++] = {tree_.level_count() - 1, 0};
   while (depth > 0) {
     const auto [level, number] = stack[--depth];
@@ -127,18 +122,17 @@ bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Cov
                   (position.z >= node.lower[2][c]) & (position.z <= node.upper[2][c]);
     for (std::size_t c = 0; c < kChildren; ++c) {
       if (!inside[c]) continue;
-      if (level == 0) wide &= scan_leaf(kChildren * number + c, position, normal, found);
+      if (level == 0) scan_leaf(kChildren * number + c, position, normal, found);
       else stack[depth++] = {level - 1, kChildren * number + c};
     }
   }
-  return wide;
 }
 
-bool FootprintDensity::scan_leaf(std::size_t number, Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
+void FootprintDensity::scan_leaf(std::size_t number, Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
   const Leaf& leaf = leaves_[number];
   std::array<float, kLeaf> distance2;
   std::array<int, kLeaf> covers;
-  int any = 0, narrow = 0;
+  int any = 0;
   for (std::size_t i = 0; i < kLeaf; ++i) {
     const float dx = position.x - leaf.x[i], dy = position.y - leaf.y[i], dz = position.z - leaf.z[i];
     const float h = dx * leaf.nx[i] + dy * leaf.ny[i] + dz * leaf.nz[i];
@@ -146,12 +140,9 @@ bool FootprintDensity::scan_leaf(std::size_t number, Vec3 position, Vec3 normal,
     const float cosine = normal.x * leaf.nx[i] + normal.y * leaf.ny[i] + normal.z * leaf.nz[i];
     covers[i] = (distance2[i] * leaf.inverse_r2[i] < 1) & (cosine > kMinCos);
     any |= covers[i];
-    narrow |= (distance2[i] < leaf.narrow2[i]) & (cosine > kMinCos);
   }
-  if (!any) return !narrow;
-  for (std::size_t i = 0; i < kLeaf; ++i)
+  for (std::size_t i = 0; i < kLeaf && any; ++i)
     if (covers[i]) found.push_back({std::uint32_t(number * kLeaf + i), distance2[i]});
-  return !narrow;
 }
 
 float FootprintDensity::outer_radius(std::uint32_t photon) const {
@@ -231,44 +222,21 @@ FootprintDensity::Sums FootprintDensity::of_asked(Vec3 position, Vec3 normal, st
   return sums;
 }
 
-/// Properties of the footprints around a place.
-struct FootprintDensity::Extents {
-  bool widest = false;  ///< all footprints within the margin have the largest radius
-  float inside = 0;     ///< m: largest distance between the place and the border of a footprint that covers it
-  Rgb noise{0.0f};      ///< W/m^2
-};
-
-Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over, Rgb* noise) const {
-  Extents extents;
-  const Rgb irradiance = estimate(position, surface, extents);
-  smooth_over = extents.widest ? options_.max_radius : 0;
-  if (noise) *noise = extents.noise;
-  return irradiance;
-}
-
-Rgb FootprintDensity::estimate_around(Vec3 position, const LitSurface& surface, float& alike_within, Rgb& noise) const {
-  Extents extents;
-  const Rgb irradiance = estimate(position, surface, extents);
-  alike_within = extents.inside / 9;
-  noise = extents.noise;
-  return irradiance;
-}
-
-Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents& extents) const {
+FootprintLight FootprintDensity::estimate(Vec3 position, const LitSurface& surface) const {
   const Vec3 normal = surface.geometric;
-  if (empty()) return Rgb(0.0f);
+  if (empty()) return {};
   thread_local std::vector<Covering> covering;
   covering.clear();
-  extents.widest = find_covering(position, normal, covering) && !covering.empty();
+  find_covering(position, normal, covering);
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
   Sums sums;
   double whole = 0;
+  float inside = 0;  // m: largest distance between the place and the border of a footprint that covers the place
   for (const auto [photon, distance2] : covering) {
     const Extent extent = extent_of(photon);
     const float radius = extent.radius();
-    extents.widest = extents.widest && radius > kAlmost * options_.max_radius;
-    extents.inside = std::max(extents.inside, radius - std::sqrt(distance2));
+    inside = std::max(inside, radius - std::sqrt(distance2));
     double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
     if (!(weight > 0)) continue;  // the footprint was made smaller
     if (directed_) weight *= double(received_share(arriving_from_[photon], normal_of(photon), surface));
@@ -289,8 +257,7 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
     const Sums asked = of_asked(position, normal, candidates, whole);
     sums.irradiance += asked.irradiance, sums.noise += asked.noise;
   }
-  extents.noise = Rgb(sums.noise);
-  return Rgb(sums.irradiance);
+  return {Rgb(sums.irradiance), Rgb(sums.noise), inside / 9};
 }
 
 }  // namespace tempolux

@@ -26,8 +26,6 @@ struct FootprintOptions {
   /// drawn in proportion to their contribution. The estimate stays unbiased, and has no added noise where all photons
   /// or none reach the place. Use it for estimates that a pixel averages.
   int asked = 0;
-  /// Share of max_radius: light counts as smooth only if no narrower footprint lies within this distance.
-  float margin = 0;
 };
 
 /// A surface that receives light. Normals are unit vectors on the lit side.
@@ -48,6 +46,17 @@ struct LitSurface {
 /// as at the photon, however the surface bends in between: without a map and a coat the share is 1, and no flux is
 /// gained or lost. On a plane it equals the factor in path tracing. 0 for light from behind the shading normal.
 float received_share(Vec3 wi, Vec3 normal, const LitSurface& at);
+
+/// Caustic light at a place.
+struct FootprintLight {
+  Rgb irradiance{0.0f};  ///< W/m^2; negative only if photons have negative flux
+  Rgb noise{0.0f};       ///< W/m^2: the same sum with the signs of paths (path_signs.h)
+  /// m: no footprint within this distance is narrower than four times the distance, so light changes by a few per cent
+  /// within it. 0 if no footprint covers the place. The radii of two photons differ by at most their distance, because
+  /// both reach to a k-th neighbour. So with m = max over covering photons of (r_i - d_i), every footprint that reaches
+  /// within m / 9 of the place is wider than 4 m / 9.
+  float alike_within = 0;
+};
 
 /// Density estimate for light with edges and spots: caustics.
 ///
@@ -85,21 +94,8 @@ class FootprintDensity {
 
   /// True if photons store directions, so that the shading normal of the surface matters.
   bool directed() const { return directed_; }
-  /// Irradiance [W/m^2] at a place on the lit side of a surface. Negative only if photons have negative flux.
-  /// `smooth_over` receives max_radius if footprints cover the place and all footprints within `margin` have this
-  /// radius, else 0.
-  /// `noise` receives the same sum with the signs of paths (path_signs.h) [W/m^2].
-  Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over, Rgb* noise = nullptr) const;
-  /// The same estimate. `alike_within` [m] receives a distance within which no footprint is narrower than four times
-  /// that distance, so that light changes by a few per cent within it; 0 if no footprint covers the place. The radii of
-  /// two photons differ by at most their distance, because both reach to a k-th neighbour. So with m = max over
-  /// covering photons of (r_i - d_i), every footprint that reaches within m / 9 of the place is wider than 4 m / 9.
-  /// `noise` as for estimate().
-  Rgb estimate_around(Vec3 position, const LitSurface& surface, float& alike_within, Rgb& noise) const;
-  /// For a surface without a normal map or a coat.
-  Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const {
-    return estimate(position, LitSurface(normal), smooth_over);
-  }
+  /// The light at a place on the lit side of a surface.
+  FootprintLight estimate(Vec3 position, const LitSurface& surface) const;
 
  private:
   static constexpr std::size_t kLeaf = 32;
@@ -107,7 +103,6 @@ class FootprintDensity {
     float x[kLeaf], y[kLeaf], z[kLeaf], nx[kLeaf], ny[kLeaf], nz[kLeaf];
     float inverse_r2[kLeaf];  ///< 1/m^2
     float flat[kLeaf];        ///< (radius / height)^2 - 1 of the ellipsoid
-    float narrow2[kLeaf];     ///< m^2: (radius + margin)^2 of footprints narrower than max_radius, else -1
   };
   /// Computed when a footprint is first needed, because most of a map's footprints are never seen.
   class Extent {
@@ -134,12 +129,10 @@ class FootprintDensity {
   float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
   void build_tree();
   struct Candidate;
-  struct Extents;
-  Rgb estimate(Vec3 position, const LitSurface& surface, Extents& extents) const;
   struct Sums;
   Sums of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const;
-  bool find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
-  bool scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
+  void find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
+  void scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   Extent extent_of(std::uint32_t photon) const;
   Extent measure(std::uint32_t photon) const;
   float outer_radius(std::uint32_t photon) const;
@@ -152,7 +145,7 @@ class FootprintDensity {
   std::vector<std::int8_t> signs_;   ///< in the order of the index
   std::vector<Vec3> arriving_from_;  ///< wi in the order of the index, if directed
   std::unique_ptr<Leaf[]> leaves_;   ///< in the order of the index; unused places hold NaN, which covers nothing
-  BoxTree tree_;                     ///< over the boxes of footprints with their margins
+  BoxTree tree_;                     ///< over the boxes of footprints
   std::unique_ptr<std::atomic<Extent>[]> extents_;
 };
 

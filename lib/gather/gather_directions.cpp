@@ -6,7 +6,6 @@
 
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
-#include "lib/gather/hemisphere.h"
 
 namespace tempolux {
 namespace {
@@ -27,8 +26,8 @@ GatherStrata::GatherStrata(int rings_, int sectors_) : rings(rings_), sectors(se
 }
 
 GatherStrata::GatherStrata(int rays) {
-  gather_strata(rays, rings, sectors);
-  *this = GatherStrata(rings, sectors);
+  const int count = std::max(1, int(std::lround(std::sqrt(double(rays) / M_PI))));
+  *this = GatherStrata(count, std::max(3, int(std::lround(double(rays) / count))));
 }
 
 std::uint64_t gather_key(Vec3 p, Vec3 n, std::uint64_t seed) {

@@ -3,13 +3,34 @@
 #include <algorithm>
 
 #include "formats/error.h"
-#include "lib/gather/high_shares.h"
 #include "lib/gather/whole_photons.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/moving_objects.h"
 #include "lib/scene/static_scene.h"
 
 namespace tempolux {
+namespace {
+
+/// For each point, the share in [0, 1] of its irradiance (all kinds; sum of the channels) that comes from the photons
+/// `high`, by the same density estimate as estimate_points. `whole`: points estimated from all photons. The two
+/// densities use different discs, so the share is only an estimate. Light sampled with it stays unbiased, because
+/// BrightPoints divides light exactly for any shares. 0 at a point without light.
+std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights, const formats::PhotonMap& high,
+                                     PointOptions options, std::span<const IrradiancePoint> whole) {
+  std::vector<float> shares(whole.size(), 0.0f);
+  if (high.photons.empty()) return shares;
+  std::vector<IrradiancePoint> part(whole.begin(), whole.end());
+  options.light_samples = 1;  // neither part holds direct light, and this estimate of it is not read
+  estimate_points(tracer, lights, high, shift_of(high.header.origin, tracer.frame()), options, part);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const float all = channel_sum(whole[i].direct) + channel_sum(whole[i].caustic) + channel_sum(whole[i].indirect);
+    const float bright = channel_sum(part[i].caustic) + channel_sum(part[i].indirect);
+    if (all > 0) shares[i] = std::clamp(bright / all, 0.0f, 1.0f);
+  }
+  return shares;
+}
+
+}  // namespace
 
 Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
   return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 
 #include "lib/core/random.h"
 
@@ -13,52 +12,41 @@ namespace {
 /// Integral of tan over a ring's part of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
 double ring_integral(double s) { return std::asin(std::sqrt(s)) - std::sqrt(s * (1 - s)); }
 
-/// Unit vectors in the tangent plane: in the middle of each sector and at its lower edge.
-struct Azimuths {
-  std::vector<Vec3d> middle, lower;
-};
-
-/// Computed once per number of sectors and thread.
-const Azimuths& azimuths(int sectors) {
-  constexpr std::size_t kMost = 64;
-  thread_local std::unordered_map<int, Azimuths> known;
-  if (const auto found = known.find(sectors); found != known.end()) return found->second;
-  if (known.size() >= kMost) known.clear();
-  Azimuths& made = known[sectors];
-  for (int k = 0; k < sectors; ++k) {
-    const double middle = 2 * M_PI * (k + 0.5) / sectors, lower = 2 * M_PI * double(k) / sectors;
-    made.middle.push_back({std::cos(middle), std::sin(middle), 0});
-    made.lower.push_back({std::cos(lower), std::sin(lower), 0});
-  }
-  return made;
+/// Unit vector in the tangent plane, at the end of `k` of `count` sectors.
+Vec3d azimuth(double k, double count) {
+  const double phi = 2 * M_PI * k / count;
+  return {std::cos(phi), std::sin(phi), 0};
 }
 
 }  // namespace
 
-void gather_strata(int rays, int& rings, int& sectors) {
-  rings = std::max(1, int(std::lround(std::sqrt(double(rays) / M_PI))));
-  sectors = std::max(3, int(std::lround(double(rays) / rings)));
-}
-
 void Hemisphere::reset(int rings, int sectors) {
-  if (rings != rings_) {
-    ring_tangent_.resize(std::size_t(rings));
-    for (int j = 0; j < rings; ++j)
-      ring_tangent_[std::size_t(j)] = rings * (ring_integral(double(j + 1) / rings) - ring_integral(double(j) / rings));
-  }
+  ring_tangent_.resize(std::size_t(rings));
+  for (int j = 0; j < rings; ++j)
+    ring_tangent_[std::size_t(j)] = rings * (ring_integral(double(j + 1) / rings) - ring_integral(double(j) / rings));
   rings_ = rings;
   sectors_ = sectors;
   radiance.assign(std::size_t(rings) * std::size_t(sectors), Rgb(0.0f));
   inverse_distance.assign(radiance.size(), 0.0f);
 }
 
+IrradianceRecord Hemisphere::record(const SurfacePoint& place, Vec3 normal) const {
+  const Frame frame(normal);
+  IrradianceRecord record;
+  record.position = place.position;
+  record.normal = normal;
+  record.object = place.object;
+  translational_gradient(frame, record);
+  irradiance_and_rotational_gradient(frame, record);
+  return record;
+}
+
 void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const {
   const int M = rings_, N = sectors_;
   Rgbd sum{0.0};
   std::array<Vec3d, 3> gradient{};
-  const Azimuths& around = azimuths(N);
   for (int k = 0; k < N; ++k) {
-    const Vec3d u = around.middle[std::size_t(k)];
+    const Vec3d u = azimuth(k + 0.5, N);
     Rgbd turn{0.0};
     for (int j = 0; j < M; ++j) {
       const Rgbd here(radiance[cell(j, k)]);
@@ -95,10 +83,10 @@ void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& re
       for (int c = 0; c < 3; ++c) along[c][k] += (double(light[k][c]) - double((light - N)[k][c])) * weight;
     }
   }
-  const Azimuths& around = azimuths(sectors_);
   std::array<Vec3d, 3> gradient{};
   for (std::size_t k = 0; k < N; ++k) {
-    const Vec3d u = around.middle[k], v_lower{-around.lower[k].y, around.lower[k].x, 0};
+    const Vec3d u = azimuth(double(k) + 0.5, double(N)), lower = azimuth(double(k), double(N));
+    const Vec3d v_lower{-lower.y, lower.x, 0};
     for (std::size_t c = 0; c < 3; ++c)
       gradient[c] += u * (along[c][k] * 2 * M_PI / double(N)) + v_lower * across[c][k];
   }

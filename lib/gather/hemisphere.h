@@ -1,16 +1,15 @@
 // lib/gather/hemisphere.h -- radiance and distances over a hemisphere: irradiance and its gradients.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "lib/core/frame.h"
 #include "lib/irradcache/records.h"
+#include "lib/trace/trace.h"
 
 namespace tempolux {
-
-/// Computes M rings and N sectors for about `rays` cells of equal weight, N about pi M.
-void gather_strata(int rays, int& rings, int& sectors);
 
 /// Incoming radiance in cells (j, k) with index j N + k. Ring j holds sin^2 of the angle to the normal in [j, j+1) / M;
 /// sector k holds azimuths in [k, k+1) 2 pi / N. All cells contribute equally to the irradiance.
@@ -22,6 +21,20 @@ class Hemisphere {
   /// Makes all cells dark and empty.
   void reset(int rings, int sectors);
 
+  /// The record of a place with irradiance and gradients, without radii. `normal`: unit, on the lit side, the axis of
+  /// the hemisphere.
+  IrradianceRecord record(const SurfacePoint& place, Vec3 normal) const;
+
+  /// A number with a random sign whose mean square is at least the variance of the irradiance [W/m^2]:
+  ///
+  ///     pi/(M N) sum_p s_p (L_2p - L_2p+1),   s_p = -1 or 1 at random,
+  ///
+  /// over pairs p of cells with successive indices. Its mean square is the variance of the irradiance plus (pi/(M
+  /// N))^2 times the squared differences of the light that arrives in the two cells of each pair. `key`: of the
+  /// random signs.
+  Rgb noise(std::uint64_t key) const;
+
+ private:
   /// Sets irradiance and rotational gradient of the record. In the frame's space (z = normal):
   ///
   ///     E     = pi/(M N) sum L_jk
@@ -38,21 +51,13 @@ class Hemisphere {
   ///
   /// u_k: tangent at the middle of sector k. v_k-: tangent at its lower edge + 90 degrees.
   void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
-
-  /// A number with a random sign whose mean square is at least the variance of the irradiance [W/m^2]:
-  ///
-  ///     pi/(M N) sum_p s_p (L_2p - L_2p+1),   s_p = -1 or 1 at random,
-  ///
-  /// over pairs p of cells with successive indices. Its mean square is the variance of the irradiance plus (pi/(M
-  /// N))^2 times the squared differences of the light that arrives in the two cells of each pair. `key`: of the
-  /// random signs.
-  Rgb noise(std::uint64_t key) const;
-
- private:
   std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }
 
   int rings_ = 0, sectors_ = 0;
   std::vector<double> ring_tangent_;  ///< T_j
 };
+
+/// m: smallest distance from a place that is used, so that 1 / distance stays finite.
+inline float closest_distance(const SurfacePoint& place) { return std::max(4 * place.offset, 1e-30f); }
 
 }  // namespace tempolux

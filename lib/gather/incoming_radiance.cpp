@@ -20,9 +20,8 @@ namespace {
 /// Largest number of events of one ray. Russian roulette ends all but 4e-12 of the rays before.
 constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
-constexpr std::uint64_t kMediaNumbers = std::uint64_t(1)
-                                        /// Offset that separates the random numbers of media from those of any depth.
-                                        << 32;
+/// Offset that separates the random numbers of media from those of any depth.
+constexpr std::uint64_t kMediaNumbers = std::uint64_t(1) << 32;
 constexpr std::size_t kAtOnce = 32;  ///< rays that are processed together
 
 }  // namespace
@@ -36,7 +35,8 @@ struct IncomingRadiance::Met {
   std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures
 };
 
-/// A ray that continues from a hit, and the use of the radiance along it. All rays of one depth are followed together.
+/// A gather ray or a ray that continues it from a hit, and the use of the radiance along it. All rays of one depth are
+/// followed together.
 struct IncomingRadiance::Further {
   Ray ray;
   std::uint64_t key = 0;
@@ -136,41 +136,32 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
                                   std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts,
                                   std::span<RadianceSource> sources, Start start) const {
   thread_local std::vector<Further> now, next;
-  thread_local std::vector<Ray> further_rays;
+  thread_local std::vector<Ray> now_rays;
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
   std::fill(distance.begin(), distance.end(), INFINITY);
   std::fill(sources.begin(), sources.end(), RadianceSource{});
   next.clear();
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    next.push_back({rays[i], keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ != nullptr});
   const Gathered to{counts, next, sources};
-  follow(
-      rays, true, counts,
-      [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
-        distance[i] = met.distance;
-        radiance[i] =
-            reflected(met, point, {{}, keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ != nullptr}, 0, to);
-      },
-      [&](std::size_t i) { return keys[i]; },
-      [&](std::size_t i, const MediumPoint& collision, float way) {
-        distance[i] = way;
-        radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, to);
-      },
-      [](std::size_t) {});
-  for (int depth = 1; !next.empty(); ++depth) {
+  for (int depth = 0; !next.empty(); ++depth) {
     std::swap(now, next);
     next.clear();
-    further_rays.clear();
-    for (const Further& f : now) further_rays.push_back(f.ray);
+    now_rays.clear();
+    for (const Further& f : now) now_rays.push_back(f.ray);
     follow(
-        further_rays, false, counts,
+        now_rays, depth == 0, counts,
         [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
-          const Further from = now[i];
+          const Further& from = now[i];
+          if (depth == 0) distance[i] = met.distance;
           radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
           if (from.phase > 0)
             radiance[from.of] += from.weight * weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0);
         },
         [&](std::size_t i) { return now[i].key; },
-        [&](std::size_t i, const MediumPoint& collision, float) {
-          const Further from = now[i];
+        [&](std::size_t i, const MediumPoint& collision, float way) {
+          const Further& from = now[i];
+          if (depth == 0) distance[i] = way;
           radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
         },
         [&](std::size_t i) {  // a surface samples the environment itself where it sends the ray

@@ -59,10 +59,11 @@ Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
   return {std::move(pieces), std::move(areas)};
 }
 
-/// The point at the share u.x of the summed areas of a surface's triangles (or pieces); `cumulative` is their running
-/// sum. The normal is 0 if the triangle has no area.
-IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> pieces,
-                         std::span<const double> cumulative, Vec2 u, bool back) {
+/// The point at the share u.x of a side of the ground, whose areas are running sums. The normal is 0 if the triangle
+/// has no area.
+IrradiancePoint point_on(const Surface& surface, Ground& ground, Vec2 u, bool back) {
+  const std::vector<TrianglePiece>& pieces = ground.pieces;
+  const std::span<const double> cumulative = std::span<double>(ground.areas);
   const double along = double(u.x) * cumulative.back();
   const auto at = std::size_t(std::upper_bound(cumulative.begin(), cumulative.end() - 1, along) - cumulative.begin());
   const double first = at ? cumulative[at - 1] : 0, width = cumulative[at] - first;
@@ -81,28 +82,37 @@ IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> 
   return point;
 }
 
-/// Adds the points of both sides of a surface, each side by a scrambled Sobol sequence, uniform by area. Replaces the
-/// ground's areas by their running sum. `rank` distinguishes the surfaces of one object.
-void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double area_per_point, std::uint64_t seed,
-              std::vector<IrradiancePoint>& points) {
+/// Replaces the ground's areas by their running sum. Returns the last one, the area of one side [m^2].
+double add_up(Ground& ground) {
   const std::span<double> areas = ground.areas;
   std::partial_sum(areas.begin(), areas.end(), areas.begin());
-  if (areas.empty() || !(areas.back() > 0)) return;
-  const std::size_t count = std::uint32_t(std::max(1.0, std::ceil(areas.back() / area_per_point)));
-  const auto before = std::ptrdiff_t(points.size());
-  points.resize(points.size() + 2 * count);
-  const std::span<IrradiancePoint> made(points.begin() + before, points.end());
-  for (std::uint32_t side = 0; side < 2; ++side) {
-    const std::uint64_t key = PathRandom(seed, surface.object).bits(rank, Purpose::points, side);
-    parallel_chunks(count, 256, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        made[side * count + i] =
-            point_on(surface, ground.pieces, areas, sobol_owen_2d(std::uint32_t(i), key), side == 1);
-    });
-  }
-  points.erase(
-      std::remove_if(points.begin() + before, points.end(), [](const auto& p) { return !(length2(p.normal) > 0); }),
-      points.end());
+  return areas.empty() ? 0 : areas.back();
+}
+
+/// Points on one side of a surface.
+struct SideOfSurface {
+  const Surface& surface;
+  Ground& ground;  ///< with running sums of areas
+  std::uint32_t count;
+  bool back;
+};
+
+/// The points of a scrambled Sobol sequence, uniform by area, that have a normal and that `wanted` accepts. `key`: of
+/// the sequence.
+template <class Wanted>
+std::vector<IrradiancePoint> spread(const SideOfSurface& side, std::uint64_t key, const Wanted& wanted) {
+  constexpr std::size_t kChunk = 4096;
+  std::vector<std::vector<IrradiancePoint>> found((side.count + kChunk - 1) / kChunk);
+  parallel_chunks(side.count, kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec2 u = sobol_owen_2d(std::uint32_t(i), key);
+      const IrradiancePoint point = point_on(side.surface, side.ground, u, side.back);
+      if (length2(point.normal) > 0 && wanted(point.position)) found[first / kChunk].push_back(point);
+    }
+  });
+  std::vector<IrradiancePoint> points;
+  for (const auto& some : found) points.insert(points.end(), some.begin(), some.end());
+  return points;
 }
 
 /// The spheres in which points are spread: some of the spheres around what cameras see; empty: everywhere. They are
@@ -153,11 +163,13 @@ struct Scattering {
   LitSurface lit(Vec3 geometric) const { return {geometric, smooth, normal, coat ? &*coat : nullptr}; }
 };
 
-/// Uses the point's normal and no coat if the point's surface is not found.
+Scattering plain(const IrradiancePoint& point) { return {point.normal, point.normal, {}}; }
+
+/// plain() if the point's surface is not found.
 Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
   Hit hit;
   if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
-    return {point.normal, point.normal, {}};
+    return plain(point);
   SurfacePoint there = tracer.surface_point(hit);
   const auto on_its_side = [&](Vec3 normal) { return dot(normal, point.normal) < 0 ? -normal : normal; };
   const Vec3 smooth = on_its_side(there.normal);
@@ -168,33 +180,49 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   return found;
 }
 
-/// Calls each(sample, random bits for media on its path) for the stratified light samples of a point that can light it.
-template <class Each>
-void for_light_samples(const Lights& lights, const IrradiancePoint& point, float offset, int samples,
-                       const Scattering& scattering, const PathRandom& random, const Each& each) {
-  SurfacePoint from;
-  from.position = point.position;
-  from.normal = from.normal_geometric = point.normal;
-  from.offset = offset;
-  const Receiver at{from, point.normal, scattering.normal, scattering.coat ? &*scattering.coat : nullptr};
-  for (int s = 0; s < samples; ++s) {
-    const float u = (float(s) + random.get1(0, Purpose::light_choice, std::uint32_t(s))) / float(samples);
-    DirectSample direct;
-    if (sample_direct(lights, at, std::min(u, kOneMinusEpsilon), random.get2(0, Purpose::light_point, std::uint32_t(s)),
-                      direct))
-      each(direct, WayBits{random, std::uint32_t(s), way_shadow});
-  }
-}
+/// Samples direct light at points.
+struct DirectLight {
+  const Tracer& tracer;
+  const Lights& lights;
+  int samples;
+  float offset = Reach(tracer).offset();
+  bool looks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
 
-/// Direct light at a point: the mean over its light samples.
-Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset, int samples,
-                 const Scattering& scattering, const PathRandom& random) {
-  Rgbd sum{0.0};
-  for_light_samples(lights, point, offset, samples, scattering, random,
-                    [&](const DirectSample& direct, const WayBits& bits) {
-                      sum += Rgbd(direct.irradiance) * double(transmittance(tracer, direct.shadow, bits));
-                    });
-  return Rgb(sum / double(samples));
+  /// How the surface scatters; plain() if no surface of the scene needs more.
+  Scattering scattering(const IrradiancePoint& point) const {
+    return looks ? scattering_at(tracer, point, offset) : plain(point);
+  }
+  /// Irradiance [W/m^2]: the mean over the light samples.
+  Rgb at(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random) const {
+    Rgbd sum{0.0};
+    for_samples(point, scattering, random, [&](const DirectSample& direct, const WayBits& bits) {
+      sum += Rgbd(direct.irradiance) * double(transmittance(tracer, direct.shadow, bits));
+    });
+    return Rgb(sum / double(samples));
+  }
+  /// Calls each(sample, random bits for media on its path) for the stratified light samples that can light the point.
+  template <class Each>
+  void for_samples(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random,
+                   const Each& each) const {
+    if (lights.empty()) return;
+    SurfacePoint from;
+    from.position = point.position;
+    from.normal = from.normal_geometric = point.normal;
+    from.offset = offset;
+    const Receiver at{from, point.normal, scattering.normal, scattering.coat ? &*scattering.coat : nullptr};
+    for (std::uint32_t s = 0; s < std::uint32_t(samples); ++s) {
+      const float u = (float(s) + random.get1(0, Purpose::light_choice, s)) / float(samples);
+      DirectSample direct;
+      if (sample_direct(lights, at, std::min(u, kOneMinusEpsilon), random.get2(0, Purpose::light_point, s), direct))
+        each(direct, WayBits{random, s, way_shadow});
+    }
+  }
+};
+
+std::vector<std::uint32_t> all_of(std::span<const IrradiancePoint> points) {
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
 }
 
 /// Sorts points by position, so that successive look-ups and rays find their data in the cache. `which`: indices of
@@ -241,10 +269,18 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) 
   PlacedPoints placed;
   if (whole > 0) placed.spacing = float(std::sqrt(whole / std::max(1u, options.count)));
   const double area_per_point = double(placed.spacing) * double(placed.spacing);
-  std::map<std::uint32_t, std::uint32_t> rank;
+  std::map<std::uint32_t, std::uint32_t> surfaces_of;  // by object
   for (std::size_t i = 0; i < grounds.size(); ++i) {
-    const std::uint32_t r = rank[frame.surfaces[i].object]++;
-    if (grounds[i]) place_on(frame.surfaces[i], r, *grounds[i], area_per_point, options.seed, placed.points);
+    const Surface& surface = frame.surfaces[i];
+    const std::uint32_t rank = surfaces_of[surface.object]++;
+    const double area = grounds[i] ? add_up(*grounds[i]) : 0;
+    if (!(area > 0)) continue;
+    const auto count = std::uint32_t(std::max(1.0, std::ceil(area / area_per_point)));
+    for (const bool back : {false, true}) {
+      const std::uint64_t key = PathRandom(options.seed, surface.object).bits(rank, Purpose::points, back);
+      const auto points = spread({surface, *grounds[i], count, back}, key, [](Vec3) { return true; });
+      placed.points.insert(placed.points.end(), points.begin(), points.end());
+    }
   }
   return placed;
 }
@@ -257,23 +293,13 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
     const Surface& surface = frame.surfaces[s];
     if (!stores_light(frame, surface) || !std::binary_search(objects.begin(), objects.end(), surface.object)) continue;
     Ground ground = ground_of(surface, {&around, 1});
-    std::partial_sum(ground.areas.begin(), ground.areas.end(), ground.areas.begin());
-    const std::span<const double> cumulative(ground.areas.begin(), ground.areas.end());
-    if (cumulative.empty() || !(cumulative.back() > 0)) continue;
-    const auto count = std::uint32_t(std::clamp(std::ceil(cumulative.back() / area), 1.0, double(kMostSites)));
-    constexpr std::size_t kChunk = 4096;
+    const double whole = add_up(ground);
+    if (!(whole > 0)) continue;
+    const auto count = std::uint32_t(std::clamp(std::ceil(whole / area), 1.0, double(kMostSites)));
     for (const bool back : {false, true}) {
       const std::uint64_t key = PathRandom(seed, s).bits(0, Purpose::place, back);
-      std::vector<std::vector<PlacedSite>> found((count + kChunk - 1) / kChunk);
-      parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-          const IrradiancePoint place =
-              point_on(surface, ground.pieces, cumulative, sobol_owen_2d(std::uint32_t(i), key), back);
-          if (length2(place.normal) > 0 && wanted(place.position))
-            found[first / kChunk].push_back({place, float(cumulative.back() / count)});
-        }
-      });
-      for (const auto& some : found) sites.insert(sites.end(), some.begin(), some.end());
+      for (const IrradiancePoint& place : spread({surface, ground, count, back}, key, wanted))
+        sites.push_back({place, float(whole / count)});
     }
   }
   return sites;
@@ -281,9 +307,7 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
 
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::vector<IrradiancePoint>& points) {
-  std::vector<std::uint32_t> all(points.size());
-  std::iota(all.begin(), all.end(), 0u);
-  estimate_points(tracer, lights, photons, photon_shift, options, all, points);
+  estimate_points(tracer, lights, photons, photon_shift, options, all_of(points), points);
 }
 
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
@@ -300,23 +324,19 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0},
                                  kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons.photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
-  const float offset = Reach(tracer).offset();
-  const bool asks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
+  const DirectLight direct{tracer, lights, options.light_samples};
   const std::vector<std::uint32_t> order = in_space(points, which);
   parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
       const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering =
-          asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
-      point.direct = lights.empty()
-                         ? Rgb(0.0f)
-                         : direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
-      float unused;
-      Rgb of_caustic{0.0f}, of_indirect{0.0f};
-      point.caustic = caustic.estimate(point.position, scattering.lit(point.normal), unused, &of_caustic);
-      point.indirect = indirect.estimate(point, random, point.radius, &of_indirect);
-      point.noise = of_caustic + of_indirect;
+      const Scattering scattering = direct.scattering(point);
+      point.direct = direct.at(point, scattering, random);
+      const FootprintLight light = caustic.estimate(point.position, scattering.lit(point.normal));
+      Rgb noise{0.0f};
+      point.indirect = indirect.estimate(point, random, point.radius, &noise);
+      point.caustic = light.irradiance;
+      point.noise = light.noise + noise;
     }
   });
 }
@@ -326,10 +346,8 @@ void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std
   parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[i];
-      const Scattering scattering =
-          density.directed() ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
-      float unused;
-      point.caustic = density.estimate(point.position, scattering.lit(point.normal), unused);
+      const Scattering scattering = density.directed() ? scattering_at(tracer, point, offset) : plain(point);
+      point.caustic = density.estimate(point.position, scattering.lit(point.normal)).irradiance;
     }
   });
 }
@@ -337,11 +355,8 @@ void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std
 std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch,
                           const PointOptions& options, std::vector<IrradiancePoint>& points) {
   if (lights.empty()) return 0;
-  const float offset = Reach(tracer).offset();
-  const bool asks = any_coated(tracer.frame()) || any_bent(tracer.frame());
-  std::vector<std::uint32_t> all(points.size());
-  std::iota(all.begin(), all.end(), 0u);
-  const std::vector<std::uint32_t> order = in_space(points, all);
+  const DirectLight direct{tracer, lights, options.light_samples};
+  const std::vector<std::uint32_t> order = in_space(points, all_of(points));
   const std::optional<Box3> box = box_of_lights(tracer.frame());
   std::atomic<std::size_t> sampled = 0;
   parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
@@ -350,16 +365,14 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
       IrradiancePoint& point = points[order[i]];
       if (watch && box && !watch->between(point.position, *box)) continue;
       const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering =
-          asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
+      const Scattering scattering = direct.scattering(point);
       bool touched = !watch;
       if (watch)
-        for_light_samples(lights, point, offset, options.light_samples, scattering, random,
-                          [&](const DirectSample& direct, const WayBits&) {
-                            touched = touched || watch->touching(direct.shadow, 1) != 0;
-                          });
+        direct.for_samples(point, scattering, random, [&](const DirectSample& sample, const WayBits&) {
+          touched = touched || watch->touching(sample.shadow, 1) != 0;
+        });
       if (!touched) continue;
-      point.direct = direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
+      point.direct = direct.at(point, scattering, random);
       ++count;
     }
     sampled += count;

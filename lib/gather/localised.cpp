@@ -60,7 +60,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
                                const InfluenceThresholds& thresholds)
-    : store_({.least_cosine = 0, .only_read = true}), thresholds_(thresholds) {
+    : store_({.least_cosine = 0}), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {

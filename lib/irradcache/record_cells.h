@@ -48,12 +48,11 @@ void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& b
     }
 }
 
-inline std::uint32_t hash_of(Cell c) {
+/// Bucket of a cell among `count` buckets, a power of two.
+inline std::size_t bucket_of(Cell c, std::size_t count) {
   const std::uint64_t h = std::uint64_t(c.x) * 0x9e3779b97f4a7c15ull + std::uint64_t(c.y) * 0xc2b2ae3d27d4eb4full +
                           std::uint64_t(c.z) * 0x165667b19e3779f9ull;
-  return std::uint32_t(mix64(h));
+  return std::uint32_t(mix64(h)) & (count - 1);
 }
-
-inline std::size_t bucket_of(Cell c, std::size_t count) { return hash_of(c) & (count - 1); }
 
 }  // namespace tempolux

@@ -6,13 +6,10 @@
 #include <bit>
 #include <cmath>
 
-#include "lib/core/check.h"
 #include "lib/irradcache/record_cells.h"
 
 namespace tempolux {
 namespace {
-
-constexpr std::size_t kMostLevels = 277;  ///< powers of two between the smallest and the largest radius in float
 
 bool is_usable(const IrradianceRecord& r) {
   bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance)) &&
@@ -65,46 +62,26 @@ RecordStore::Level& RecordStore::level_of(float radius) {
   Level& level = levels_.emplace_back();
   level.exponent = exponent;
   level.inverse_cell = std::ldexp(1.0, -exponent);
-  if (options_.only_read) return level;
   level.buckets.resize(kFirstBuckets);
   return level;
 }
 
 bool RecordStore::add(const IrradianceRecord& record) {
-  TEMPOLUX_CHECK(!options_.only_read);
-  Level* const level = keep(record);
-  if (!level) return false;
-  if (level->listed < 4 * level->buckets.size()) {
-    list(*level, level->members.back());
-    return true;
-  }
-  level->buckets.assign(4 * level->buckets.size(), {});
-  level->listed = 0;
-  for (std::uint32_t member : level->members) list(*level, member);
-  return true;
-}
-
-void RecordStore::add(std::span<const IrradianceRecord> records) {
-  if (!options_.only_read) {
-    for (const IrradianceRecord& record : records) add(record);
-    return;
-  }
-  TEMPOLUX_CHECK(records_.empty());
-  records_.reserve(records.size());
-  for (const IrradianceRecord& record : records) keep(record);
-  for (Level& made : levels_) pack(made);
-}
-
-/// Stores the record; returns the level whose lists it belongs to, nullptr if the record is refused.
-RecordStore::Level* RecordStore::keep(const IrradianceRecord& record) {
   if (!is_usable(record)) {
     ++refused_;
-    return nullptr;
+    return false;
   }
   Level& level = level_of(record.radius);
   level.members.push_back(std::uint32_t(records_.size()));
   records_.push_back(record);
-  return &level;
+  if (level.listed < 4 * level.buckets.size()) {
+    list(level, level.members.back());
+    return true;
+  }
+  level.buckets.assign(4 * level.buckets.size(), {});
+  level.listed = 0;
+  for (std::uint32_t member : level.members) list(level, member);
+  return true;
 }
 
 /// Sets a smaller radius; the record stays on its level and in its cells.
@@ -120,26 +97,10 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
 template <class Found>
 inline bool RecordStore::any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const {
   const Vec3d local(position);
-  if (options_.only_read) {
-    // Finds the lists on all levels before reading them: they are far apart in memory.
-    std::size_t at[kMostLevels];
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-      const Level& level = levels_[i];
-      at[i] = bucket_of(cell_at(local, level.inverse_cell), level.first.size() - 1);
-      __builtin_prefetch(&level.first[at[i]]);
-    }
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-      const Level& level = levels_[i];
-      const std::uint32_t first = level.first[at[i]], end = level.first[at[i] + 1];
-      if (any_of({level.eights.data() + first, end - first}, position, normal, least_cosine, found)) return true;
-    }
-  } else {
-    for (const Level& level : levels_) {
-      const Bucket& bucket = level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())];
-      if (any_of(bucket.eights(), position, normal, least_cosine, found)) return true;
-    }
-  }
-  return false;
+  return std::ranges::any_of(levels_, [&](const Level& level) {
+    const Bucket& bucket = level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())];
+    return any_of(bucket.eights(), position, normal, least_cosine, found);
+  });
 }
 
 inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position,

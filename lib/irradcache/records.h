@@ -23,9 +23,10 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
-  Clearance clearance;       ///< the record does not count outside of it; measured about `normal`
-  std::uint32_t object = 0;  ///< the object it lies on
-  /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (gathered_record.h); 0: unknown
+  Clearance clearance;                  ///< the record does not count outside of it; measured about `normal`
+  std::uint32_t object = 0;             ///< the object it lies on
+  /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (lib/gather/hemisphere.h); 0:
+  /// unknown
   Rgb noise{0.0f};
   Rgb points_noise{0.0f};  ///< W/m^2: the part of `noise` from the points that were read; not in files
 };
@@ -33,7 +34,6 @@ struct IrradianceRecord {
 struct InterpolationOptions {
   /// A record counts if the cosine between its normal and the surface's is above least_cosine, in [0, 1).
   float least_cosine = 0.94f;
-  bool only_read = false;  ///< all records are added in one call
 };
 
 /// least_cosine of records placed with this error bound (lib/gather/place_records.h). On curved surfaces a bright spot
@@ -60,10 +60,10 @@ class RecordStore {
 
   /// False, and the record is refused and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
-  /// Adds many records. A store with only_read takes all its records in one call: each list is built once, in one piece
-  /// of memory.
-  void add(std::span<const IrradianceRecord> records);
-  /// Gives a record a smaller radius. Not for stores with only_read.
+  void add(std::span<const IrradianceRecord> records) {
+    for (const IrradianceRecord& record : records) add(record);
+  }
+  /// Gives a record a smaller radius.
   void shrink(std::uint32_t record, float radius);
   std::span<const IrradianceRecord> records() const { return records_; }
   std::uint64_t refused() const { return refused_; }
@@ -132,18 +132,9 @@ class RecordStore {
     std::vector<std::uint32_t> members;
     /// records that may be valid in a cell, by the hash of the cell; the number of buckets is a power of two
     std::vector<Bucket> buckets;
-    /// With only_read, in place of buckets: bucket b is eights[first[b]] to eights[first[b + 1]].
-    std::vector<std::uint32_t> first;
-    std::vector<Eight> eights;
   };
   Level& level_of(float radius);
-  Level* keep(const IrradianceRecord& record);
   void list(Level& level, std::uint32_t record) const;
-  /// Calls body(cell) for the cells that a record may be valid in.
-  template <class Body>
-  void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
-  Entry entry_of(std::uint32_t record) const;
-  void pack(Level& level) const;
   /// Calls found(entry), in order, for the entries that a slightly widened test of place and normal accepts, until
   /// found returns true.
   template <class Found>

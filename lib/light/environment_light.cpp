@@ -12,9 +12,6 @@ namespace {
 
 constexpr double kUnits = 4294967295.0;  ///< largest cumulative share that 32 bits hold
 
-/// The u for which sample_linear gives x.
-double linear_number(double a, double b, double x) { return a + b > 0 ? x * (2 * a + (b - a) * x) / (a + b) : x; }
-
 }  // namespace
 
 Rgb EnvironmentLight::Corners::radiance(double x, double y) const {
@@ -26,15 +23,14 @@ double EnvironmentLight::Luminances::at(double x, double y) const {
   return lerp(lerp(upper_left, upper_right, x), lerp(lower_left, lower_right, x), y);
 }
 
-EnvironmentLight::Luminances EnvironmentLight::luminances(const Corners& corners) const {
-  const auto l = [this](const Rgb& pixel) { return uniform_ + tempolux::luminance(Rgbd(pixel)); };
+EnvironmentLight::Luminances EnvironmentLight::luminances(const Corners& corners) {
+  const auto l = [](const Rgb& pixel) { return luminance(Rgbd(pixel)); };
   return {l(corners.upper_left), l(corners.upper_right), l(corners.lower_left), l(corners.lower_right)};
 }
 
-EnvironmentLight::EnvironmentLight(const Environment& environment, double uniform)
+EnvironmentLight::EnvironmentLight(const Environment& environment)
     : environment_(environment), width_(std::uint32_t(environment.width)), height_(std::uint32_t(environment.height)) {
   integrate();
-  uniform_ = uniform * luminance(integral_) / (4 * kPiD);
   build_distribution();
 }
 
@@ -94,29 +90,16 @@ void EnvironmentLight::build_distribution() {
   for (const double w : row_weight) total += w;
   row_end_.reserve(row_weight.size());
   for (const double w : row_weight) row_end_.push_back(total > 0 ? (sum += w) / total : 0);
-
-  row_guide_ = Guide<64>([&](double u) { return row_for(u, {0, height_}); }, height_);
-  cell_guides_.resize(height_ + 1);
-  parallel_chunks(height_ + 1, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row)
-      cell_guides_[row] = Guide<64>(
-          [&](double u) {
-            return column_for(std::uint32_t(row), u, {0, width_ - 1});
-          },
-          width_ - 1);
-  });
 }
 
-/// Finds the row of cells that u1 falls in, among the given rows.
-std::uint32_t EnvironmentLight::row_for(double u1, Guide<64>::Range rows) const {
-  return std::uint32_t(std::upper_bound(row_end_.begin() + rows.first, row_end_.begin() + rows.last, u1) -
-                       row_end_.begin());
+/// The row of cells that u1 falls in.
+std::uint32_t EnvironmentLight::row_for(double u1) const {
+  return std::uint32_t(std::upper_bound(row_end_.begin(), row_end_.end() - 1, u1) - row_end_.begin());
 }
 
-std::uint32_t EnvironmentLight::column_for(std::uint32_t row, double u2, Guide<64>::Range columns) const {
-  const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
-  return std::uint32_t(
-      std::upper_bound(ends + columns.first, ends + columns.last, std::uint32_t(u2 * ends[width_ - 1])) - ends);
+std::uint32_t EnvironmentLight::column_for(std::uint32_t row, double u2) const {
+  const std::uint32_t *ends = &cell_end_[std::size_t(row) * width_], *const last = ends + width_ - 1;
+  return std::uint32_t(std::upper_bound(ends, last, std::uint32_t(u2 * *last)) - ends);
 }
 
 EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
@@ -154,12 +137,12 @@ double EnvironmentLight::pdf(const Place& place, const Luminances& at, double si
 
 bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   if (!(row_end_.back() > 0)) return false;
-  std::uint32_t row = row_for(u1, row_guide_.range(u1));
+  std::uint32_t row = row_for(u1);
   while (row > 0 && !(row_end_[row] > row_end_[row - 1])) --row;
   const double row_first = row > 0 ? row_end_[row - 1] : 0;
   const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
   const double units = u2 * ends[width_ - 1];
-  const std::uint32_t column = column_for(row, u2, cell_guides_[row].range(u2));
+  const std::uint32_t column = column_for(row, u2);
   const double first = column > 0 ? ends[column - 1] : 0;
 
   // First draws the position along the row, from the luminances of the cell's left and right side; then the position
@@ -194,28 +177,6 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
 double EnvironmentLight::pdf_solid_angle(const Place& place, Vec3 direction) const {
   const Vec3d d(direction);
   return pdf(place, luminances(corners(place.row, place.column)), std::sqrt(d.x * d.x + d.z * d.z));
-}
-
-Vec2 EnvironmentLight::numbers_of(Vec3 direction) const {
-  const Place place = place_of(direction);
-  const Luminances at = luminances(corners(place.row, place.column));
-  const double a = polar(place.row), b = polar(place.row + 1);
-  double across;
-  if (polar_cap(place.row)) {
-    const Vec3d d(direction);
-    const double angle = std::atan2(std::sqrt(d.x * d.x + d.z * d.z), place.row == 0 ? d.y : -d.y);
-    const double share = std::sin(0.5 * angle) / std::sin(0.5 * (b - a));
-    across = place.row == 0 ? share * share : 1 - share * share;
-  } else {
-    across = linear_number(at.at(place.x, 0), at.at(place.x, 1), place.y);
-  }
-  const double along = linear_number(at.at(0, 0.5), at.at(1, 0.5), place.x);
-  const double row_first = place.row > 0 ? row_end_[place.row - 1] : 0;
-  const std::uint32_t* ends = &cell_end_[std::size_t(place.row) * width_];
-  const double first = place.column > 0 ? ends[place.column - 1] : 0;
-  const double u1 = lerp(row_first, row_end_[place.row], across);
-  const double u2 = lerp(first, ends[place.column], along) / std::max<double>(1, ends[width_ - 1]);
-  return {float(std::clamp(u1, 0.0, 1.0)), float(std::clamp(u2, 0.0, 1.0))};
 }
 
 }  // namespace tempolux

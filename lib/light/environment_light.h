@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "lib/core/guide.h"
 #include "lib/core/vec.h"
 #include "lib/scene/environment.h"
 
@@ -18,10 +17,8 @@ namespace tempolux {
 /// only colour varies, and the sine of the polar angle inside a cell, which is replaced by the cell's mean.
 class EnvironmentLight {
  public:
-  /// The environment must outlive this object. Memory: 4 bytes per pixel and 260 per row. `uniform`: directions are
-  /// drawn as if `uniform` times the mean luminance were added to every pixel; with 1, half of the directions are
-  /// uniform over the sphere.
-  explicit EnvironmentLight(const Environment& environment, double uniform = 0);
+  /// The environment must outlive this object. Memory: 4 bytes per pixel.
+  explicit EnvironmentLight(const Environment& environment);
 
   /// A place in the map: the cell (row, column) and the position inside it, in [0, 1]. Look-ups that need several
   /// values for one direction compute the place once.
@@ -47,8 +44,6 @@ class EnvironmentLight {
   /// Density [1/sr] with which sample() gives `direction` (unit).
   double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
   double pdf_solid_angle(const Place& place, Vec3 direction) const;
-  /// Inverse of sample(): the numbers (u1, u2) for which it gives this direction, up to rounding.
-  Vec2 numbers_of(Vec3 direction) const;
 
  private:
   struct Corners {
@@ -60,26 +55,23 @@ class EnvironmentLight {
     double upper_left, upper_right, lower_left, lower_right;
     double at(double x, double y) const;
   };
-  Luminances luminances(const Corners& corners) const;
+  static Luminances luminances(const Corners& corners);
   Corners corners(std::uint32_t row, std::uint32_t column) const;
   double polar(std::uint32_t row) const;  ///< angle from +Y of a row's upper edge
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
   double probability(std::uint32_t row, std::uint32_t column) const;
   double pdf(const Place& place, const Luminances& at, double sin_polar) const;
-  std::uint32_t row_for(double u1, Guide<64>::Range rows) const;
-  std::uint32_t column_for(std::uint32_t row, double u2, Guide<64>::Range columns) const;
+  std::uint32_t row_for(double u1) const;
+  std::uint32_t column_for(std::uint32_t row, double u2) const;
   void integrate();
   void build_distribution();
 
   const Environment& environment_;
   std::uint32_t width_, height_;
-  double uniform_ = 0;  ///< W/m^2/sr, added to the luminance that directions are drawn by
   Rgbd integral_{0.0};
   std::vector<double> row_end_;  ///< cumulative probability of the height + 1 rows of cells
   /// Cumulative share of each cell in its row; a cell that emits has a share of at least 1
   std::vector<std::uint32_t> cell_end_;
-  Guide<64> row_guide_;                 ///< of row_end_
-  std::vector<Guide<64>> cell_guides_;  ///< search guides into cell_end_, by row
 };
 
 }  // namespace tempolux

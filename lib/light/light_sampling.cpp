@@ -6,7 +6,7 @@
 
 #include "lib/core/check.h"
 #include "lib/core/random.h"
-#include "lib/light/lights_impl.h"
+#include "lib/light/lights.h"
 #include "lib/light/punctual.h"
 
 namespace tempolux {
@@ -25,40 +25,40 @@ double share_of_distant(double distant, double others) {
 }  // namespace
 
 /// Sum of the weights of the environment and of all directional lights.
-double Lights::Impl::sum_distant(Vec3 normal) const {
-  double total = environment_weight;
-  for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
+double Lights::sum_distant(Vec3 normal) const {
+  double total = environment_weight_;
+  for (const std::uint32_t i : suns_) total += sun_weight(frame_->lights[i], normal);
   return total;
 }
 
 /// Probability of choosing a distant light (environment or directional): its share in an estimate of the irradiance. If
 /// both distant lights and others can reach the point, either kind gets at least a fifth. `total` receives the weight
 /// of the distant lights.
-double Lights::Impl::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
+double Lights::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
   total = distant_irradiance(normal, from);
-  return total > 0 ? share_of_distant(total, tree.importance(point, normal)) : 0;
+  return total > 0 ? share_of_distant(total, tree_.start(point, normal).sum) : 0;
 }
 
 /// u in [0, 1) chooses among the distant lights; the environment comes first.
-bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
-                                  LightSample& s) const {
+bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
+                            LightSample& s) const {
   const double left = u * total;
-  if (left < environment_weight || total <= environment_weight)
-    return sample_environment(point, u_float, left / environment_weight, share * environment_weight / total, s);
-  return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight),
-                    share * (1 - environment_weight / total), s);
+  if (left < environment_weight_ || total <= environment_weight_)
+    return sample_environment(point, u_float, left / environment_weight_, share * environment_weight_ / total, s);
+  return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_),
+                    share * (1 - environment_weight_ / total), s);
 }
 
 /// u in [0, 1) chooses among the directional lights; `probability` is the probability of choosing any of them.
-bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const {
+bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const {
   double total = 0, weight = 0;
-  for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
+  for (const std::uint32_t i : suns_) total += sun_weight(frame_->lights[i], normal);
   double left = u * total;
   const PlacedLight* chosen = nullptr;
-  for (const std::uint32_t i : suns) {
-    const double w = sun_weight(frame->lights[i], normal);
+  for (const std::uint32_t i : suns_) {
+    const double w = sun_weight(frame_->lights[i], normal);
     if (!(w > 0)) continue;
-    chosen = &frame->lights[i];
+    chosen = &frame_->lights[i];
     weight = w;
     if (left < w) break;
     left -= w;
@@ -73,12 +73,12 @@ bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probabil
 
 /// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
 /// up u.
-bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
+bool Lights::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  if (!environment->sample(u1, u2, found)) return false;
+  if (!environment_->sample(u1, u2, found)) return false;
   const double pdf = found.pdf_solid_angle * probability;
   s.wi = found.direction;
   s.position = point + s.wi * distance_beyond();
@@ -89,12 +89,12 @@ bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double
 }
 
 /// Fills the sample with a point or spot light.
-bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const {
+bool Lights::sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const {
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0)) return false;
   // Closer than a millionth of the scene's radius, irradiance no longer grows.
-  const double nearest = std::max(distance, 1e-6 * sphere_radius);
+  const double nearest = std::max(distance, 1e-6 * sphere_radius_);
   s.wi = Vec3(to / distance);
   s.position = placed.position;
   double falloff = 1;
@@ -107,13 +107,12 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
 
 /// Draws a point on the light in the slot, which was chosen with this probability. With `joint`, `left` is the
 /// remainder of the number that chose the slot and replaces u.x.
-inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u,
-                                      bool joint, LightSample& sample) const {
-  const Impl& m = *this;
-  if (slot >= m.triangles.size())
-    return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
+inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+                                LightSample& sample) const {
+  if (slot >= triangles_.size())
+    return sample_placed(frame_->lights[slots_[slot].light], point, probability, sample) &&
            is_finite(sample.facing_irradiance);
-  const TriangleLight& t = m.triangles[slot];
+  const TriangleLight& t = triangles_[slot];
   if (joint) {
     // A float has 24 bits: where choosing has used them up, bits of the other coordinate replace them.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
@@ -125,15 +124,15 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double pro
   sample.wi = on_triangle.wi;
   sample.position = on_triangle.position;
   sample.position_offset = t.offset;
-  sample.facing_irradiance = Rgb(Rgbd(m.emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
+  sample.facing_irradiance = Rgb(Rgbd(emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
   sample.pdf_solid_angle = float(pdf);
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.facing_irradiance);
 }
 
-bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from,
-                          LightSample& sample) const {
+bool Lights::sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from,
+                        LightSample& sample) const {
   sample = {};
-  const LightTree::Start start = tree.start(point, normal);
+  const LightTree::Start start = tree_.start(point, normal);
   const double distant = distant_irradiance(normal, from),
                share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
@@ -146,49 +145,38 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
 }
 
 /// Draws a sample of a light inside the scene; `probability` is the probability of choosing any of them.
-bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal,
-                               float u_choice, Vec2 u, bool joint, LightSample& sample) const {
-  if (tree.empty()) return false;
+bool Lights::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice,
+                         Vec2 u, bool joint, LightSample& sample) const {
+  if (tree_.empty()) return false;
   LightTree::Choice choice;
-  if (!tree.choose(start, point, normal, u_choice, choice)) return false;
-  return sample_slot(tree_slot[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
+  if (!tree_.choose(start, point, normal, u_choice, choice)) return false;
+  return sample_slot(tree_slot_[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
 }
-
-bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-  return impl_->sample(point, normal, u_choice, u, false, From::all, sample);
-}
-
-bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from) const {
-  return impl_->sample(point, normal, u.x, u, true, from, sample);
-}
-
-bool Lights::has_suns() const { return !impl_->suns.empty(); }
 
 bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const {
   sample = {};
-  return impl_->sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.facing_irradiance);
+  return sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.facing_irradiance);
 }
 
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
-                              Vec3, From from) const {
-  const Impl& m = *impl_;
-  if (m.first_slot[surface] == kNone) return 0;
-  const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
+                              From from) const {
+  if (first_slot_[surface] == kNone) return 0;
+  const std::uint32_t slot = first_slot_[surface] + triangle, light = tree_index_[slot];
   if (light == kNone) return 0;
-  const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
+  const double on_triangle = pdf_triangle(triangles_[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const double share = m.distant_share(point, normal, from, total);
-  const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
+  const double share = distant_share(point, normal, from, total);
+  const float pdf = float(on_triangle * (1 - share) * tree_.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }
 
 float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction,
                               From from) const {
-  if (!(impl_->environment_weight > 0)) return 0;
+  if (!(environment_weight_ > 0)) return 0;
   double total = 0;
-  const double share = impl_->distant_share(point, normal, from, total);
-  const float pdf = float(environment_->pdf_solid_angle(place, direction) * share * impl_->environment_weight / total);
+  const double share = distant_share(point, normal, from, total);
+  const float pdf = float(environment_->pdf_solid_angle(place, direction) * share * environment_weight_ / total);
   return pdf < INFINITY ? pdf : 0;
 }
 

@@ -272,17 +272,10 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
   return sum;
 }
 
-double LightTree::importance(Vec3 point, Vec3 normal) const {
-  double each[kWidth];
-  return nodes_.empty() ? 0 : whole_ * importances(nodes_[0], point, normal, each);
-}
-
-void LightTree::start(Vec3 point, Vec3 normal, Start& start) const {
-  start.sum = nodes_.empty() ? 0 : whole_ * importances(nodes_[0], point, normal, start.each);
-}
-
-bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {
-  return choose(start(point, normal), point, normal, u, choice);
+LightTree::Start LightTree::start(Vec3 point, Vec3 normal) const {
+  Start start;
+  if (!nodes_.empty()) start.sum = whole_ * importances(nodes_[0], point, normal, start.each);
+  return start;
 }
 
 bool LightTree::choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const {

@@ -29,31 +29,24 @@ class LightTree {
   explicit LightTree(const std::vector<LightBounds>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Estimates the irradiance at the point from all lights, in the unit of weight / m^2. 0 only if no light can reach
-  /// the point.
-  double importance(Vec3 point, Vec3 normal) const;
   struct Choice {
     std::uint32_t light = 0;
     double probability = 0;  ///< of choosing this light at this point and normal
     double left = 0;         ///< the remainder of u after the choice, in [0, 1): uniform again
   };
-  /// Importances of the root's children; choose() starts from them. [unit of weight / m^2]
-  static constexpr int kWidth = 8;
+  static constexpr int kWidth = 8;  ///< children of a node
+  /// Importances of the root's children, with which choose() begins.
   struct Start {
     double each[kWidth];  ///< importance of each child over the tree's whole weight
-    double sum = 0;       ///< their sum: equals importance()
+    /// Estimate of the irradiance at the point from all lights, in the unit of weight / m^2. 0 only if no light can
+    /// reach the point.
+    double sum = 0;
   };
-  Start start(Vec3 point, Vec3 normal) const {
-    Start start;
-    this->start(point, normal, start);
-    return start;
-  }
-  void start(Vec3 point, Vec3 normal, Start& start) const;
-  bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
+  Start start(Vec3 point, Vec3 normal) const;
   /// Walks down from the root. At each node a child is chosen in proportion to its importance, an upper bound of weight
   /// cos cos / distance^2. `normal` is unit; zero means that lights below the surface count as well. u in [0, 1). False
-  /// if the walk ends at a node of which no light can reach the point.
-  bool choose(Vec3 point, Vec3 normal, float u, Choice& choice) const;
+  /// if the walk ends at a node of which no light can reach the point. `start`: of the same point and normal.
+  bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Probability with which choose() takes this light. [1]
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
 

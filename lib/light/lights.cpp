@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lib/core/check.h"
-#include "lib/light/lights_impl.h"
 #include "lib/light/punctual.h"
 #include "lib/scene/texture_lookup.h"
 
@@ -48,22 +47,22 @@ LightBounds bounds_of(const PlacedLight& placed) {
 
 }  // namespace
 
-Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table, Which which_)
-    : frame(&frame_),
-      which(which_),
-      sphere_centre(Vec3(table.sphere_centre)),
-      sphere_radius(table.sphere_radius),
-      environment(table.environment),
-      aim(table.aim, sphere_centre, sphere_radius) {
-  if (environment && (which == Which::all || which == Which::distant))
-    environment_weight = max_component(environment->integral()) / 4;
+Lights::Lights(const SceneFrame& frame, const EmissionTable& table, Which which)
+    : frame_(&frame),
+      which_(which),
+      sphere_centre_(Vec3(table.sphere_centre)),
+      sphere_radius_(table.sphere_radius),
+      environment_(table.environment),
+      aim_(table.aim, sphere_centre_, sphere_radius_) {
+  if (environment_ && (which == Which::all || which == Which::distant))
+    environment_weight_ = max_component(environment_->integral()) / 4;
   add_slots(table);
   build_tree();
 }
 
-bool Lights::Impl::shines(const EmissionSlot& slot) const {
+bool Lights::shines(const EmissionSlot& slot) const {
   const bool distant = slot.kind == EmissionSlot::Kind::directional || slot.kind == EmissionSlot::Kind::environment;
-  switch (which) {
+  switch (which_) {
     case Which::placed: return !distant;
     case Which::distant: return distant;
     case Which::punctual: return slot.light != kNone;
@@ -71,100 +70,78 @@ bool Lights::Impl::shines(const EmissionSlot& slot) const {
   }
 }
 
-void Lights::Impl::add_slots(const EmissionTable& table) {
-  first_slot.assign(frame->surfaces.size(), kNone);
+void Lights::add_slots(const EmissionTable& table) {
+  first_slot_.assign(frame_->surfaces.size(), kNone);
   for (std::size_t i = 0; i < table.surfaces.size(); ++i) {
     const std::uint32_t s = table.surfaces[i];
-    first_slot[s] = std::uint32_t(slots.size());
-    const std::vector<TriangleLight> lights = triangle_lights(table, i, *frame);
-    for (std::uint32_t t = 0; t < lights.size(); ++t) slots.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
-    triangles.insert(triangles.end(), lights.begin(), lights.end());
+    first_slot_[s] = std::uint32_t(slots_.size());
+    const std::vector<TriangleLight> lights = triangle_lights(table, i, *frame_);
+    for (std::uint32_t t = 0; t < lights.size(); ++t) slots_.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
+    triangles_.insert(triangles_.end(), lights.begin(), lights.end());
   }
-  for (std::uint32_t i = 0; i < frame->lights.size(); ++i)
-    slots.push_back({slot_kind(frame->lights[i].light.kind), kNone, 0, i, 0});
-  if (environment) slots.push_back({EmissionSlot::Kind::environment, kNone, 0, kNone, 0});
-  TEMPOLUX_CHECK(slots.size() == table.probability.size());
-  double sum = 0, all = which == Which::all ? 1 : 0;
-  if (which != Which::all)
-    for (std::size_t i = 0; i < slots.size(); ++i) all += shines(slots[i]) ? table.probability[i] : 0;
-  cumulative.reserve(slots.size());
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    slots[i].probability = all > 0 && shines(slots[i]) ? table.probability[i] / all : 0;
-    cumulative.push_back(sum += slots[i].probability);
-    photon_flux.push_back(Rgb(slot_flux(i) / slots[i].probability));
+  for (std::uint32_t i = 0; i < frame_->lights.size(); ++i)
+    slots_.push_back({slot_kind(frame_->lights[i].light.kind), kNone, 0, i, 0});
+  if (environment_) slots_.push_back({EmissionSlot::Kind::environment, kNone, 0, kNone, 0});
+  TEMPOLUX_CHECK(slots_.size() == table.probability.size());
+  double sum = 0, all = which_ == Which::all ? 1 : 0;
+  if (which_ != Which::all)
+    for (std::size_t i = 0; i < slots_.size(); ++i) all += shines(slots_[i]) ? table.probability[i] : 0;
+  cumulative_.reserve(slots_.size());
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    slots_[i].probability = all > 0 && shines(slots_[i]) ? table.probability[i] / all : 0;
+    cumulative_.push_back(sum += slots_[i].probability);
+    photon_flux_.push_back(Rgb(slot_flux(i) / slots_[i].probability));
   }
 }
 
-Rgbd Lights::Impl::slot_flux(std::size_t slot) const {
-  if (slot < triangles.size()) return triangles[slot].flux();
-  if (slots[slot].kind == EmissionSlot::Kind::environment) return environment->integral() * disc_area();
-  return punctual_flux(frame->lights[slots[slot].light].light, sphere_radius);
+Rgbd Lights::slot_flux(std::size_t slot) const {
+  if (slot < triangles_.size()) return triangles_[slot].flux();
+  if (slots_[slot].kind == EmissionSlot::Kind::environment) return environment_->integral() * disc_area();
+  return punctual_flux(frame_->lights[slots_[slot].light].light, sphere_radius_);
 }
 
-void Lights::Impl::build_tree() {
-  tree_index.assign(slots.size(), kNone);
-  for (std::uint32_t i = 0; i < slots.size(); ++i) {
-    if (!shines(slots[i])) continue;
-    if (i < triangles.size()) {
-      if (!triangles[i].emits()) continue;
+void Lights::build_tree() {
+  tree_index_.assign(slots_.size(), kNone);
+  for (std::uint32_t i = 0; i < slots_.size(); ++i) {
+    if (!shines(slots_[i])) continue;
+    if (i < triangles_.size()) {
+      if (!triangles_[i].emits()) continue;
     } else {
-      if (slots[i].kind == EmissionSlot::Kind::environment) continue;
-      if (!(max_component(frame->lights[slots[i].light].light.intensity) > 0)) continue;
-      if (slots[i].kind == EmissionSlot::Kind::directional) {
-        suns.push_back(slots[i].light);
+      if (slots_[i].kind == EmissionSlot::Kind::environment) continue;
+      if (!(max_component(frame_->lights[slots_[i].light].light.intensity) > 0)) continue;
+      if (slots_[i].kind == EmissionSlot::Kind::directional) {
+        suns_.push_back(slots_[i].light);
         continue;
       }
     }
-    tree_index[i] = std::uint32_t(tree_slot.size());
-    tree_slot.push_back(i);
+    tree_index_[i] = std::uint32_t(tree_slot_.size());
+    tree_slot_.push_back(i);
   }
-  any_distant = environment_weight > 0 || !suns.empty();
-  tree = LightTree(tree_bounds());
+  tree_ = LightTree(tree_bounds());
 }
 
 /// Bounds of all lights in `tree`, in the tree's order.
-std::vector<LightBounds> Lights::Impl::tree_bounds() const {
+std::vector<LightBounds> Lights::tree_bounds() const {
   std::vector<LightBounds> bounds;
-  bounds.reserve(tree_slot.size());
-  for (const std::uint32_t slot : tree_slot)
-    bounds.push_back(slot < triangles.size() ? bounds_of(triangles[slot])
-                                             : bounds_of(frame->lights[slots[slot].light]));
+  bounds.reserve(tree_slot_.size());
+  for (const std::uint32_t slot : tree_slot_)
+    bounds.push_back(slot < triangles_.size() ? bounds_of(triangles_[slot])
+                                              : bounds_of(frame_->lights[slots_[slot].light]));
   return bounds;
 }
 
-Lights::Lights(const SceneFrame& frame, const EmissionTable& table, Which which)
-    : impl_(std::make_unique<Impl>(frame, table, which)),
-      environment_(which == Which::all || which == Which::distant ? impl_->environment.get() : nullptr) {}
-Lights::~Lights() = default;
-Lights::Lights(Lights&&) noexcept = default;
-
-bool Lights::has_distant() const { return impl_->any_distant; }
-bool Lights::has_placed() const { return !impl_->tree.empty(); }
-
-std::vector<Lights::Sun> Lights::suns() const {
-  std::vector<Sun> suns;
-  for (const std::uint32_t i : impl_->suns)
-    suns.push_back({-impl_->frame->lights[i].direction, impl_->frame->lights[i].light.intensity});
-  return suns;
-}
-
-bool Lights::empty() const { return impl_->slots.empty(); }
-std::size_t Lights::count() const { return impl_->slots.size(); }
-const std::vector<EmissionSlot>& Lights::slots() const { return impl_->slots; }
-const Aim& Lights::aim() const { return impl_->aim; }
-
 Rgbd Lights::total_flux() const {
   Rgbd sum;
-  for (std::size_t slot = 0; slot < count(); ++slot) sum += impl_->slot_flux(slot);
+  for (std::size_t slot = 0; slot < count(); ++slot) sum += slot_flux(slot);
   return sum;
 }
 
 Rgb Lights::emitted(const SurfacePoint& hit, Vec3 wo, float width) const {
-  if (impl_->which == Which::distant || impl_->which == Which::punctual) return Rgb(0.0f);
-  const Material& material = impl_->frame->materials[hit.material];
+  if (which_ == Which::distant || which_ == Which::punctual) return Rgb(0.0f);
+  const Material& material = frame_->materials[hit.material];
   if (!material.double_sided && !(dot(hit.normal_geometric, wo) > 0)) return Rgb(0.0f);
   if (!material.textures) return material.emission;
-  return emission_at(*impl_->frame, hit.surface, hit.triangle, hit.u, hit.v, width);
+  return emission_at(*frame_, hit.surface, hit.triangle, hit.u, hit.v, width);
 }
 
 }  // namespace tempolux

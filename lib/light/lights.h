@@ -1,14 +1,17 @@
 // lib/light/lights.h -- all lights of a frame behind one sampling interface.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "lib/core/sampling.h"
 #include "lib/core/vec.h"
 #include "lib/light/aim.h"
 #include "lib/light/environment_light.h"
@@ -90,28 +93,20 @@ class Lights {
   /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
   /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
-  ~Lights();
-  Lights(Lights&&) noexcept;
 
   /// True if a directional light shines or the environment is not black.
-  bool has_distant() const;
+  bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }
   /// True if any light inside the scene shines.
-  bool has_placed() const;
-  /// A directional light that shines: irradiance of a surface that faces it, and the direction towards it.
-  struct Sun {
-    Vec3 wi;
-    Rgb irradiance;
-  };
-  std::vector<Sun> suns() const;
+  bool has_placed() const { return !tree_.empty(); }
   /// Which lights sample() chooses from. A caller that samples the directional lights separately passes not_suns.
   enum class From : std::uint8_t { all, not_suns };
-  bool has_suns() const;
+  bool has_suns() const { return !suns_.empty(); }
   /// Chooses a directional light in proportion to its irradiance; u in [0, 1). False if none is above the surface.
   bool sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const;
 
-  bool empty() const;
-  std::size_t count() const;
-  const std::vector<EmissionSlot>& slots() const;
+  bool empty() const { return slots_.empty(); }
+  std::size_t count() const { return slots_.size(); }
+  const std::vector<EmissionSlot>& slots() const { return slots_; }
   /// Flux of all lights [W]. Directional lights and the environment count with the flux through the scene sphere's
   /// disc.
   Rgbd total_flux() const;
@@ -119,20 +114,24 @@ class Lights {
   /// Chooses a light for the point with u_choice, by an importance that includes distance and orientation, in O(log n);
   /// then a point on the light with u. False if no light can reach the point. Lights below the surface of `normal` are
   /// left out; a zero normal leaves out none.
-  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const;
+  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
+    return sample_any(point, normal, u_choice, u, false, From::all, sample);
+  }
   /// The same from one stratified pair: u.x chooses the light and, stretched, is the first coordinate on it. Samples
   /// that are stratified over the square are stratified over every light.
-  bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const;
+  bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const {
+    return sample_any(point, normal, u.x, u, true, from, sample);
+  }
   /// Density [1/sr] with which sample() at (point, normal) chooses the position `on_light` of this emissive triangle,
   /// seen from its front (or back, if two-sided); 0 if it emits nothing. The triangle's own plane decides which side is
-  /// seen, as in sample(); light_normal is not used.
+  /// seen, as in sample().
   float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
-                        Vec3 light_normal, From from = From::all) const;
+                        From from = From::all) const;
   /// Radiance [W/m^2/sr] that the material emits at a hit towards `wo` (unit, away from the surface). Textures are
   /// averaged over `width` m. Zero from the back of a one-sided emitter.
   Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;
 
-  bool has_environment() const { return environment_ != nullptr; }
+  bool has_environment() const { return environment_weight_ > 0; }
   /// Radiance [W/m^2/sr] of the environment in `direction` (unit). Needs an environment.
   Rgb environment(Vec3 direction) const { return environment_->radiance(direction); }
   /// Density [1/sr] with which sample() at (point, normal) chooses this direction of the environment. Needs an
@@ -166,12 +165,64 @@ class Lights {
   static constexpr std::size_t kMostEmitted = 64;
 
   /// The aim of photons from directional lights and environment; empty: none.
-  const Aim& aim() const;
+  const Aim& aim() const { return aim_; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-  const EnvironmentLight* environment_ = nullptr;
+  /// sample() with `joint`: u_choice is u.x, so the remainder of the choice replaces u.x.
+  bool sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
+  bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
+                   bool joint, LightSample& sample) const;
+  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+                   LightSample& sample) const;
+  bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
+  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
+                      LightSample& s) const;
+  bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;
+  bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
+  double sum_distant(Vec3 normal) const;
+  double distant_irradiance(Vec3 normal, From from) const {
+    return !has_distant() ? 0 : from == From::all ? sum_distant(normal) : environment_weight_;
+  }
+  double distant_share(Vec3 point, Vec3 normal, From from, double& total) const;
+  bool shines(const EmissionSlot& slot) const;
+  void add_slots(const EmissionTable& table);
+  void build_tree();
+  std::vector<LightBounds> tree_bounds() const;
+  Rgbd slot_flux(std::size_t slot) const;  ///< W
+  double disc_area() const { return std::numbers::pi * sphere_radius_ * sphere_radius_; }
+  float distance_beyond() const { return float(sphere_radius_ > 0 ? 2 * sphere_radius_ : 1); }
+  /// Radiance of a point on a slot's triangle, by barycentric coordinates.
+  Rgb emitted_at(std::size_t slot, double b1, double b2) const {
+    return triangles_[slot].emitted_at(*frame_, slots_[slot].surface, slots_[slot].triangle, b1, b2);
+  }
+  std::size_t slot_at(double u) const;
+  Vec2 direction_numbers(std::size_t slot, const std::array<double, 4>& u) const;
+  void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
+                     PhotonEmission& e) const;
+  void emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
+  void emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
+  /// Maps u from the part [first, first + width) of [0, 1) to [0, 1).
+  static double stretch(double u, double first, double width) {
+    return std::clamp((u - first) / width, 0.0, 1 - 0x1p-53);
+  }
+  static float to_float(double u) { return std::min(float(u), kOneMinusEpsilon); }
+
+  const SceneFrame* frame_;
+  Which which_;
+  Vec3 sphere_centre_;
+  double sphere_radius_;
+  std::vector<EmissionSlot> slots_;
+  std::vector<TriangleLight> triangles_;   ///< of the first slots, in the same order
+  std::vector<double> cumulative_;         ///< cumulative probability, by slot
+  std::vector<Rgb> photon_flux_;           ///< by slot: flux / probability, if all its photons carry the same flux
+  std::vector<std::uint32_t> first_slot_;  ///< first slot of each surface; kNone: the surface emits nothing
+  std::vector<std::uint32_t> tree_index_;  ///< by slot: number of its light in the tree; kNone: it emits nothing
+  std::vector<std::uint32_t> tree_slot_;   ///< and back
+  std::vector<std::uint32_t> suns_;        ///< indices of the directional lights that shine
+  std::shared_ptr<const EnvironmentLight> environment_;
+  double environment_weight_ = 0;  ///< irradiance from the environment, averaged over all normals; 0: none, black, or off
+  Aim aim_;                        ///< of photons from directional lights and environment
+  LightTree tree_{{}};
 };
 
 }  // namespace tempolux

@@ -4,7 +4,7 @@
 #include "formats/error.h"
 #include "lib/core/check.h"
 #include "lib/core/frame.h"
-#include "lib/light/lights_impl.h"
+#include "lib/light/lights.h"
 #include "lib/light/punctual.h"
 
 namespace tempolux {
@@ -19,31 +19,24 @@ namespace {
 
 }  // namespace
 
-/// The first slot whose part of [0, 1) ends above u; rounding may leave the sum a little below 1. The bisection has no
-/// branches, since processors cannot predict them for random u.
-std::size_t Lights::Impl::slot_at(double u) const {
-  const double* first = cumulative.data();
-  for (std::size_t count = cumulative.size(); count > 1;) {
-    const std::size_t half = count / 2;
-    first += first[half - 1] <= u ? half : 0;
-    count -= half;
-  }
-  auto slot = std::size_t(first - cumulative.data());
-  while (slot > 0 && !(slots[slot].probability > 0)) --slot;
+/// The first slot whose part of [0, 1) ends above u; rounding may leave the sum a little below 1.
+std::size_t Lights::slot_at(double u) const {
+  auto slot = std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u) - cumulative_.begin());
+  while (slot > 0 && !(slots_[slot].probability > 0)) --slot;
   return slot;
 }
 
 /// On a two-sided triangle u[2] below 1/2 means the front, else the back; each half is stretched to [0, 1). The floor
 /// of 2 u[2] is 1 for the back and avoids an unpredictable branch.
-Vec2 Lights::Impl::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
-  const bool halves = slot < triangles.size() && triangles[slot].two_sided;
+Vec2 Lights::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
+  const bool halves = slot < triangles_.size() && triangles_[slot].two_sided;
   return {to_float(halves ? 2 * u[2] - std::floor(2 * u[2]) : u[2]), to_float(u[3])};
 }
 
 /// `u0` is u[0], stretched. `direction` is relative to the emitting side's normal.
-void Lights::Impl::emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
-                                 PhotonEmission& e) const {
-  const TriangleLight& t = triangles[slot];
+void Lights::emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
+                           PhotonEmission& e) const {
+  const TriangleLight& t = triangles_[slot];
   // Heitz' map from the square to the triangle, as in sample_triangle, in double precision.
   const double half = 0.5 * std::min(u0, u[1]), b1 = u0 - half, b2 = u[1] - half;
   const double side = t.two_sided ? 1 - 2 * std::floor(2 * u[2]) : 1;
@@ -54,11 +47,11 @@ void Lights::Impl::emit_triangle(std::size_t slot, double u0, const std::array<d
   if (!t.varies) return;
   TriangleLight here = t;
   here.radiance = emitted_at(slot, b1, b2);
-  e.flux = Rgb(here.flux() / slots[slot].probability);
+  e.flux = Rgb(here.flux() / slots_[slot].probability);
 }
 
-void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u,
-                                 PhotonEmission& e) const {
+void Lights::emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u,
+                           PhotonEmission& e) const {
   if (placed.light.kind != PunctualLight::Kind::directional) {
     // A point light has no extent, so the first two numbers give the direction.
     e.origin = placed.position;
@@ -66,61 +59,59 @@ void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std
     return;
   }
   e.travel = placed.direction;
-  if (!aim.empty()) {
-    const Aim::Start start = aim.start(e.travel, u0, u[1]);
+  if (!aim_.empty()) {
+    const Aim::Start start = aim_.start(e.travel, u0, u[1]);
     e.origin = start.origin;
     e.flux = Rgb(Rgbd(e.flux) * start.flux);
     return;
   }
   const Vec2 disc = sample_disc_concentric({to_float(u0), to_float(u[1])});
   const Frame frame_of_light(placed.direction);
-  const float r = float(sphere_radius);
-  e.origin = sphere_centre + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
+  const float r = float(sphere_radius_);
+  e.origin = sphere_centre_ + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
 }
 
 /// Flux is radiance / density x pi R^2, or Aim's weight in place of pi R^2.
-void Lights::Impl::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u,
-                                    PhotonEmission& e) const {
+void Lights::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const {
   EnvironmentLight::Sample from;
-  if (!environment->sample(u0, u[1], from)) {
+  if (!environment_->sample(u0, u[1], from)) {
     e.travel = {0, -1, 0};
     return;
   }
-  const Rgbd flux = Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots[slot].probability;
+  const Rgbd flux = Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots_[slot].probability;
   e.travel = -from.direction;
-  if (!aim.empty()) {
-    const Aim::Start start = aim.start(e.travel, u[2], u[3]);
+  if (!aim_.empty()) {
+    const Aim::Start start = aim_.start(e.travel, u[2], u[3]);
     e.origin = start.origin;
     e.flux = Rgb(flux * start.flux);
     return;
   }
   const Vec2 disc = sample_disc_concentric({to_float(u[2]), to_float(u[3])});
-  const float r = float(sphere_radius);
-  e.origin = sphere_centre + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
+  const float r = float(sphere_radius_);
+  e.origin = sphere_centre_ + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
   e.flux = Rgb(flux);
 }
 
 void Lights::emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const {
-  const Impl& m = *impl_;
-  TEMPOLUX_CHECK(!m.slots.empty() && u.size() == photons.size() && u.size() <= kMostEmitted);
+  TEMPOLUX_CHECK(!slots_.empty() && u.size() == photons.size() && u.size() <= kMostEmitted);
   Vec2 numbers[kMostEmitted];
   Vec3 directions[kMostEmitted];
   for (std::size_t i = 0; i < u.size(); ++i) {
     photons[i] = {};
-    photons[i].slot = std::uint32_t(m.slot_at(u[i][0]));
-    numbers[i] = m.direction_numbers(photons[i].slot, u[i]);
+    photons[i].slot = std::uint32_t(slot_at(u[i][0]));
+    numbers[i] = direction_numbers(photons[i].slot, u[i]);
   }
   sample_hemisphere_cos({numbers, u.size()}, directions);
   for (std::size_t i = 0; i < u.size(); ++i) {
     PhotonEmission& e = photons[i];
     const std::size_t slot = e.slot;
-    const double below = slot > 0 ? m.cumulative[slot - 1] : 0;
-    const double u0 = stretch(u[i][0], below, m.slots[slot].probability);
-    e.flux = m.photon_flux[slot];
-    if (slot < m.triangles.size()) m.emit_triangle(slot, u0, u[i], directions[i], e);
-    else if (m.slots[slot].kind == EmissionSlot::Kind::environment) m.emit_environment(slot, u0, u[i], e);
-    else m.emit_punctual(m.frame->lights[m.slots[slot].light], u0, u[i], e);
-    if (!is_finite(e.flux)) refuse_flux(m.frame->scene, max_component(m.slot_flux(slot)));
+    const double below = slot > 0 ? cumulative_[slot - 1] : 0;
+    const double u0 = stretch(u[i][0], below, slots_[slot].probability);
+    e.flux = photon_flux_[slot];
+    if (slot < triangles_.size()) emit_triangle(slot, u0, u[i], directions[i], e);
+    else if (slots_[slot].kind == EmissionSlot::Kind::environment) emit_environment(slot, u0, u[i], e);
+    else emit_punctual(frame_->lights[slots_[slot].light], u0, u[i], e);
+    if (!is_finite(e.flux)) refuse_flux(frame_->scene, max_component(slot_flux(slot)));
   }
 }
 

@@ -43,10 +43,9 @@ class KnownLight {
   /// receives the noise of the records (RecordStore::Interpolated::noise).
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise = nullptr) const;
   bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
-  /// Caustic irradiance; call only if has_caustic(). 0 if indirect() includes caustic light. `noise` as for
-  /// PhotonLight::caustic.
-  Rgb caustic(Vec3 position, const LitSurface& surface, Rgb& noise) const {
-    return photons ? photons->caustic(position, surface, noise) : Rgb(0.0f);
+  /// Caustic light; call only if has_caustic(). 0 if indirect() includes caustic light.
+  FootprintLight caustic(Vec3 position, const LitSurface& surface) const {
+    return photons ? photons->caustic(position, surface) : FootprintLight{};
   }
   /// Irradiance that a point stores for a hit.
   struct PointLight {

@@ -6,8 +6,6 @@
 namespace tempolux {
 namespace {
 
-constexpr InterpolationOptions kReadOnly{.least_cosine = 0, .only_read = true};
-
 std::vector<float> influences_of(std::span<const RecordChange> changes) {
   std::vector<float> influences;
   for (const RecordChange& change : changes) influences.push_back(change.influence);
@@ -20,15 +18,13 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
                                std::span<const IrradianceRecord> gathered, float least_cosine,
                                const InfluenceThresholds& thresholds, MovingObjects moving)
     : influence_(static_records, influences_of(changes), thresholds),
-      updated_(kReadOnly),
-      gathered_(kReadOnly),
+      updated_({.least_cosine = least_cosine}),
+      gathered_({.least_cosine = least_cosine}),
       moving_(std::move(moving)) {
   std::vector<IrradianceRecord> updated(static_records.begin(), static_records.end());
   for (std::size_t i = 0; i < updated.size(); ++i)
     for (int c = 0; c < 3; ++c) updated[i].irradiance[c] = std::max(0.0f, changes[i].update[c]);
-  updated_.narrow(least_cosine);
   updated_.add(updated);
-  gathered_.narrow(least_cosine);
   gathered_.add(gathered);
 }
 

@@ -343,10 +343,10 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   if (known.has_caustic()) {
     at.caustic_known = true;
     const Layer caustic = path.after(true).after(false).layer();
-    Rgb noise(0.0f);
-    result[caustic] +=
-        reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf}, noise);
-    if (caustic == Layer::caustic) parts_.stored_noise.caustic += reflected * noise;
+    const FootprintLight light =
+        known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
+    result[caustic] += reflected * light.irradiance;
+    if (caustic == Layer::caustic) parts_.stored_noise.caustic += reflected * light.noise;
   }
   if (state.matte) {
     sample_bright(1);

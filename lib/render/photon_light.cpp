@@ -18,14 +18,14 @@ constexpr float kAlikeCoat = 0.01f;     ///< difference in the transmittance of 
 struct Remembered {
   const PhotonLight* of = nullptr;
   Vec3 position, geometric, shading;
-  float let_in = 1;  ///< the coat's transmittance for light along the normal
-  float within = 0;  ///< m: the value is reused within this distance
-  Rgb irradiance{0.0f}, noise{0.0f};
+  float let_in = 1;      ///< the coat's transmittance for light along the normal
+  FootprintLight light;  ///< reused within light.alike_within
 
   static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
-  bool holds_at(const PhotonLight* light, Vec3 place, const LitSurface& surface) const {
-    return of == light && length2(place - position) < within * within && dot(surface.geometric, geometric) > kAlike &&
-           dot(surface.shading, shading) > kAlike && std::abs(let_in_by(surface) - let_in) < kAlikeCoat;
+  bool holds_at(const PhotonLight* map, Vec3 place, const LitSurface& surface) const {
+    return of == map && length2(place - position) < light.alike_within * light.alike_within &&
+           dot(surface.geometric, geometric) > kAlike && dot(surface.shading, shading) > kAlike &&
+           std::abs(let_in_by(surface) - let_in) < kAlikeCoat;
   }
 };
 
@@ -69,22 +69,17 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   if (caustic_->empty()) caustic_.reset();
 }
 
-Rgb PhotonLight::caustic(Vec3 position, const LitSurface& surface, Rgb& noise) const {
-  noise = Rgb(0.0f);
-  if (!caustic_) return Rgb(0.0f);
-  float within = 0;
-  if (!memory.used) return caustic_->estimate_around(position, surface, within, noise);
+FootprintLight PhotonLight::caustic(Vec3 position, const LitSurface& surface) const {
+  if (!caustic_) return {};
+  if (!memory.used) return caustic_->estimate(position, surface);
   auto& places = memory.places[memory.half];
   for (const Remembered& place : places)
-    if (place.holds_at(this, position, surface)) {
-      noise = place.noise;
-      return place.irradiance;
-    }
-  const Rgb irradiance = caustic_->estimate_around(position, surface, within, noise);
-  if (within > 0)
+    if (place.holds_at(this, position, surface)) return place.light;
+  const FootprintLight light = caustic_->estimate(position, surface);
+  if (light.alike_within > 0)
     places[memory.next[memory.half]++ % kRemembered] = {
-        this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), within, irradiance, noise};
-  return irradiance;
+        this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), light};
+  return light;
 }
 
 Rgb PhotonLight::indirect(Vec3 position, Vec3 normal) const {

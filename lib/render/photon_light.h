@@ -19,7 +19,7 @@ struct PhotonLightOptions {
 
 /// While an object of this class lives, its thread remembers the caustic light that it looks up for the samples of one
 /// pixel, which usually see one place. A place on the same surface, closer than the distance over which light changes
-/// (FootprintDensity::estimate_around), gets the remembered light. A pixel then shows the light of a few of its places
+/// (FootprintLight::alike_within), gets the remembered light. A pixel then shows the light of a few of its places
 /// instead of all, which is the same in the mean. Only one object per thread; a new one for each pixel, so that results
 /// do not depend on which pixels a thread has rendered before.
 class CausticMemory {
@@ -42,9 +42,8 @@ class PhotonLight {
   /// photon_shift [m] is added to photon positions to bring them into scene space: the file's origin minus the frame's.
   PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift, const PhotonLightOptions& options);
 
-  /// Caustic irradiance [W/m^2] on the lit side of the surface. `noise` [W/m^2] receives a number with a random sign
-  /// whose mean square is the variance of the irradiance: the same sum with the signs of light paths (path_signs.h).
-  Rgb caustic(Vec3 position, const LitSurface& surface, Rgb& noise) const;
+  /// Caustic light on the lit side of the surface, and its noise.
+  FootprintLight caustic(Vec3 position, const LitSurface& surface) const;
   /// Indirect irradiance [W/m^2] on the side of the normal (unit, geometric); call only if has_indirect(). Normal maps
   /// are read at their finest level.
   Rgb indirect(Vec3 position, Vec3 normal) const;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
@@ -13,26 +12,13 @@
 #include "lib/material/surface_material.h"
 #include "lib/gather/footprint_density.h"
 #include "lib/render/known_light.h"
-#include "lib/render/shading.h"
+#include "lib/render/photon_splats.h"
 
 namespace tempolux {
 namespace {
 
 constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture over which the mean square is taken
 constexpr std::size_t kLooks = 4096;      ///< camera rays that follow mirrors and glass
-/// Share of the ray's length: if the hit of a camera ray is farther from the photon than this, the camera does not
-/// see the photon.
-constexpr float kSame = 1e-3f;
-
-/// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) covers; 0 if it cannot be computed.
-double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std::array<double, 2>& at) {
-  const Frame frame(normal);
-  const float step = view.pixel_size(float(view.depth(point)));
-  const auto right = view.project(point + frame.tangent * step), up = view.project(point + frame.bitangent * step);
-  if (!right || !up) return 0;
-  const double area = ((*right)[0] - at[0]) * ((*up)[1] - at[1]) - ((*right)[1] - at[1]) * ((*up)[0] - at[0]);
-  return std::abs(area) / (double(step) * double(step) * view.width() * view.height());
-}
 
 /// A photon's contribution to the mean radiance of the picture, and its position in the picture.
 struct SeenFlux {
@@ -47,35 +33,18 @@ std::size_t cell_at(double x, double y) {
   return cell(y, kRows) * kColumns + cell(x, kColumns);
 }
 
-/// Contribution of photon i: flux x rho / pi x picture_share if the camera sees it, else 0. Nothing is blurred, so the
-/// sum over photons is unbiased.
-SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const PhotonView& photons, std::size_t i) {
-  const formats::Photon& photon = photons.photons[i];
-  const Vec3 point{photon.position[0], photon.position[1], photon.position[2]};
-  const auto n = formats::decode_normal(photon.normal);
-  const Vec3 normal{n[0], n[1], n[2]};
-  const auto at = view.project(point);
-  if (!at || !((*at)[0] >= 0 && (*at)[0] < view.width() && (*at)[1] >= 0 && (*at)[1] < view.height())) return {};
-  const Ray ray = view.ray(float((*at)[0]), float((*at)[1]));
-  if (!(dot(ray.direction, normal) < 0)) return {};
-  Hit hit;
-  scene.tracer.intersect(ray, hit);
-  if (hit.surface == kNone) return {};
-  SurfacePoint surface = scene.tracer.surface_point(hit);
-  if (length(surface.position - point) > kSame * hit.t) return {};
-  const Vec3 smooth = surface.normal;
-  const SurfaceMaterial material(scene.frame(), surface, view.pixel_size(hit.t));
-  const ShadingPoint shading(surface, -ray.direction, material);
-  const Rgb albedo = shading.bsdf.diffuse_albedo();
-  Rgb flux(photon.flux[0], photon.flux[1], photon.flux[2]);
+/// Contribution of photon i, if the camera sees the photon. Nothing is blurred, so the sum over photons is unbiased.
+SeenFlux seen_flux(const PhotonSplats& splats, const CameraView& view, const PhotonView& photons, std::size_t i) {
+  std::optional<Vec3> wi;
   if (photons.directed()) {
     const auto w = formats::decode_normal(photons.directions[i]);
-    const Vec3 wi{w[0], w[1], w[2]};
-    flux *=
-        received_share(wi, normal, {shading.normal_geometric, shading.facing(smooth), shading.normal, &shading.bsdf});
+    wi = {w[0], w[1], w[2]};
   }
-  return {double(channel_mean(albedo * flux)) / kPi * picture_share(view, point, normal, *at),
-          cell_at((*at)[0] / view.width(), (*at)[1] / view.height())};
+  const std::optional<Splat> splat = splats.splat(photons.photons[i], {}, wi);
+  if (!splat) return {};
+  const auto width = std::uint32_t(view.width()), height = std::uint32_t(view.height());
+  return {double(channel_mean(splat->radiance)) / (double(width) * height),
+          cell_at((splat->pixel % width + 0.5) / width, (splat->pixel / width + 0.5) / height)};
 }
 
 /// The light of a place that camera ray i of kLooks reaches through mirrors and glass, by a density of photons.
@@ -86,11 +55,9 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
   const Bsdf bsdf(material, front);
   const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
-  float smooth_over = 0;
-  Rgb noise(0.0f);
-  const LitSurface lit{front ? normal : -normal, seen->normal, seen->normal, &bsdf};
-  const Rgb irradiance = density.estimate(seen->surface.position, lit, smooth_over, &noise);
-  return {channel_mean(weight * irradiance), cell_at(u.x, u.y), channel_mean(weight * noise)};
+  const FootprintLight light =
+      density.estimate(seen->surface.position, {front ? normal : -normal, seen->normal, seen->normal, &bsdf});
+  return {channel_mean(weight * light.irradiance), cell_at(u.x, u.y), channel_mean(weight * light.noise)};
 }
 
 /// Place of camera ray i of kLooks in the picture, in [0, 1).
@@ -147,11 +114,12 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
 
 SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons) {
   const std::vector<std::optional<SeenPoint>> places = places_behind(scene, view);
+  const PhotonSplats splats(scene.tracer, view);
   const auto of_kind = [&](formats::PathKind kind) {
     std::vector<SeenFlux> seen(photons.photons.size());
     parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
-        if (photons.photons[i].kind == kind) seen[i] = seen_flux(scene, view, photons, i);
+        if (photons.photons[i].kind == kind) seen[i] = seen_flux(splats, view, photons, i);
     });
     return joined(seen, all_behind(scene, places, photons, kind));
   };

@@ -57,18 +57,20 @@ int level_above(double x) {
   return std::frexp(x, &exponent) == 0.5 ? exponent - 1 : exponent;
 }
 
+/// Median distance [m] of the places that were seen directly; 0 if there are none.
+double median_distance(std::vector<WeighedPlace> places) {
+  std::erase_if(places, [](const WeighedPlace& place) { return !(place.distance > 0); });
+  if (places.empty()) return 0;
+  const auto middle = places.begin() + std::ptrdiff_t(places.size() / 2);
+  std::ranges::nth_element(places, middle, {}, &WeighedPlace::distance);
+  return middle->distance;
+}
+
 /// Exponent of a quarter of the median visible distance, rounded down to a power of two; the lowest possible one if
 /// nothing was seen.
 int lowest_level(const std::vector<WeighedPlace>& places) {
-  std::vector<double> distances;
-  for (const WeighedPlace& place : places)
-    if (place.distance > 0) distances.push_back(place.distance);
-  if (distances.empty()) return -1000;
-  const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  int exponent;
-  std::frexp(*middle / 4, &exponent);
-  return exponent - 1;
+  const double distance = median_distance(places);
+  return distance > 0 ? std::ilogb(distance / 4) : -1000;
 }
 
 /// Halves heavy cells while the limit on their number allows.
@@ -150,17 +152,6 @@ Affine turned(const std::array<double, 3>& angles) {
   return a;
 }
 
-/// Median distance of the surfaces that the camera sees [m]; 0 if it sees none.
-double median_distance(const Tracer& tracer, const CameraView& view) {
-  std::vector<WeighedPlace> places;
-  add_seen_places(tracer, view, 0, places);
-  std::erase_if(places, [](const WeighedPlace& place) { return !(place.distance > 0); });
-  if (places.empty()) return 0;
-  const auto middle = places.begin() + std::ptrdiff_t(places.size() / 2);
-  std::ranges::nth_element(places, middle, {}, &WeighedPlace::distance);
-  return middle->distance;
-}
-
 bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
   const Vec3d way = to - from;
   const double distance = length(way);
@@ -217,7 +208,9 @@ CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double dist
 
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen) {
   const Vec3d origin = tracer.frame().origin;
-  const double distance = median_distance(tracer, CameraView(camera, origin, width, height));
+  std::vector<WeighedPlace> own;
+  add_seen_places(tracer, CameraView(camera, origin, width, height), 0, own);
+  const double distance = median_distance(own);
   if (!(distance > 0)) return;
   const CameraCell cell = cell_of(tracer, camera, distance);
   if (!seen.looked.insert(cell.key).second) return;

@@ -1,18 +1,11 @@
 #include "lib/temporal/kept_hemisphere.h"
 
-#include <bit>
-
 #include "lib/core/random.h"
-#include "lib/gather/gathered_record.h"
+#include "lib/gather/cache_files.h"
 #include "lib/gather/hemisphere.h"
 
 namespace tempolux {
 namespace {
-
-Rgb rgb_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
-std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
-std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
-Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// Random shares in [0, 1) by which the mantissas of a cell's radiance are rounded up in this update of the record.
 std::array<float, 3> rounding_of(const formats::RadsamplesRecord& record, std::uint32_t cell) {
@@ -28,18 +21,7 @@ void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance) {
 }
 
 void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
-  std::array<std::uint8_t, 4>& rgbe = kept.samples[cell].rgbe;
-  const Rgb scaled{float(rgbe[0]) * ratio.r, float(rgbe[1]) * ratio.g, float(rgbe[2]) * ratio.b};
-  const float largest = max_component(scaled);
-  if (rgbe[3] >= 11 && largest >= 128 && largest < 255) {  // as encode_rgbe() does it if the exponent stays the same
-    const std::array<float, 3> up = rounding_of(kept.record, cell);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto whole = std::uint8_t(scaled[int(c)]);
-      rgbe[c] = std::uint8_t(whole + (scaled[int(c)] - float(whole) + up[c] >= 1));
-    }
-    return;
-  }
-  const std::array<float, 3> old = formats::decode_rgbe(rgbe);
+  const std::array<float, 3> old = formats::decode_rgbe(kept.samples[cell].rgbe);
   keep_radiance(kept, cell, Rgb(old[0], old[1], old[2]) * ratio);
 }
 
@@ -64,38 +46,7 @@ IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& pla
     sky.radiance[c] = rgb_of(formats::decode_rgbe(sample.rgbe));
     if (sample.distance != 0) sky.inverse_distance[c] = 1 / std::max(units.decode(sample.distance), closest);
   }
-  return gathered_record(sky, place, kept.normal());
-}
-
-void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record) {
-  record.position = array_of(made.position);
-  record.normal = array_of(made.normal);
-  record.object = std::uint16_t(made.object);
-  record.irradiance = array_of(made.irradiance);
-  for (std::size_t c = 0; c < 3; ++c) {
-    record.rotational[c] = array_of(made.rotational[c]);
-    record.translational[c] = array_of(made.translational[c]);
-  }
-  record.radius = made.radius;
-  record.radius_unclamped = made.radius_unclamped;
-  record.clearance_reach = made.clearance.reach;
-  record.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(made.clearance.shares);
-}
-
-IrradianceRecord result_of(const formats::RadsamplesRecord& record) {
-  IrradianceRecord made;
-  made.position = vec_of(record.position);
-  made.normal = vec_of(record.normal);
-  made.object = record.object;
-  made.irradiance = rgb_of(record.irradiance);
-  for (std::size_t c = 0; c < 3; ++c) {
-    made.rotational[c] = vec_of(record.rotational[c]);
-    made.translational[c] = vec_of(record.translational[c]);
-  }
-  made.radius = record.radius;
-  made.radius_unclamped = record.radius_unclamped;
-  made.clearance = {record.clearance_reach, std::bit_cast<Clearance::Shares>(record.clearance)};
-  return made;
+  return sky.record(place, kept.normal());
 }
 
 formats::RadsamplesFile head_of(const KeptHemispheres& kept) {

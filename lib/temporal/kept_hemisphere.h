@@ -58,10 +58,6 @@ void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float dist
 /// Computes irradiance and gradients from the samples alone.
 IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units);
 
-/// keep_result copies a record's computed values into its file record; the other function copies them back.
-void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record);
-IrradianceRecord result_of(const formats::RadsamplesRecord& record);
-
 /// A file's content besides its header and samples.
 formats::RadsamplesFile head_of(const KeptHemispheres& kept);
 /// Takes a record and its samples from a file that is being read (formats::TakeSamples). `shift` is the file's origin

@@ -7,6 +7,7 @@
 
 #include "lib/core/check.h"
 #include "lib/core/parallel.h"
+#include "lib/gather/cache_files.h"
 #include "lib/scene/deform.h"
 #include "lib/scene/moving_objects.h"
 #include "lib/temporal/light_changes.h"
@@ -73,13 +74,6 @@ TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& 
       gather_(scene.tracer, scene.lights, scene.lookup, gather),
       strata_(gather.rays) {}
 
-const GatherStrata& TemporalGather::strata_of(int rings, int sectors) const {
-  if (strata_.rings == rings && strata_.sectors == sectors) return strata_;
-  thread_local GatherStrata other;  // for a file that was made with another number of rays
-  if (other.rings != rings || other.sectors != sectors) other = GatherStrata(rings, sectors);
-  return other;
-}
-
 SurfacePoint TemporalGather::place_of(const KeptHemisphere& kept) const {
   const auto& r = kept.record;
   return scene_.tracer.surface_point({0, r.surface, r.triangle, r.barycentric[0], r.barycentric[1]});
@@ -94,17 +88,16 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
   Vec3 turned{};
   for (std::size_t axis = 0; axis < 3; ++axis) turned = turned + now[axis] * dot(before[axis], normal);
   turned = normalize(turned);
-  const Vec3 position = place_of(kept).position;
-  r.position = {position.x, position.y, position.z};
-  if (length2(turned) > 0) r.normal = {turned.x, turned.y, turned.z};
+  r.position = array_of(place_of(kept).position);
+  if (length2(turned) > 0) r.normal = array_of(turned);
 }
 
 /// Traces the marked cells along the rays that belong to their ages.
 void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
-                           const GatherStrata& strata, std::span<const std::uint8_t> marks,
-                           GatherCounts& counts) const {
+                           std::span<const std::uint8_t> marks, GatherCounts& counts) const {
   thread_local GatherRays shot;
   shot.clear();
+  const GatherStrata strata(kept.record.rings, kept.record.sectors);
   for (const std::uint32_t c : strata.order) {
     if (!is_traced(marks[c]) || shot.aim(directions, c, kept.draw_of(c))) continue;
     kept.samples[c] = {{}, 0, formats::age_of(kept.samples[c])};
@@ -145,23 +138,18 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, con
   PlacementOptions placement = placement_;
   if (!born && outlived(place, kept.record, made)) placement.min_radius_px *= kLeastOfHidden;
   limit_radius(made, kept.record.footprint, placement);
-  made.clearance = result_of(kept.record).clearance;
+  made.clearance = stored_values(kept.record).clearance;
   const bool look_again = born || near_a_mover(kept, *changes, kept.record.clearance_reach);
   if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
-  keep_result(made, kept.record);
-}
-
-/// Samples the bright points anew for a record whose cells do not change.
-void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const {
-  finish(place_of(kept), kept, &changes, counts);
+  store_values(made, kept.record);
 }
 
 KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts) const {
   KeptHemisphere kept;
   formats::RadsamplesRecord& r = kept.record;
   const SurfacePoint& place = seen.surface;
-  r.position = {place.position.x, place.position.y, place.position.z};
-  r.normal = {seen.normal.x, seen.normal.y, seen.normal.z};
+  r.position = array_of(place.position);
+  r.normal = array_of(seen.normal);
   r.key = gather_key(place.position, seen.normal, gather_options_.seed);
   r.surface = place.surface;
   r.triangle = place.triangle;
@@ -174,7 +162,7 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts
   kept.samples.resize(strata_.cells());
   kept.anchors.assign(strata_.cells(), kNone);
   const std::vector<std::uint8_t> marks(strata_.cells(), all);
-  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata_, marks, counts);
+  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), marks, counts);
   finish(place, kept, nullptr, counts);
   return kept;
 }
@@ -194,7 +182,6 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
                             TemporalCounts& counts) const {
   thread_local std::vector<std::uint16_t> ages;
   thread_local std::vector<std::uint32_t> drawn;
-  thread_local AgeDraw lot;
   formats::RadsamplesRecord& r = kept.record;
   std::vector<std::uint8_t>& marks = marked.marks;
   const SurfacePoint place = place_of(kept);
@@ -207,8 +194,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   }
   // Draws by age from all cells, including marked ones. If marked cells were left out, a cell that is marked in every
   // frame would keep its direction for good, and more and more cells would end in such directions.
-  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), mix64(r.key + r.updates),
-           drawn);
+  draw_by_age(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), mix64(r.key + r.updates),
+              drawn);
   for (const std::uint32_t c : drawn) {
     marks[c] = aged;
     kept.samples[c].flags = std::uint16_t((kept.samples[c].flags & ~formats::kMaxAge) | 1);
@@ -222,7 +209,7 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     if (marks[ahead] == scaled) __builtin_prefetch(&changes.ratios[kept.anchors[ahead]]);
     if (marks[c] == scaled) scale_radiance(kept, c, changes.ratios[kept.anchors[c]]);
   }
-  shoot(place, kept, directions, strata_of(r.rings, r.sectors), marks, counts.update);
+  shoot(place, kept, directions, marks, counts.update);
   finish(place, kept, &changes, counts.update);
 }
 
@@ -260,7 +247,7 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
       if (gone[i] || !(marked[i].changed || changes.divided)) continue;
       KeptHemisphere& k = kept.records[i];
       if (marked[i].changed) update(k, changes, aged_share, marked[i], local);
-      else sample_explicit(k, changes, local.update);
+      else finish(place_of(k), k, &changes, local.update);  // samples the bright points anew
       std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
@@ -307,7 +294,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
 /// records that do not fade is larger by 1 than when the record was placed.
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
-    IrradianceRecord record = result_of(k.record);
+    IrradianceRecord record = stored_values(k.record);
     record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames,
                              std::numeric_limits<float>::min());
     TEMPOLUX_CHECK(store.add(record));
@@ -331,7 +318,7 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
     batch[slot] = birth(seen, gathered);
-    return result_of(batch[slot].record);
+    return stored_values(batch[slot].record);
   };
   source.added = [&](std::size_t slot) {
     batch[slot].record.birth_weight = store.weight_of_earlier(std::uint32_t(store.records().size() - 1), {});

@@ -83,7 +83,6 @@ class TemporalGather {
              TemporalCounts& counts, const std::function<void(double)>& progress = {}) const;
 
  private:
-  const GatherStrata& strata_of(int rings, int sectors) const;
   struct Marked;
   bool outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const;
   bool look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const;
@@ -92,9 +91,8 @@ class TemporalGather {
   void update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone,
                   TemporalCounts& counts) const;
   void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
-             const GatherStrata& strata, std::span<const std::uint8_t> marks, GatherCounts& counts) const;
+             std::span<const std::uint8_t> marks, GatherCounts& counts) const;
   void finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes, GatherCounts& counts) const;
-  void sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const;
   KeptHemisphere birth(const SeenPoint& seen, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;

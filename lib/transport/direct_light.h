@@ -26,7 +26,5 @@ struct DirectSample {
 /// Draws a light and a point on it (Lights::sample). False if no light can reach the receiver, or the light comes from
 /// behind its geometric or its shading normal.
 bool sample_direct(const Lights& lights, const Receiver& at, float u_choice, Vec2 u, DirectSample& sample);
-/// The same from one stratified pair (Lights::sample).
-bool sample_direct(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);
 
 }  // namespace tempolux

@@ -7,8 +7,8 @@ namespace tempolux {
 Rgb weighed_emission(const Lights& lights, const SurfacePoint& hit, Vec3 wo, const LastScatter& last, float width) {
   const Rgb emitted = lights.emitted(hit, wo, last.weighed ? 0 : width);
   if (is_black(emitted) || !last.weighed) return emitted;
-  const float of_light = lights.pdf_solid_angle(last.position, last.normal, hit.surface, hit.triangle, hit.position,
-                                                hit.normal_geometric, last.from);
+  const float of_light =
+      lights.pdf_solid_angle(last.position, last.normal, hit.surface, hit.triangle, hit.position, last.from);
   return emitted * mis_power(last.pdf_solid_angle, last.light_share * of_light);
 }
 

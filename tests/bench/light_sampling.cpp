@@ -77,7 +77,7 @@ void measure(const char* name, const LightScene& scene, bool last) {
     const std::uint32_t triangles = std::uint32_t(scene.frame.surfaces[0].primitive->triangles.size());
     for (std::uint32_t i = 0; i < kCount; ++i)
       sum += 1e-9 * double(lights.pdf_solid_angle(queries[i].point, {0, 0, 1}, 0, i % triangles,
-                                                  scene.frame.surfaces[0].positions[0], {0, 0, -1}));
+                                                  scene.frame.surfaces[0].positions[0]));
     best_pdf = std::min(best_pdf, seconds_since(start) / kCount);
   }
   std::printf("  {\"lights\": \"%s\", \"slots\": %zu, \"build_ms\": %.2f, \"sample_ns\": %.1f, ", name, lights.count(),

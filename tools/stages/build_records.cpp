@@ -157,7 +157,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const std::string name = frame_name(options.update, number);
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
-  RecordStore fixed({.least_cosine = 0, .only_read = true});
+  RecordStore fixed({.least_cosine = 0});
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());

@@ -15,9 +15,7 @@ TEST(Hemisphere, UniformLight) {
   sky.reset(13, 40);
   for (Rgb& l : sky.radiance) l = Rgb(0.7f);
   for (float& inverse : sky.inverse_distance) inverse = 3;
-  IrradianceRecord record;
-  sky.irradiance_and_rotational_gradient(Frame({0, 0, 1}), record);
-  EXPECT_NEAR(record.irradiance.g, 0.7 * M_PI, 1e-5);
+  EXPECT_NEAR(sky.record({}, {0, 0, 1}).irradiance.g, 0.7 * M_PI, 1e-5);
 }
 
 /// Cells whose light is 0 or 2 at random, independently. The irradiance has the variance (pi/(M N))^2 M N, and the

@@ -70,14 +70,12 @@ TEST(Clearance, NoRecordCountsBehindAWall) {
   record.radius = 1 / Clearance::kPerRadius;
   record.clearance = look([](float x, float) { return x < 0.2f; });
   const Frame frame(kNormal);
-  for (const bool only_read : {false, true}) {
-    RecordStore store({.only_read = only_read});
-    store.add(std::span(&record, 1));
-    EXPECT_GT(store.interpolate(frame.tangent * 0.15f, kNormal).weight, 0);
-    EXPECT_GT(store.interpolate(frame.tangent * -0.9f, kNormal).weight, 0);
-    EXPECT_EQ(store.interpolate(frame.tangent * 0.21f, kNormal).weight, 0);
-    EXPECT_FALSE(store.covers(frame.tangent * 0.21f, kNormal, 0.1f));
-  }
+  RecordStore store;
+  store.add(record);
+  EXPECT_GT(store.interpolate(frame.tangent * 0.15f, kNormal).weight, 0);
+  EXPECT_GT(store.interpolate(frame.tangent * -0.9f, kNormal).weight, 0);
+  EXPECT_EQ(store.interpolate(frame.tangent * 0.21f, kNormal).weight, 0);
+  EXPECT_FALSE(store.covers(frame.tangent * 0.21f, kNormal, 0.1f));
 }
 
 }  // namespace

@@ -64,8 +64,6 @@ void expect_brute_force(Vec3 centre, float far) {
     }
     ASSERT_TRUE(store.add(r));
   }
-  RecordStore read({.only_read = true});
-  read.add(store.records());
   const float lost = 2e-5f + 1e-6f * far;
   int covered = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -75,11 +73,6 @@ void expect_brute_force(Vec3 centre, float far) {
     const Vec3 normal = normalize(r.normal + test::sample_sphere({uniform(), uniform()}) * (0.4f * uniform()));
     const auto found = store.interpolate(position, normal), wanted = by_brute_force(store, position, normal);
     covered += wanted.weight > 0;
-    // A store with only_read lists the same records in the same order, so results are equal to the last bit.
-    const auto again = read.interpolate(position, normal);
-    ASSERT_EQ(again.count, found.count) << i;
-    ASSERT_EQ(again.weight, found.weight) << i;
-    ASSERT_EQ(again.irradiance, found.irradiance) << i;
     // covers() adds the same weights in the same order and stops early.
     for (const float weight : {0.3f, 0.9f})
       ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
@@ -124,11 +117,6 @@ TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
   for (int i = 0; i < 100; ++i)
     for (int j = 0; j < 100; ++j)
       ASSERT_EQ(store.interpolate({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}).irradiance.r, float(100 * i + j));
-  RecordStore read({.only_read = true});
-  read.add(store.records());
-  for (int i = 0; i < 100; ++i)
-    for (int j = 0; j < 100; ++j)
-      ASSERT_EQ(read.interpolate({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}).irradiance.r, float(100 * i + j));
 }
 
 /// E(x) = a + b . x on a plane: records with exact gradients reproduce it for any weights.

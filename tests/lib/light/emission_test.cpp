@@ -291,7 +291,7 @@ TEST(Emission, NoLightIsEmptyAndDark) {
   EXPECT_EQ(lights.total_flux(), Rgbd());
   LightSample s;
   EXPECT_FALSE(lights.sample({}, {}, 0.5f, {}, s));
-  EXPECT_EQ(lights.pdf_solid_angle({}, {}, 0, 0, {0, 0, 1}, {0, 0, -1}), 0);
+  EXPECT_EQ(lights.pdf_solid_angle({}, {}, 0, 0, {0, 0, 1}), 0);
 }
 
 TEST(Lights, EmitFromTheFrontAndFromBothSidesIfTwoSided) {

@@ -20,8 +20,11 @@ using test::HandMadeScene;
 using test::matte;
 
 Rgb caustic_at(const PhotonLight& light, Vec3 position, const LitSurface& surface) {
-  Rgb noise;
-  return light.caustic(position, surface, noise);
+  return light.caustic(position, surface).irradiance;
+}
+/// Irradiance at a place of a level floor.
+Rgb on_floor(const FootprintDensity& density, Vec3 position) {
+  return density.estimate(position, LitSurface(Vec3{0, 1, 0})).irradiance;
 }
 
 Material pane() { return test::glass(0, true); }
@@ -113,7 +116,7 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
       const Vec3 at{0.1f * (float(step) + (float(i) + 0.5f) / 40), 0.02f * float(step), -0.4f + 0.02f * float(i)};
       float radius;
       all += double(nearest.estimate({at, {0, 1, 0}}, PathRandom(seed, std::uint64_t(i)), radius).g);
-      sum += double(density.estimate(at, {0, 1, 0}, radius).g);
+      sum += double(on_floor(density, at).g);
     }
   }
   EXPECT_NEAR(all / 8000, 1, 0.04);
@@ -146,8 +149,7 @@ TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
       const FootprintDensity density(tracer, photons, {.neighbours = 30, .max_radius = 0.2f});
       for (std::uint32_t i = 0; i < 5000; ++i) {
         const Vec2 u = random.get2(kPhotons + i, Purpose::test);
-        float radius;
-        sum += double(density.estimate({1.6f * u.x - 0.8f, 0, 1.6f * u.y - 0.8f}, {0, 1, 0}, radius).g);
+        sum += double(on_floor(density, {1.6f * u.x - 0.8f, 0, 1.6f * u.y - 0.8f}).g);
       }
     }
     EXPECT_NEAR(sum / 20000, 1, even ? 0.01 : 0.018) << (even ? "even" : "independent");
@@ -187,10 +189,9 @@ TEST(CausticLight, SpotsKeepTheirLight) {
     const FootprintDensity density(tracer, photons, {.neighbours = 25, .max_radius = 2});
     double sum = 0, sum_left = 0, farthest = 0;
     constexpr float kStep = 0.02f;
-    float smooth;
     for (float x = -3.99f; x < 4; x += kStep)
       for (float z = -3.99f; z < 4; z += kStep) {
-        const auto here = double(density.estimate({x, 0, z}, {0, 1, 0}, smooth).g * kStep * kStep);
+        const auto here = double(on_floor(density, {x, 0, z}).g * kStep * kStep);
         sum += here;
         if (x < 0.3f) sum_left += here;
         if (here > 0) farthest = std::max(farthest, double(std::hypot(x, z)));
@@ -199,28 +200,6 @@ TEST(CausticLight, SpotsKeepTheirLight) {
     if (wall) { EXPECT_NEAR(sum_left, left, 0.025 * left); }
     EXPECT_LT(farthest, 1.5) << "a photon at the rim has k neighbours within twice the radius of one in the middle";
   }
-}
-
-/// Stray photons around a spot of 1000 photons, 0.01 m across. A place is smooth (its light is that of footprints
-/// with the largest radius, 1 m) if no photon of the spot lies within the margin of 0.1 m. A place without light is
-/// not smooth. So no estimate next to the spot represents the spot.
-TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
-  HandMadeScene scene;
-  scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
-  const SceneFrame& frame = scene.frame();
-  const Tracer tracer(frame);
-  const auto up = formats::encode_normal({0, 1, 0});
-  std::vector<formats::Photon> photons;
-  for (float x : {-1.5f, 1.5f}) photons.push_back({{x, 0, 0.3f}, {1, 1, 1}, up, 0, formats::PathKind::caustic, 1});
-  add_spot(0.005f, 1, photons);
-  const FootprintDensity density(tracer, photons, {.neighbours = 5, .max_radius = 1, .margin = 0.1f});
-  float smooth;
-  EXPECT_GT(density.estimate({-1, 0, 0}, {0, 1, 0}, smooth).g, 0);
-  EXPECT_EQ(smooth, 1) << "stray photons alone";
-  density.estimate({0.09f, 0, 0}, {0, 1, 0}, smooth);
-  EXPECT_EQ(smooth, 0) << "the spot is near";
-  EXPECT_EQ(density.estimate({4, 0, 0}, {0, 1, 0}, smooth).g, 0);
-  EXPECT_EQ(smooth, 0) << "nothing is there";
 }
 
 /// In a scene of kilometres, photons are closer together than float positions resolve heights. Each photon counts as
@@ -234,10 +213,8 @@ TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   add_spot(0.01f, 1e-3f, photons);
   const FootprintDensity density(tracer, photons, {.neighbours = 25, .max_radius = 1});
   double sum = 0;
-  float smooth;
   for (float x = -0.0299f; x < 0.03f; x += 0.002f)
-    for (float z = -0.0299f; z < 0.03f; z += 0.002f)
-      sum += double(density.estimate({x, 0, z}, {0, 1, 0}, smooth).g) * 4e-6;
+    for (float z = -0.0299f; z < 0.03f; z += 0.002f) sum += double(on_floor(density, {x, 0, z}).g) * 4e-6;
   EXPECT_NEAR(sum, 1, 0.02);
 }
 
@@ -285,13 +262,12 @@ TEST(CausticLight, AFewPhotonsAskedHaveTheMeanOfAll) {
       few(tracer, made.photons, {.max_radius = 0.3f, .asked = 4});
   const PathRandom random(6, 6);
   Rgbd sum_all{0.0}, sum_few{0.0};
-  float unused;
   for (std::uint32_t i = 0; i < 80000; ++i) {
     const Vec2 u = random.get2(i, Purpose::test);
     const Vec3 near{0.1f * (u.x - 0.5f), 0, 1.6f * (u.y - 0.5f)}, away{0.5f + 0.1f * u.x, 0, 1.2f * (u.y - 0.5f)};
-    sum_all += Rgbd(all.estimate(near, {0, 1, 0}, unused));
-    sum_few += Rgbd(few.estimate(near, {0, 1, 0}, unused));
-    if (i < 100) { EXPECT_EQ(all.estimate(away, {0, 1, 0}, unused).g, few.estimate(away, {0, 1, 0}, unused).g); }
+    sum_all += Rgbd(on_floor(all, near));
+    sum_few += Rgbd(on_floor(few, near));
+    if (i < 100) { EXPECT_EQ(on_floor(all, away).g, on_floor(few, away).g); }
   }
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum_few[c] / sum_all[c], 1, 0.01) << c;
 }
@@ -318,9 +294,9 @@ TEST(CausticLight, NoiseHasTheVarianceBetweenMaps) {
     const PhotonLight light(tracer, photons, {}, {.caustic_only = true});
     for (float x = -0.7f; x < 0.8f; x += 0.2f)
       for (float z = -0.7f; z < 0.8f; z += 0.2f, ++n) {
-        Rgb noise;
-        const double irradiance = double(light.caustic({x, 0, z}, LitSurface(Vec3{0, 1, 0}), noise).g);
-        sum += irradiance, square += irradiance * irradiance, noise_square += double(noise.g) * double(noise.g);
+        const FootprintLight here = light.caustic({x, 0, z}, LitSurface(Vec3{0, 1, 0}));
+        const auto irradiance = double(here.irradiance.g), noise = double(here.noise.g);
+        sum += irradiance, square += irradiance * irradiance, noise_square += noise * noise;
       }
   }
   const double mean = sum / n, variance = square / n - mean * mean;
@@ -359,9 +335,7 @@ TEST(CausticLight, IsAlikeOnlyAwayFromNarrowFootprints) {
     const Vec2 u = random.get2(1000 + i, Purpose::test);
     const float wide = i % 3 == 0 ? 3 : i % 3 == 1 ? 0.3f : 0.03f;
     const Vec3 place{wide * (u.x - 0.5f), 0, wide * (u.y - 0.5f)};
-    float within;
-    Rgb noise;
-    density.estimate_around(place, LitSurface(Vec3{0, 1, 0}), within, noise);
+    const float within = density.estimate(place, LitSurface(Vec3{0, 1, 0})).alike_within;
     said += within > 0;
     for (std::size_t k = 0; k < photons.size(); ++k) {
       if (radius[k] < 4 * within * 0.999f) {

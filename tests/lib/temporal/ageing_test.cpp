@@ -29,10 +29,9 @@ TEST(AgeDraw, FollowsTheLawOfSequentialDraws) {
   for (std::size_t c = 0; c < 5; ++c) weights[c] = double(ages[c]) * double(ages[c]);
   constexpr int kDraws = 200000;
   std::map<std::pair<std::size_t, std::size_t>, int> counts;
-  AgeDraw lot;
   std::vector<std::uint32_t> drawn;
   for (int i = 0; i < kDraws; ++i) {
-    lot.draw(ages, 2, mix64(std::uint64_t(i)), drawn);
+    draw_by_age(ages, 2, mix64(std::uint64_t(i)), drawn);
     ASSERT_EQ(drawn.size(), 2u);
     ++counts[{drawn[0], drawn[1]}];
   }
@@ -49,23 +48,21 @@ TEST(AgeDraw, FollowsTheLawOfSequentialDraws) {
 TEST(AgeDraw, DrawsEachOnceAndNeverMoreThanThereAre) {
   std::vector<std::uint16_t> ages;
   for (int c = 0; c < 300; ++c) ages.push_back(std::uint16_t(1 + c % 17));
-  AgeDraw lot;
   std::vector<std::uint32_t> drawn;
-  lot.draw(ages, 1000, 5, drawn);
+  draw_by_age(ages, 1000, 5, drawn);
   EXPECT_EQ(drawn.size(), 300u);
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.end()).size(), 300u);
-  lot.draw(ages, 0, 5, drawn);
+  draw_by_age(ages, 0, 5, drawn);
   EXPECT_TRUE(drawn.empty());
 }
 
 // Cells whose age would no longer fit into the field are always drawn, and the others with the same probabilities.
 TEST(AgeDraw, SaturatedAgesAreAlwaysDrawn) {
   const std::vector<std::uint16_t> ages{1, formats::kMaxAge, 4, formats::kMaxAge};
-  AgeDraw lot;
   std::vector<std::uint32_t> drawn;
-  lot.draw(ages, 0, 1, drawn);
+  draw_by_age(ages, 0, 1, drawn);
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.end()), (std::set<std::uint32_t>{1, 3}));
-  lot.draw(ages, 3, 1, drawn);
+  draw_by_age(ages, 3, 1, drawn);
   EXPECT_EQ(drawn.size(), 3u);
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.begin() + 2), (std::set<std::uint32_t>{1, 3}));
 }
@@ -81,7 +78,6 @@ Steady steady() {
   constexpr int kCells = 500, kFrames = 4000, kWarm = 400;
   std::vector<std::uint16_t> ages;
   for (int c = 0; c < kCells; ++c) ages.push_back(std::uint16_t(1 + mix64(std::uint64_t(c)) % 10));
-  AgeDraw lot;
   std::vector<std::uint32_t> drawn;
   Steady made;
   std::array<int, 4> kept{};
@@ -89,7 +85,7 @@ Steady steady() {
   std::vector<int> last(kCells, -1);  // frame of the last draw
   int begin = kWarm;
   for (int f = 0; f < kFrames; ++f) {
-    lot.draw(ages, kCells / 10, mix64(std::uint64_t(f) + 77), drawn);
+    draw_by_age(ages, kCells / 10, mix64(std::uint64_t(f) + 77), drawn);
     for (std::uint16_t& age : ages) ++age;
     for (const std::uint32_t c : drawn) ages[c] = 1, last[c] = f;
     if (f < kWarm) continue;

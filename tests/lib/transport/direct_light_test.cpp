@@ -53,7 +53,9 @@ TEST(SampleDirect, MeanIsTheIrradianceOfALamp) {
   for (std::uint32_t i = 0; i < kSamples; ++i) {
     const PathRandom random(1, i);
     DirectSample direct;
-    if (!sample_direct(lamp.lights, {place, kUp, kUp}, random.get2(0, Purpose::light_point), direct)) continue;
+    if (!sample_direct(lamp.lights, {place, kUp, kUp}, random.get1(0, Purpose::light_choice),
+                       random.get2(0, Purpose::light_point), direct))
+      continue;
     sum += double(direct.irradiance.g * transmittance(lamp.tracer, direct.shadow, {random, 0, way_shadow}));
   }
   EXPECT_NEAR(sum / kSamples / Lamp::irradiance(), 1, 0.024);
@@ -72,10 +74,10 @@ TEST(SampleDirect, NormalsCoatAndShadow) {
   DirectSample plain, coated;
   for (std::uint32_t i = 0; i < 64; ++i) {
     const Vec2 u = PathRandom(2, i).get2(0, Purpose::light_point);
-    EXPECT_FALSE(sample_direct(lamp.lights, {place, kUp * -1.0f, kUp}, u, plain));
-    if (sample_direct(lamp.lights, {place, kUp, aside}, u, plain)) { EXPECT_GT(dot(plain.light.wi, aside), 0); }
-    ASSERT_TRUE(sample_direct(lamp.lights, {place, kUp, kUp}, u, plain));
-    ASSERT_TRUE(sample_direct(lamp.lights, {place, kUp, kUp, &coat}, u, coated));
+    EXPECT_FALSE(sample_direct(lamp.lights, {place, kUp * -1.0f, kUp}, 0.5f, u, plain));
+    if (sample_direct(lamp.lights, {place, kUp, aside}, 0.5f, u, plain)) { EXPECT_GT(dot(plain.light.wi, aside), 0); }
+    ASSERT_TRUE(sample_direct(lamp.lights, {place, kUp, kUp}, 0.5f, u, plain));
+    ASSERT_TRUE(sample_direct(lamp.lights, {place, kUp, kUp, &coat}, 0.5f, u, coated));
     EXPECT_NEAR(coated.irradiance.g / plain.irradiance.g, coat.arrival_weight(plain.light.wi.y), 1e-5f);
   }
   HandMadeScene covered = Lamp::lamp();
@@ -103,7 +105,8 @@ TEST(WeighedEmission, JoinsLightSamplesToTheWhole) {
               .g *
           kPi);
     DirectSample direct;
-    if (sample_direct(lamp.lights, {place, kUp, kUp}, random.get2(0, Purpose::light_point), direct))
+    if (sample_direct(lamp.lights, {place, kUp, kUp}, random.get1(0, Purpose::light_choice),
+                      random.get2(0, Purpose::light_point), direct))
       sampled += double(direct.irradiance.g * mis_power(direct.light.pdf_solid_angle, direct.light.wi.y * kInvPi));
   }
   EXPECT_NEAR((met + sampled) / kSamples / Lamp::irradiance(), 1, 0.03);
