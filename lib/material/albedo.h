@@ -17,7 +17,7 @@ inline constexpr double kMinAlpha = 0.0004;
 }  // namespace albedo_table
 
 /// Albedo of the single-scattering lobe of ggx.h for one alpha. Bicubic interpolation in a table of 28 x 48 entries
-/// (albedo_table.cpp). Rows are at equal steps of alpha^(1/4), columns at equal steps of sqrt(x), with
+/// that the build computes (tables/make_tables.cpp). Rows are at equal steps of alpha^(1/4), columns at equal steps of sqrt(x), with
 ///     x = cos (1 + alpha) / (cos + alpha).
 /// a + b is within 5e-5 of the integral and b within 8e-5, over the whole domain
 /// (tests/lib/material/albedo_table_test.cpp).

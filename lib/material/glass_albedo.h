@@ -8,7 +8,7 @@
 namespace tempolux {
 
 /// 1 - E for the lobe of rough_glass.h [1]. E is the share of uniform light that is reflected and transmitted, for
-/// one alpha and index, seen from outside or inside. Cubic interpolation in a table (glass_albedo_table.cpp) with
+/// one alpha and index, seen from outside or inside. Cubic interpolation in a table (tables/make_tables.cpp) with
 /// planes at equal steps of sqrt(1 - 1/index), rows at equal steps of sqrt(alpha), and columns by cosine; within 3e-3
 /// of the integrals (tests/lib/material/glass_albedo_test.cpp).
 /// Outside, the column is the square root of x = cos (1 + alpha) / (cos + alpha). Inside, the loss has a bend at the

@@ -11,7 +11,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
-#include "tests/lib/material/ggx_reference.h"
+#include "lib/material/tables/ggx_integrals.h"
 #include "tests/support/materials.h"
 
 namespace tempolux {
@@ -144,7 +144,7 @@ TEST(Bsdf, CouplingAveragesToWhatItsNormalisationSays) {
 // eval agree); for the Lambert lobe the table itself. With the term of Kulla and Conty a rough white metal reflects
 // exactly all light.
 TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
-  const reference::GaussLegendre rule(96);
+  const integrals::GaussLegendre rule(96);
   for (float roughness : {0.021f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f}) {
     for (float metallic : {0.0f, 0.4f, 1.0f}) {
       for (float f0 : {0.0f, 0.04f, 0.5f, 1.0f}) {
@@ -155,7 +155,7 @@ TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
         const Bsdf bsdf(m);
         for (float c : {1e-6f, 1e-4f, 1e-3f, 0.01f, 0.05f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f}) {
           const double alpha = double(roughness) * roughness;
-          const reference::Albedo e = reference::ggx_albedo(c, alpha, rule);
+          const integrals::Albedo e = integrals::ggx_albedo(c, alpha, rule);
           const AlbedoPair table = GgxAlbedo(float(alpha)).at(c);
           const double f90 = 1, f = metallic == 1 ? f0 : metallic + (1 - metallic) * f0;
           const double corrected = bsdf.specular_albedo(c).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);

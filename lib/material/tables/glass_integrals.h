@@ -1,11 +1,11 @@
-// tests/lib/material/glass_reference.h -- what one microfacet of rough glass loses, by quadrature.
+// lib/material/tables/glass_integrals.h -- what one microfacet of rough glass loses, by quadrature.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace tempolux::reference {
+namespace tempolux::integrals {
 
 /// Exact Fresnel reflectance in double; eta = index on the side of the incident direction / index on the other side.
 inline double fresnel(double cos_o, double eta, double& cos_t) {
@@ -41,4 +41,4 @@ inline double glass_loss(double cos_o, double alpha, double eta, int n) {
   return 1 - kept / (double(n) * (n / 2));
 }
 
-}  // namespace tempolux::reference
+}  // namespace tempolux::integrals

@@ -1,12 +1,11 @@
-// tests/lib/material/ggx_reference.h -- the albedo of GGX by quadrature, the reference of the table in
-// lib/material.
+// lib/material/tables/ggx_integrals.h -- the albedo of GGX by quadrature: what the table of albedo.h holds.
 #pragma once
 
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-namespace tempolux::reference {
+namespace tempolux::integrals {
 
 /// Nodes and weights of Gauss and Legendre on [0, 1].
 struct GaussLegendre {
@@ -82,4 +81,4 @@ inline Albedo ggx_mean_albedo(double alpha, const GaussLegendre& outer, const Ga
   return sum;
 }
 
-}  // namespace tempolux::reference
+}  // namespace tempolux::integrals
