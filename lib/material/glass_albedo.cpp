@@ -40,7 +40,7 @@ float GlassLoss::mean(int side) const {
   for (int p = 0; p < 4; ++p)
     for (int r = 0; r < 4; ++r)
       mean += weight_[0][p] * weight_[1][r] * glass_table::kMean[side][first_[0] + p][first_[1] + r];
-  return std::max(1e-7f, mean);
+  return std::max(5e-5f, mean);
 }
 
 }  // namespace tempolux

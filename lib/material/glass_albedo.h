@@ -19,7 +19,8 @@ class GlassLoss {
   GlassLoss(float index, float alpha);
   /// 1 - E for light towards cos_theta in (0, 1]; at least 0.
   float at(int side, float cos_theta) const;
-  /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu; at least 1e-7.
+  /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu; at least 5e-5. Light that is sent
+  /// out again weighs at(mu) / mean. Below the limit grazing light would weigh more than 50, for 5e-5 of the light.
   float mean(int side) const;
 
  private:
