@@ -95,8 +95,9 @@ measured() {
 }
 
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
-# with path tracing. Noise is printed in brightness steps of a screen, of which white has 255. The audit is the bias
-# that frames report of their own light.
+# with path tracing. Noise is printed in brightness steps of a screen, of which white has 255: the root mean square over
+# the frames. The audit is the bias that frames report of their own light. A warning follows if the noise of a frame is
+# more than twice what its pixel error leaves in a pixel (pipelines/look.md).
 end() {
   frames=$(sed -n 's/^frames := //p' plan.mk)
   # shellcheck disable=SC2086
