@@ -95,31 +95,49 @@ measured() {
 }
 
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
-# with path tracing. Noise is printed in brightness steps of a screen, of which white has 255. The audit is the bias
-# that frames report of their own light.
+# with path tracing. Noise is printed in brightness steps of a screen, of which white has 255: the root mean square over
+# the frames. The audit is the bias that frames report of their own light. A warning follows if a
+# frame has ten times the noise that is asked for (pipelines/look.md).
 end() {
+  asked=$ERROR
+  [ -n "$asked" ] || [ -n "$PIXELS" ] || case $QUALITY in draft) asked=.05;; *) asked=.016;; esac   # as stages.cpp
   frames=$(sed -n 's/^frames := //p' plan.mk)
   # shellcheck disable=SC2086
   audit=$("$BIN/tempolux-info" --account $frames)
+  [ -n "$audit" ] || if grep -q '^[a-z]*/.*words := .*--audit ' plan.mk
+    then audit='not audited, too few of the tested paths bring light'
+    else audit='not audited, as no preview is'; fi
   sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
     awk -v frames="$(count frames)" -v shown="$(of "$(count frames)" frame) of $SIZE" -v audit="$audit" -v out="$OUT" \
-      -v seen="$(measured)" '
+      -v seen="$(measured)" -v asked="$asked" -v ways="$(ways)" '
       function value(line) { sub(/.*: */, "", line); return line + 0 }
       {
         folder = $0; sub("/.*", "", folder); whole = 1
         while ((getline line < $0) > 0) {
           if (whole && line ~ /"cpu_s":/) { cpu += value(line); whole = 0 }   # the first is of the whole command
-          if (line ~ /"noise.codes":/) { noise[folder] += value(line); counted[folder]++ }
+          if (line ~ /"noise.codes":/) {
+            one = value(line); noise[folder] += one ^ 2; counted[folder]++
+            if (one > most[folder]) {
+              most[folder] = one; worst[folder] = $0
+              sub(/^[^\/]*\/0*/, "", worst[folder]); sub(/[^0-9].*/, "", worst[folder])
+            }
+          }
         }
         close($0)
       }
       END {
         printf "%s: %.*f CPU s in all, %.1f a frame", shown, cpu < 10, cpu, cpu / frames
         last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
-        if (counted[last]) printf "; noise, without bias, %.1f of 255 brightness steps", noise[last] / counted[last]
+        if (counted[last]) printf "; noise, without bias, %.1f of 255 brightness steps", sqrt(noise[last] / counted[last])
         if (last == "raw") printf " before the filter"
         if (seen != "") printf "; a viewer sees noise in %s %% of the pixels (make measure)", seen
-        printf "; %s; look at %s/sheet.png\n", audit == "" ? "not audited" : audit, out
+        printf "; %s; look at %s/sheet.png\n", audit, out
+        # A pixel error e leaves about 305 x .18 e codes (lib/render/frame_noise.h).
+        promised = 305 * .18 * asked
+        if (promised > 0 && most[last] > 10 * promised)
+          printf "warning: noise is seen: frame %d has %.0f brightness steps of noise, %.1f are asked for; %s or " \
+            "METHOD=preview may find light that samples seldom meet, and a smaller ERROR takes more samples\n",
+            worst[last], most[last], promised, ways ~ /paths/ ? "INDIRECT=records" : "more photons (PHOTONS)"
       }'
 }
 

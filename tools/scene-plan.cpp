@@ -69,8 +69,7 @@ Wish wish_of(tools::Tool& tool, const Options& options) {
   if (!options.measured.empty()) {
     if (wish.method != FrameMethod::preview || wish.photons > 0)
       throw InputError("--measured: photons of --method preview; leave it out with another method or with --photons");
-    const double preset = wish.quality == Quality::draft ? 0.2 : 0.05;
-    wish.measured = tools::measured_photons(options.measured, options.share < 0 ? preset : options.share);
+    wish.measured = tools::measured_photons(options.measured, options.share < 0 ? wish.seen() : options.share);
   }
   return with_preset(wish);
 }
@@ -150,10 +149,10 @@ void add_figures(tools::Tool& tool, Options& options) {
   app.add_option("--strategy", wish.strategy, "groups of photons that --update traces, as photon-trace --strategy")
       ->capture_default_str();
   tool.number_option("--key-distance", wish.key_distance, 2, 1000, "frames between the first keys of a walkthrough");
-  tool.number_option("--halve-above", wish.threshold, 0, 1,
-                     "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
-                     "(AQM), such "
-                     "as 5%")
+  app.add_option("--halve-above", wish.threshold,
+                 "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
+                 "(AQM); without: draft 20%, final 5%")
+      ->check(tools::number_between(0, 1))
       ->transform(tools::percent([] {}));
   text("--report", options.report, "FRAMES", "frames to compare with path tracing; ends: the first and the last");
   tool.number_option("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");

@@ -28,10 +28,21 @@ double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
   return means.empty() ? 1 : kMiddle / median();
 }
 
-/// Slope of the sRGB code (0 to 255) at an exposed value; 0 where the code is clipped.
-double slope_of_code(double value) {
-  if (value < 0 || value > 1) return 0;
-  return 255 * (value <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(value, 1 / 2.4 - 1));
+constexpr double kWhite = 255;
+
+/// sRGB code, 0 to 255, of an exposed value; clipped at 0 and 1.
+double code_of(double value) {
+  const double v = std::clamp(value, 0.0, 1.0);
+  return kWhite * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+}
+
+/// Squared error in codes for each squared linear error e^2 at an exposed value: the mean over both signs of e. It is
+/// the square of the curve's slope for small errors, and e^2 times it is at most 255^2.
+double codes_for_square(double value, double square) {
+  if (!(square > 0)) return 0;
+  const double e = std::sqrt(square), code = code_of(value);
+  const double above = code_of(value + e) - code, below = code - code_of(value - e);
+  return (above * above + below * below) / (2 * square);
 }
 
 /// Mean of squared errors over pixels, and its standard error from blocks of pixels.
@@ -55,17 +66,19 @@ class Mean {
 /// Squared errors in one unit.
 struct Errors {
   std::string name;
+  double most;         ///< largest possible error
   double unknown = 0;  ///< lower bound of the raw frame's measured noise
   Mean whole, noise, known;
 
-  Errors(const char* unit, const Image& frame) : name(kNoise + unit) {
+  Errors(const char* unit, double most_possible, const Image& frame) : name(kNoise + unit), most(most_possible) {
     const auto said = frame.numbers.find(name), error = frame.numbers.find(name + "_error");
     if (said != frame.numbers.end() && error != frame.numbers.end())
       unknown = std::max(0.0, said->second - error->second);
   }
   void write(Image& frame) const {
     const double missed = std::max(0.0, unknown * unknown - known.value());
-    const double root = std::sqrt(std::max({whole.value(), noise.value(), 0.0}) + missed), error = whole.error();
+    const double square = std::max({whole.value(), noise.value(), 0.0}) + missed,
+                 root = std::min(most, std::sqrt(square)), error = whole.error();
     frame.numbers[name] = root;
     frame.numbers[name + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
   }
@@ -83,9 +96,10 @@ void add_block(const RemainingError& error, const Image& frame, int left, int to
         const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
         const std::array<float, 3> squares{error.whole[c][p], error.noise[c][p], error.known[c][p]};
         if (!std::ranges::all_of(squares, [](float v) { return std::isfinite(v); })) continue;
-        const double slope = exposure * slope_of_code(exposure * double((*picture[c])[p]));
+        const double exposed2 = exposure * exposure, largest = std::max({squares[0], squares[1], squares[2]}),
+                     factor = exposed2 * codes_for_square(exposure * double((*picture[c])[p]), exposed2 * largest);
         for (std::size_t i = 0; i < squares.size(); ++i)
-          sums[i] += double(squares[i]), in_codes[i] += slope * slope * double(squares[i]);
+          sums[i] += double(squares[i]), in_codes[i] += factor * double(squares[i]);
         ++count;
       }
   const auto add = [&](const std::array<double, 3>& to_add, Errors& errors) {
@@ -122,7 +136,7 @@ RemainingError RemainingNoise::error() const {
 }
 
 void write_remaining_noise(const RemainingError& error, Image& frame) {
-  Errors linear("linear", frame), codes("codes", frame);
+  Errors linear("linear", HUGE_VAL, frame), codes("codes", kWhite, frame);
   std::erase_if(frame.numbers, [](const auto& number) { return number.first.starts_with(kNoise); });
   if (error.whole[0].empty() || !holds(frame, "R") || !holds(frame, "G") || !holds(frame, "B")) return;
   const double exposure = exposure_of(frame.rgb(""));

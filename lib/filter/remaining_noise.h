@@ -40,8 +40,9 @@ class RemainingNoise {
 /// pixel, and both halves agree. It is the square of the raw frame's noise, measured with pixels that were rendered
 /// twice, less one standard error, minus the mean of `known`.
 ///
-/// The error in codes is the linear error times the slope of the sRGB curve at the filtered value, 0 where the code
-/// is clipped. The standard error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are
+/// The error in codes is the difference of the sRGB codes, clipped at 0 and 255, of the filtered value and of the value
+/// with the error added or subtracted: the curve's slope times a small error, and never above 255. All three squares of
+/// a pixel are converted at the largest of them. The standard error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are
 /// correlated.
 ///
 /// If nothing was filtered or R, G and B are missing, the attributes are removed.

@@ -60,11 +60,15 @@ struct Wish {
   int key_distance = 16;             ///< frames between the first keys of a walkthrough
   std::map<int, Measured> measured;  ///< photons of segments, by their first frame
   /// Share of pixels: an interval of a walkthrough is halved if a viewer sees errors (AQM) in a larger share.
-  double threshold = 0.05;
+  /// Below 0: from the preset.
+  double threshold = -1;
   int reference_samples = 64;  ///< samples per pixel of a report's reference
   std::vector<int> report;     ///< frames that are compared with path tracing
   std::string common;          ///< options of all stages that change content: --fps, --volume ... (only hashed)
   std::string camera;          ///< name of the camera, or auto (only hashed)
+
+  /// Largest share of pixels in which a viewer may see errors (AQM) in pictures of this quality.
+  double seen() const { return quality == Quality::draft ? 0.2 : 0.05; }
 };
 
 /// The lobes of a segment's materials.

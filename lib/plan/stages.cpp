@@ -25,6 +25,7 @@ Wish with_preset(Wish wish) {
   if (wish.photons == 0) wish.photons = wish.method == FrameMethod::preview ? kPreviewPhotons : preset.photons;
   if (wish.rays == 0) wish.rays = preset.rays;
   if (wish.pixel_error == 0) wish.pixel_error = preset.pixel_error;
+  if (wish.threshold < 0) wish.threshold = wish.seen();
   if (wish.points.empty()) wish.points = preset.points;
   if (wish.records.empty()) wish.records = preset.records;
   // Pixel options of the user replace the preset's, including its filter. Halves of all layers take 1 kB per pixel, 2

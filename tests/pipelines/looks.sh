@@ -16,6 +16,15 @@ printf '%s\n' "{\"picture\": \"pictures/0003-0.exr\", \"tried\": [{\"photons\": 
   "{\"picture\": \"$picture\", \"tried\": [{\"photons\": 0, \"aqm\": 0.25}]}" > "$work/a/measured.json"
 last=$(progress=$PWD/pipelines/progress.sh && cd "$work/a" && BIN=$bin SIZE=32x18 OUT=. sh "$progress" end)
 case $last in *'a viewer sees noise in 25.0 % of the pixels (make measure)'*) ;; *) bad "measured: $last";; esac
+# Noise is the root mean square over the frames. A frame with more than ten times the noise of its preset is named.
+said() { for file in "$work/a/filtered/$1-"*.json; do sed "s/\"noise.codes\": [^,]*/\"noise.codes\": $2/" "$file" > "$work/said" && cp "$work/said" "$file"; done; }
+ends() { (progress=$PWD/pipelines/progress.sh && cd "$work/a" && BIN=$bin SIZE=32x18 QUALITY=$1 ERROR='' PIXELS='' OUT=. sh "$progress" end); }
+said 0000 10; said 0003 26
+last=$(ends draft)
+case $last in *'noise, without bias, 19.7 of 255'*) ;; *) bad "not the root mean square of 10 and 26: $last";; esac
+case $last in *warning*) bad "a warning in a draft with the noise of one: $last";; esac
+case $last in *'; audit: '* | *'; not audited, '*) ;; *) bad "no audit, and no reason: $last";; esac
+case $(ends final) in *'warning: noise is seen: frame 3 has 26 brightness steps of noise, 0.9 are asked for'*) ;; *) bad "no warning: $(ends final)";; esac
 run compare OUT="$work/a" OTHER="$work/b & <b>" && [ -s "$work/a/compare.html" ] || bad "compare: $(cat "$work/log")"
 grep -o 'src=.\{9\}\|href=.\{9\}\|https\{0,1\}:\|url(' "$work/a/compare.html" | grep -v '^src="data:ima' | head -3 | grep . && bad 'the page asks for something outside'
 run compare OUT="$work/a" OTHER="$work/none" && bad 'compare with nothing'

@@ -54,21 +54,41 @@ TEST(RemainingNoise, SaysTheErrorThatIsThere) {
   }
 }
 
-/// Uniform light: the exposure brings it to .18, where a code is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) of it.
+/// Small errors in uniform light: the exposure brings it to .18, where a code is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1)
+/// of it.
 TEST(RemainingNoise, CodesAreTheSlopeOfTheCurve) {
   Image frame = wall(8, 4);
   grey(frame, "", test::everywhere(3));
   RemainingError error;
-  for (auto& plane : error.whole) plane.assign(frame.pixel_count(), 0.01f);
-  for (auto& plane : error.noise) plane.assign(frame.pixel_count(), 0.005f);
-  for (auto& plane : error.known) plane.assign(frame.pixel_count(), 0.04f);
+  for (auto& plane : error.whole) plane.assign(frame.pixel_count(), 1e-4f);
+  for (auto& plane : error.noise) plane.assign(frame.pixel_count(), 5e-5f);
+  for (auto& plane : error.known) plane.assign(frame.pixel_count(), 4e-4f);
   frame.numbers["tempolux:noise.direct.codes"] = 7;  // from the raw frame
   write_remaining_noise(error, frame);
-  EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), 0.1, 1e-6);
+  EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), 0.01, 1e-7);
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.exposure"), 0.06, 1e-6);
   const double slope = 255 * 1.055 / 2.4 * std::pow(0.18, 1 / 2.4 - 1);
-  EXPECT_NEAR(frame.numbers.at("tempolux:noise.codes"), 0.1 * 0.06 * slope, 1e-4);
+  EXPECT_NEAR(frame.numbers.at("tempolux:noise.codes"), 0.01 * 0.06 * slope, 1e-5);
   EXPECT_FALSE(frame.numbers.contains("tempolux:noise.direct.codes"));
+}
+
+/// Almost all pixels are black, so the exposure is huge, and errors are far beyond white: they count as a viewer sees
+/// them, 255 codes at most. The slope of the curve alone would say 10^5 codes.
+TEST(RemainingNoise, AnErrorBeyondWhiteIsWhite) {
+  Image frame = wall(8, 4);
+  grey(frame, "", test::everywhere(1e-8f));
+  RemainingError error;
+  for (auto* colours : {&error.whole, &error.noise, &error.known})
+    for (auto& plane : *colours) plane.assign(frame.pixel_count(), 1e-4f);
+  write_remaining_noise(error, frame);
+  EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), 0.01, 1e-6);
+  const double code = 255 * (1.055 * std::pow(0.18, 1 / 2.4) - 0.055);  // the error: up to white, or down to black
+  EXPECT_NEAR(frame.numbers.at("tempolux:noise.codes"), std::sqrt((code * code + (255 - code) * (255 - code)) / 2),
+              0.1);
+  frame.numbers["tempolux:noise.codes"] = 400;
+  frame.numbers["tempolux:noise.codes_error"] = 1;
+  write_remaining_noise(error, frame);
+  EXPECT_EQ(frame.numbers.at("tempolux:noise.codes"), 255);
 }
 
 /// Long waves leave little but noise: the reported error is never below the difference of the filtered frame's halves.

@@ -315,6 +315,29 @@ TEST(Graph, NothingIsWarpedIntoAFrameOfOtherLight) {
   for (const int key : {0, 2, 3, 4, 8}) EXPECT_TRUE(graph.pictures.at(key).starts_with("keys/")) << key;
 }
 
+/// An interval is halved by what a viewer sees where pictures of its quality have more errors than allowed.
+TEST(Graph, AnIntervalMayShowWhatItsQualityShows) {
+  for (const auto& [quality, own, words] :
+       {std::tuple{Quality::draft, -1.0, " 20% "}, {Quality::final, -1.0, " 5% "}, {Quality::draft, 0.0, " 0% "}}) {
+    Scene scene = still_room();
+    slide(scene, kCamera, {0, 1, 2, 3, 4});
+    Wish wish;
+    wish.method = FrameMethod::walkthrough;
+    wish.key_distance = 4;
+    wish.quality = quality;
+    wish.threshold = own;
+    const std::vector<int> frames{0, 1, 2, 3, 4};
+    const Graph graph = graph_of(plan_of(scene, frames, 24, helper_frames(frames, wish)), records(), wish);
+    int intervals = 0;
+    for (const auto& file : graph.files)
+      if (file.name.starts_with("walk/")) {
+        EXPECT_NE(file.words.find(words), std::string::npos) << file.words;
+        ++intervals;
+      }
+    EXPECT_GT(intervals, 0);
+  }
+}
+
 /// The camera walks through two segments of four frames; warping pays in the first alone. Frame 4 is a key of 0 to 4
 /// with the channels of keys, and is shown with those of the wish: two filters read its raw picture, and either may
 /// come first.
