@@ -17,7 +17,8 @@ int padded(int n) { return 8 * fast_transform_size((n + 2 * kBorder + 7) / 8); }
 
 /// Index of the value at place `at` of a period of `period`, with n values reflected at both ends.
 int reflected(int at, int n, int period) {
-  // The place is closer to the right end, or left of the first value.
+  // A place outside the values belongs to the closer end: it follows the last value, or, since the period repeats, it
+  // precedes the first one.
   const int place = at - n < period - at ? at : at - period;
   const int folded = ((place % (2 * n)) + 2 * n) % (2 * n);
   return folded < n ? folded : 2 * n - 1 - folded;

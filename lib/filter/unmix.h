@@ -9,8 +9,8 @@ namespace tempolux {
 /// A pixel whose fit rests on less than this many pixels' light is treated as a surface without light of its own.
 inline constexpr float kFewestPixels = 10;
 
-/// Estimates light v that the fit cannot find, for every pixel p that needs it, by layer and channel. v minimises the
-/// sum over q of
+/// For each pixel p whose light the fit cannot find, estimates this light v by layer and channel. v minimises the sum
+/// over q of
 ///     (radiance(q) - sum of share(n) radiance(n) - share(q) albedo(q) v)^2 / albedo(q)^2.
 /// - q: the pixels of p's surface in the window that see several surfaces and lack the same light. radiance(q): the
 /// collected radiance there.

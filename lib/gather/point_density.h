@@ -23,11 +23,12 @@ struct DensityOptions {
 
 /// Density estimates over one set of photons. Thread-safe.
 ///
-///     E = sum of flux over those of the k-1 nearest that are reachable / reachable area
+///     E [W/m^2] = (flux of the reachable photons among the k-1 nearest) / (reachable area)
 ///
-/// Distances are those of the ellipsoid 1 : 1/10 around the point, and only surfaces within 84 degrees of the point's
-/// plane count. The area is that in the ellipsoid that touches the k-th photon. If the ellipsoid of max_radius holds
-/// fewer than k photons, all of them and the area in that ellipsoid count.
+/// Distances are measured by an ellipsoid around the point, whose axis along the normal is a tenth of the others. Only
+/// surfaces within 84 degrees of the point's plane count. The area is measured inside the ellipsoid that touches the
+/// k-th photon. If the ellipsoid of max_radius holds fewer than k photons, the sum is over all photons in it, and the
+/// area is measured inside this ellipsoid.
 ///
 /// If light is uniform on the reachable surface, E is unbiased, whatever the light elsewhere is. Given the ellipsoid,
 /// each of the k-1 photons is reachable with the probability (reachable light / all light in the ellipsoid), and
@@ -42,8 +43,9 @@ class PointDensity {
   PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
-  /// Irradiance [W/m^2], >= 0. `radius` receives the half-axis of the ellipsoid [m], 0 if no photon was found; `noise`
-  /// the same sum with the signs of paths (path_signs.h) [W/m^2].
+  /// Irradiance [W/m^2], >= 0. `radius` receives the long half-axis of the ellipsoid [m]; 0 if no photon was found.
+  /// `noise` receives the same sum [W/m^2] with the flux of each photon times the random sign of its path
+  /// (path_signs.h).
   Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius, Rgb* noise = nullptr) const;
 
  private:

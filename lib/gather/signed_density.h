@@ -42,7 +42,8 @@ class SignedDensity {
     bool known = false, whole = false;
     double inverse = 0;  ///< 1/m^2
   };
-  /// The same change. `area` is computed if it is needed and not known yet.
+  /// The same change. If the reachable area is needed and `area` does not hold it yet, the function computes and stores
+  /// it there. A caller can pass one `area` for all maps of a segment, so that rays test the disc once.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
   /// An upper bound of Change::influence that needs no ray: it counts photons that do not reach the place, too. 0 if
   /// there are no photons.

@@ -19,8 +19,8 @@ namespace tempolux {
 struct UpdateOptions {
   UpdateStrategy strategy = UpdateStrategy::oldest;
   std::uint64_t most_groups = 0;  ///< limit of groups traced again
-  /// Priorities by census and pilots are multiplied by age^age_power. 0 is the papers' rule, under which some groups
-  /// may never be traced again.
+  /// The priority of a group, by census or pilots, is multiplied by age^age_power. age: number of frames since the
+  /// group was traced. 0 is the papers' rule, under which some groups may never be traced again.
   double age_power = 1;
 };
 

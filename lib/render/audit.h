@@ -26,7 +26,7 @@ struct AuditEntry {
   std::size_t pixels = 0;
   double shown = 0;  ///< radiance of the frame
   Estimate light;    ///< radiance that the audit found
-  Estimate bias;     ///< `shown` minus `light`; three of its errors are as rare as of a normal variable
+  Estimate bias;     ///< `shown` minus `light`; 3 errors are as rare as for a normal variable
   /// The whole picture's radiance of all layers, times its pixels over the part's pixels: `bias` is reported as a share
   /// of this.
   double picture = 0;

@@ -6,10 +6,10 @@
 namespace tempolux {
 
 /// Number of light paths: `usual` where at least one path in 70 leaves a photon, else 2, 4, 8 or 16 times as many. The
-/// steps keep the number constant when the scene changes a little. The limit of 1 in 70 leaves 10 thousand photons of
-/// 700 thousand paths: in a cubic room of width w, the 50 photons of an estimate then lie within r = .1 w (50 A / (pi
-/// r^2) = 10^4 with A = 6 w^2). With fewer photons the light of a small opening shows as single spots on the walls.
-/// docs/methods/aim.md has the figures.
+/// steps keep the number constant when the scene changes a little. Source of the limit: if 1 of 70 paths leaves a
+/// photon, 700 thousand paths leave N = 10 thousand photons. In a cubic room of width w and surface A = 6 w^2, the 50
+/// photons of an estimate then lie within the radius r = .1 w, from N pi r^2 / A = 50. With fewer photons the light of
+/// a small opening shows as single spots on the walls (figures: docs/methods/aim.md).
 std::uint64_t photon_paths(double photons_per_path, std::uint64_t usual);
 
 }  // namespace tempolux

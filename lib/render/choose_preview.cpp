@@ -104,7 +104,8 @@ PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel
   }
   const double more = mean.photons > 0 ? std::clamp(1 / mean.photons, 1.0, kMostPaths) : 1;
   const auto paths = std::uint64_t(std::llround(double(photons) * more));
-  // Error of a Gaussian of deviation s over N photons: v / (N s^2) + b s^2, so that s^2 N rises as sqrt(N).
+  // N photons filtered by a Gaussian of deviation s have the squared error v / (N s^2) + b s^2: noise plus bias. It is
+  // least at s^4 = v / (b N). The number of photons below the Gaussian, N s^2, then grows as sqrt(N).
   const double growth = std::sqrt(double(paths) * frames / double(kKernelPaths));
   return {paths, window_widths(mean.area, mean.photons * double(paths) * frames, kernel * growth).filter.width};
 }

@@ -14,7 +14,7 @@ struct PhotonLightOptions {
   float max_radius = 0;         ///< m; 0: from the photons' spacing
   int caustic_neighbours = 25;  ///< fewer, because caustics have edges and a pixel averages several estimates
   float caustic_radius = 0;     ///< m; 0: from the photons' spacing
-  bool caustic_only = false;    ///< indirect light is not needed: index the caustic photons alone
+  bool caustic_only = false;    ///< index caustic photons only; indirect light is not needed
 };
 
 /// While an object of this class lives, its thread remembers the caustic light that it looks up for the samples of one
@@ -52,7 +52,7 @@ class PhotonLight {
 
  private:
   bool has_indirect_ = false;
-  std::unique_ptr<FootprintDensity> caustic_;  ///< null: no photon is of that kind
+  std::unique_ptr<FootprintDensity> caustic_;  ///< null if the map has no caustic photon
   PhotonIndex indirect_;
   IrradianceOptions options_;
 };

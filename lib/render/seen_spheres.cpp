@@ -15,8 +15,8 @@ namespace tempolux {
 namespace {
 
 constexpr int kColumns = 24,
-              /// Positions in a picture, 2688 with eight cameras: a cell with half of the weight has a standard error
-              /// of 1 %.
+              /// Grid of positions in each camera's picture. Eight cameras have 2688 positions, so the share of a cell
+              /// that holds half of the weight has a standard error of sqrt(1/4 / 2688) = 1 %.
     kRows = 14;
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;

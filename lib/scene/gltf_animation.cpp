@@ -45,7 +45,7 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
   if (channel.target_node == -1) return false;
   if (channel.target_node < 0 || std::size_t(channel.target_node) >= import.model.nodes.size())
     import.fail(place + ".target.node", "node " + std::to_string(channel.target_node) + " does not exist");
-  // False: the node belongs to another scene of the file.
+  // A node of another scene of the file is not imported, so its channel is ignored.
   return import.node_from_source[std::size_t(channel.target_node)] != -1;
 }
 

@@ -27,7 +27,7 @@ struct KeptHemisphere {
 /// All that is kept from one frame of a segment to the next.
 struct KeptHemispheres {
   std::vector<KeptHemisphere> records;
-  std::vector<Rgb> point_light;  ///< W/m^2, all kinds together, by point; anchors name points
+  std::vector<Rgb> point_light;  ///< W/m^2, sum over kinds; anchors are indices of it
   /// Hash of the explicit shares of bright points, whose light the samples leave out; "": samples hold all light
   std::string high_hash;
   bool changed = false;  ///< true if anything changed in the last frame that records follow; not stored in files

@@ -9,8 +9,8 @@
 
 namespace tempolux {
 
-/// What happens to a cell in this frame: nothing, its radiance is scaled with its anchor's light, or it is traced
-/// again. The further marks name the reason for tracing (TemporalCounts).
+/// What happens to a cell in this frame. `unmarked`: the cell does not change. `scaled`: its radiance is scaled with
+/// its anchor's light. All further marks: the cell is traced again; the mark names the reason (TemporalCounts).
 enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, near, aged, all };
 inline bool is_traced(std::uint8_t mark) { return mark > scaled; }
 
@@ -32,7 +32,7 @@ bool is_bright(const TemporalScene& scene, std::uint32_t point);
 /// the cells.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,
                 SampleUnits units, std::vector<std::uint8_t>& marks);
-/// True if something has moved nearer than `reach` [m] to the record.
+/// True if the record lies in a box of `changes`, grown by `reach` [m] to each side: something has moved close by.
 bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes, float reach);
 
 }  // namespace tempolux

@@ -17,7 +17,7 @@ namespace tempolux {
 
 struct WindowOptions {
   int reach = 16;               ///< most frames to each side
-  double false_alarms = 0.005;  ///< share of windows that close too early under constant light
+  double false_alarms = 0.005;  ///< share of windows that end too early although light is constant
   /// m: standard deviation of the Gaussian that smooths irradiance afterwards, for full windows with the mean density
   /// of photons. Where photons are fewer by a factor f the Gaussian is wider by f^(1/4): with N photons per area its
   /// error is about v / (N s^2) + b s^2, which is least at s^4 = v / (N b). f is at most that of a window of one frame.

@@ -52,7 +52,7 @@ void add(const TemporalCounts& from, TemporalCounts& to) {
 }  // namespace
 
 struct TemporalGather::Marked {
-  std::vector<std::uint8_t> marks;  ///< by cell; empty if the samples are not in memory, and then computed again
+  std::vector<std::uint8_t> marks;  ///< by cell; emptied once the record needs no update
   std::size_t count = 0;            ///< number of cells that are traced
   bool changed = false;
 };

@@ -16,8 +16,8 @@
 namespace tempolux {
 
 struct TemporalOptions {
-  /// Share of the cells to trace again, for any reason, among the records whose light changed in a frame. As many cells
-  /// are drawn by age as other reasons leave, but at least a quarter of this share.
+  /// Share of cells that a frame traces again, of all cells of the records whose light changed. Cells that changed come
+  /// first. Cells drawn by age fill up the share; they are at least a quarter of it, however many cells changed.
   float refresh = 0.05f;
 };
 

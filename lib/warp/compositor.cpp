@@ -72,7 +72,7 @@ bool Compositor::copy_unmoved(std::size_t p, ComposedPixel& pixel) const {
     const float* colour = keys_[k].view->key().colour(p);
     std::copy_n(colour, stride_, pixel.of_key[k].begin());
     pixel.parts[k] = 1;
-    // a + w (b - a): equal keys keep their bits.
+    // In the form a + w (b - a), two equal colours give exactly the same colour.
     for (std::size_t c = 0; c < stride_; ++c)
       pixel.colour[c] = unmoved == 0 ? colour[c] : pixel.colour[c] + nearness_[k] * (colour[c] - pixel.colour[c]);
     ++unmoved;

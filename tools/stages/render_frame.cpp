@@ -55,8 +55,8 @@ void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer)
 /// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
 /// a reference any such light counts. Other frames may lack as much as an audit tolerates: photons of these lights
 /// measure the light.
-void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionTable& table,
-                           const CameraView& view, const KnownLight* known, const RenderedFrame& rendered) {
+void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionTable& table, const CameraView& view,
+                           const KnownLight* known, const RenderedFrame& rendered) {
   constexpr std::uint64_t kPaths = 1 << 15;
   const SceneFrame& frame = scene.frame();
   const auto shines =
@@ -78,9 +78,10 @@ void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionT
             ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
 }
 
-/// Measures the bias of the frame's layers. Photons find the light of lamps, camera paths that of sun and sky: few
-/// photons of sun and sky are in view, and few paths meet a bright spot beside a lamp. No path meets a sun by way of a
-/// mirror or smooth glass; then photons find all light.
+/// Measures the bias of the frame's layers. Photons estimate the light of lamps, because few camera paths meet a bright
+/// spot close to a lamp. Camera paths estimate the light of sun and sky, because few photons of sun and sky arrive in
+/// view. If the scene has a sun and a mirror or smooth glass, photons estimate all light, because no camera path meets
+/// a sun via a smooth surface.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const RenderScene& scene,
                               const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
                               const RenderedFrame& rendered) {
