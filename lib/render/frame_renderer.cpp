@@ -63,7 +63,7 @@ LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
   formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
   image.pixels.resize(count);
   if (options.sample_halves) image.sample_halves.resize(count);
-  if (options.known && (options.known->records || options.known->photons)) image.stored_noise.resize(count);
+  if (options.known && options.known->has_noise()) image.stored_noise.resize(count);
   return image;
 }
 

@@ -42,7 +42,7 @@ struct LayerImage {
   int width = 0, height = 0, samples = 0;
   bool media = false;                       ///< the scene has media: "layers" holds the layer volume, too
   std::vector<Layers> pixels;               ///< width * height, top row first
-  std::vector<StoredNoise> stored_noise;    ///< of the same pixels; empty without records and photons
+  std::vector<StoredNoise> stored_noise;    ///< of the same pixels; empty unless KnownLight::has_noise()
   std::vector<SampleHalves> sample_halves;  ///< of the same pixels; empty unless asked for
   /// By layer the variance of a pixel's mean over the mean square of SampleHalves::difference (NoiseCheck::shares).
   std::array<double, kLayerCount> difference_share{1, 1, 1, 1, 1, 1};

@@ -14,7 +14,7 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise) const {
   if (mesh) return mesh->irradiance(surface, geometric);
-  if (localised) return localised->at(surface, shading);
+  if (localised) return localised->at(surface, shading, noise);
   if (records) {
     const RecordStore::Interpolated found = records->interpolate(surface.position, shading);
     if (noise) *noise = found.noise;

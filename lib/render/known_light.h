@@ -40,8 +40,10 @@ class KnownLight {
 
   /// Indirect irradiance [W/m^2] at the first Lambert lobe of a camera path. Both normals are unit vectors on the
   /// side that is seen. Empty where no record is valid: a gather ray must then estimate the light. `noise` also
-  /// receives the noise of the records (RecordStore::Interpolated::noise).
+  /// receives the noise of the records (RecordStore::Interpolated::noise); it stays as it is where no records are read.
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise = nullptr) const;
+  /// Is noise of light known, that is, may indirect() or caustic() report some?
+  bool has_noise() const { return records || localised || photons; }
   bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
   /// Caustic light; call only if has_caustic(). 0 if indirect() includes caustic light.
   FootprintLight caustic(Vec3 position, const LitSurface& surface) const {

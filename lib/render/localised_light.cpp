@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tempolux {
 namespace {
@@ -28,20 +29,18 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
   gathered_.add(gathered);
 }
 
-std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading) const {
-  const float share = gathered_share(surface, shading);
-  Rgb sum{0.0f};
-  if (share < 1) {
-    const std::optional<Rgb> updated = updated_.irradiance(surface.position, shading);
-    if (!updated) return std::nullopt;
-    sum = *updated * (1 - share);
+std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading, Rgb* noise) const {
+  const float gathered = gathered_share(surface, shading);
+  Rgb irradiance{0.0f}, records_noise{0.0f};
+  for (const auto& [records, share] : {std::pair{&updated_, 1 - gathered}, std::pair{&gathered_, gathered}}) {
+    if (!(share > 0)) continue;
+    const RecordStore::Interpolated found = records->interpolate(surface.position, shading);
+    if (!(found.weight > 0)) return std::nullopt;
+    irradiance += found.irradiance * share;
+    records_noise += found.noise * share;
   }
-  if (share > 0) {
-    const std::optional<Rgb> gathered = gathered_.irradiance(surface.position, shading);
-    if (!gathered) return std::nullopt;
-    sum += *gathered * share;
-  }
-  return sum;
+  if (noise) *noise = records_noise;
+  return irradiance;
 }
 
 float LocalisedLight::gathered_share(const SurfacePoint& surface, Vec3 shading) const {

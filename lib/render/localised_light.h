@@ -25,8 +25,9 @@ class LocalisedLight {
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 
-  /// Empty if a record that the place needs is missing.
-  std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading) const;
+  /// Empty if a record that the place needs is missing. `noise` [W/m^2] also receives f n_y + (1 - f) n_t, the noise of
+  /// both sets of records (RecordStore::Interpolated::noise). Changes by movers add none to n_t.
+  std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading, Rgb* noise = nullptr) const;
   /// f in [0, 1].
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;
   /// Influence in the unit of the thresholds (InfluenceField::at). Infinite on movers and where no record is valid.

@@ -8,6 +8,8 @@
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
+#include "lib/render/known_light.h"
+#include "lib/render/localised_light.h"
 #include "tests/support/frames.h"
 #include "tests/support/photons.h"
 
@@ -159,6 +161,41 @@ TEST(FrameRenderer, ABaseWithoutNoiseIsKnown) {
   EXPECT_EQ(image.find("albedo.R")->values, (std::vector<float>{1, 2}));  // valid for every pixel
   EXPECT_EQ(image.find("direct.R")->values, (std::vector<float>{3, 2}));
   EXPECT_EQ(image.find("direct.noise.R")->values, (std::vector<float>{0, 2}));
+}
+
+/// One record lies where the frame's centre looks. No mover changes its light: as a plain and as a localised record it
+/// gives frames the same noise.
+TEST(FrameRenderer, NoiseOfLocalisedRecordsIsThatOfPlainOnes) {
+  const Cornell c;
+  const std::optional<SeenPoint> seen = seen_through(c.tracer, c.view, {32, 18, {}});
+  ASSERT_TRUE(seen);
+  IrradianceRecord record;
+  record.position = seen->surface.position;
+  record.normal = seen->normal;
+  record.irradiance = Rgb(2.0f);
+  record.noise = {0.5f, -1, 0.25f};
+  record.radius = record.radius_unclamped = 0.2f;
+  RecordStore store({.least_cosine = 0});
+  ASSERT_TRUE(store.add(record));
+  const std::vector<RecordChange> changes{{record.irradiance, 0}};
+  const LocalisedLight localised({&record, 1}, changes, {}, 0, {}, MovingObjects(c.frame));
+  KnownLight plain, with_movers;
+  plain.records = &store;
+  with_movers.localised = &localised;
+  FrameOptions options;
+  options.samples = 2;
+  const auto noise_of = [&](const KnownLight& known) {
+    options.known = &known;
+    return render_frame(c.render_scene(), c.view, options).mean.stored_noise;
+  };
+  const std::vector<StoredNoise> expected = noise_of(plain), found = noise_of(with_movers);
+  ASSERT_EQ(found.size(), expected.size());
+  bool any = false;
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    any |= expected[p].indirect.g < 0;
+    ASSERT_EQ(found[p].indirect, expected[p].indirect) << p;
+  }
+  EXPECT_TRUE(any);
 }
 
 /// Image means of the photon renderer's layers against those of the path tracer. Emission and direct light come from

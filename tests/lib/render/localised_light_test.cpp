@@ -95,5 +95,26 @@ TEST(LocalisedLight, ItTakesThePlaceOfRecords) {
   EXPECT_EQ(known.indirect(point, kUp, kUp)->g, 8);
 }
 
+TEST(LocalisedLight, NoiseIsBlendedAsLightIs) {
+  Records noisy;
+  for (IrradianceRecord& standing : noisy.standing) standing.noise = {3, -1, 0};
+  for (IrradianceRecord& gathered : noisy.gathered) gathered.noise = {-1, 5, 2};
+  const LocalisedLight light = noisy.light();
+  KnownLight known;
+  known.localised = &light;
+  const auto noise = [&](const SurfacePoint& point) {
+    Rgb found{7.0f};
+    EXPECT_TRUE(known.indirect(point, kUp, kUp, &found));
+    return found;
+  };
+  const auto expect = [](Rgb a, Rgb b) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-4f);
+  };
+  expect(noise(place({0, 0, 0})), {3, -1, 0});
+  expect(noise(place({10, 0, 0})), {1, 2, 1});  // f = 1/2
+  expect(noise(place({20, 0, 0})), {-1, 5, 2});
+  expect(noise(place({10, 0, 0}, kMover)), {-1, 5, 2});
+}
+
 }  // namespace
 }  // namespace tempolux
