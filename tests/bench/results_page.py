@@ -207,7 +207,7 @@ def write(bench, page, docs, peers, figures, command, left_out):
             (results / f"{name}.md").write_text(section(name, f, command).rstrip("\n") + "\n")
     link = results.relative_to(page.parent) if results.is_relative_to(page.parent) else results
     quick = results / "every-scene-quick.md"  # everyscene.py --quick --report writes it
-    beside = f"Seen error beside path tracing, a dozen scenes: [{quick.name}]({link}/{quick.name}).\n" if quick.is_file() else ""
+    beside = f"Seen error beside path tracing, scene by scene: [{quick.name}]({link}/{quick.name}).\n" if quick.is_file() else ""
     text = f"""# Results
 
 Written by `{command}` (tests/bench/bench.py); every number comes out of it, `--only NAME` measures one part again. Details: {link}, a file for each part.
