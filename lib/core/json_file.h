@@ -6,9 +6,9 @@
 
 namespace tempolux {
 
-/// The document in a file, members in the file's order. Throws InputError "FILE: WHAT; REMEDY" if the file cannot be
-/// read, is larger than 256 MiB, is no JSON, is nested deeper than 32 levels, or has a number that a double cannot
-/// hold.
+/// Reads the JSON document of a file; members keep the order of the file. Throws InputError "FILE: WHAT; REMEDY" if the
+/// file cannot be read, is larger than 256 MiB, is no JSON, is nested deeper than 32 levels, or has a number that a
+/// double cannot hold.
 nlohmann::ordered_json read_json(const std::string& path);
 
 }  // namespace tempolux

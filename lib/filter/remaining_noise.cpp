@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lib/filter/picture.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {
@@ -30,18 +31,12 @@ double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
 
 constexpr double kWhite = 255;
 
-/// sRGB code, 0 to 255, of an exposed value; clipped at 0 and 1.
-double code_of(double value) {
-  const double v = std::clamp(value, 0.0, 1.0);
-  return kWhite * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-}
-
 /// Squared error in codes for each squared linear error e^2 at an exposed value: the mean over both signs of e. It is
 /// the square of the curve's slope for small errors, and e^2 times it is at most 255^2.
 double codes_for_square(double value, double square) {
   if (!(square > 0)) return 0;
-  const double e = std::sqrt(square), code = code_of(value);
-  const double above = code_of(value + e) - code, below = code - code_of(value - e);
+  const double e = std::sqrt(square), code = srgb_code(value);
+  const double above = srgb_code(value + e) - code, below = code - srgb_code(value - e);
   return (above * above + below * below) / (2 * square);
 }
 

@@ -42,8 +42,8 @@ class RemainingNoise {
 ///
 /// The error in codes is the difference of the sRGB codes, clipped at 0 and 255, of the filtered value and of the value
 /// with the error added or subtracted: the curve's slope times a small error, and never above 255. All three squares of
-/// a pixel are converted at the largest of them. The standard error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are
-/// correlated.
+/// a pixel are converted at the largest of them. The standard error comes from blocks of 32 x 32 pixels, because errors
+/// of neighbouring pixels are correlated.
 ///
 /// If nothing was filtered or R, G and B are missing, the attributes are removed.
 void write_remaining_noise(const RemainingError& error, Image& frame);

@@ -1,5 +1,6 @@
 #include "lib/image/srgb.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tempolux {
@@ -12,6 +13,11 @@ float linear_to_srgb(float linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 1;
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+double srgb_code(double value) {
+  const double v = std::clamp(value, 0.0, 1.0);
+  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
 }
 
 }  // namespace tempolux

@@ -8,4 +8,7 @@ namespace tempolux {
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 
+/// sRGB code of a linear value, 0 to 255, not rounded; the value is clipped at 0 and 1.
+double srgb_code(double value);
+
 }  // namespace tempolux

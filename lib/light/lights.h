@@ -220,9 +220,8 @@ class Lights {
   std::vector<std::uint32_t> tree_slot_;   ///< and back
   std::vector<std::uint32_t> suns_;        ///< indices of the directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment_;
-  double environment_weight_ =
-      0;     ///< irradiance from the environment, averaged over all normals; 0: none, black, or off
-  Aim aim_;  ///< of photons from directional lights and environment
+  double environment_weight_ = 0;  ///< irradiance from the environment, averaged over all normals; 0: none shines
+  Aim aim_;                        ///< of photons from directional lights and environment
   LightTree tree_{{}};
 };
 

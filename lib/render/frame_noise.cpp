@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/core/random.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {
@@ -81,11 +82,6 @@ struct ImageAndLayers {
 };
 
 }  // namespace
-
-double srgb_code(double value) {
-  const double v = std::clamp(value, 0.0, 1.0);
-  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-}
 
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
   std::vector<double> means;

@@ -30,8 +30,6 @@ struct FrameNoise {
 /// Relative error of a linear value of .18 that changes its sRGB code by `codes`. The slope of the curve there is
 /// 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
 constexpr double pixel_error_of_codes(double codes) { return codes * (1 / (305 * 0.18)); }
-/// sRGB code of a linear value, 0 to 255, not rounded; the value is clipped at 0 and 1.
-double srgb_code(double value);
 /// Factor that brings the median of the pixels' mean channels to .18. If more than half of the pixels are black, the
 /// median of the others is used. 1 for a black picture.
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);

@@ -105,12 +105,14 @@ class Tool {
 
   /// Adds -o,--output (or another option that names an output); history lines do not contain it.
   CLI::Option* output_option(std::string& path, const std::string& help, const std::string& names = "-o,--output");
-  /// Adds an option whose value is the name of a file, one of `words`, or a number from `least` to `most`.
+  /// Adds an option whose value is the name of a file.
   CLI::Option* file_option(const std::string& names, std::string& file, const std::string& help);
   CLI::Option* file_option(const std::string& names, std::vector<std::string>& files, const std::string& help);
+  /// Adds an option whose value is one of `words`; help shows the default.
   CLI::Option* choice_option(const std::string& names, std::string& word, const std::vector<std::string>& words,
                              const std::string& help);
-  template <class Number>  // int, float or double
+  /// Adds an option whose value is a number from `least` to `most`; Number is int, float or double.
+  template <class Number>
   CLI::Option* number_option(const std::string& names, Number& number, double least, double most,
                              const std::string& help);
   /// Adds an option whose value is a number between `least` and `most`, both excluded, or the word auto: no number.

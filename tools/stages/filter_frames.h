@@ -1,4 +1,4 @@
-// tools/stages/filter_frames.h -- st-filter: frames that are filtered alone or with their neighbours.
+// tools/stages/filter_frames.h -- st-filter: filters frames, alone or with their neighbours.
 #pragma once
 
 #include <string>

@@ -47,7 +47,8 @@ void count_work(Tool& tool, const WarpedFrame& warped) {
   stats.count("traced", double(traced));
 }
 
-/// Writes a warped frame and takes its colours; `bare` has the size and the attributes.
+/// Writes a warped frame and the images that were requested with it: candidates, mask and flow. Moves the colours of
+/// `warped` into `image`. `bare` is an image without channels that has the size and the attributes of the frame.
 void write(Tool& tool, const WarpFramesOptions& options, Outputs& outputs, WarpedFrame&& warped, const PixelFlow* flow,
            Image image, const Image& bare) {
   tool.stats().phase("write");

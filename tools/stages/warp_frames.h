@@ -24,7 +24,7 @@ struct WarpFramesOptions {
 
 /// Warps the keys to the frames of the scene.
 void warp_frames(Tool& tool, const WarpFramesOptions& options, const std::vector<LoadedKey>& keys);
-/// Warps the keys to the view of a file, without a scene.
+/// Warps the key frames to the camera and the surfaces that the frame `options.view` holds; reads no scene.
 void warp_view(Tool& tool, const WarpFramesOptions& options, const std::vector<LoadedKey>& keys);
 
 }  // namespace tempolux::tools

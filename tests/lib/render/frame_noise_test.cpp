@@ -1,4 +1,5 @@
 // The noise that a frame reports against the noise between seeds; the loop of --seen-error.
+#include "lib/image/srgb.h"
 #include "lib/render/frame_noise.h"
 
 #include <gtest/gtest.h>
