@@ -17,7 +17,7 @@ check: build_all # all tests; skipped tests are counted and named
 	@$(in_top) ctest --preset release -j 2; code=$$?; \
 	sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
 # Measurements that take longer. They use the programs of this tree and write to OUT.
-bench: build_all # error against time, required figures, into RESULTS.md
+bench: build_all # figures of single parts, into RESULTS.md
 	$(in_top) python3 -B tests/bench/bench.py --out "$$OUT/bench" $(if $(PEERS),--peers)
 report-papers: build # figures of the papers with our numbers
 	$(in_top) python3 -B tests/bench/papers.py build/release/bin "$$OUT/papers"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures what RESULTS.md says: error against time, and the required figures.
+"""Measures the figures of RESULTS.md.
 
-    make -f Makefile.example bench                       everything, about two hours on two idle cores
+    make -f Makefile.example bench                       everything, about a quarter of an hour on two idle cores
     python3 tests/bench/bench.py --only threads,start    some parts again; the page keeps the others
     python3 tests/bench/bench.py --page                  the page alone, from what was measured before
     python3 tests/bench/everyscene.py --quick            a dozen scenes in some minutes, to compare two programs
@@ -13,9 +13,13 @@ import time
 from pathlib import Path
 
 import results_page
-import sweep
 from measure import Bench, Missing, machine, walk_speed
-from required import FIGURES
+from required import FIGURES, PEERS
+
+
+def usual():
+    """The parts that want no other renderer."""
+    return [name for name in FIGURES if name not in PEERS]
 
 
 def options():
@@ -24,12 +28,9 @@ def options():
     parser.add_argument("--build", type=Path, default=project / "build" / "release", help="build folder [build/release]")
     parser.add_argument("--out", type=Path, default=project / "out" / "bench", help="raw results, references [out/bench]")
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
-    parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
-    parser.add_argument("--only", help="parts, by comma [sweep,%s; cycles, walls with --peers]" % ",".join(name for name in FIGURES if name not in ("cycles", "walls")))
-    parser.add_argument("--peers", action="store_true", help="also Cycles on this machine; wants Blender and numpy")
-    parser.add_argument("--scenes", default="", help="parts sweep (also walk, filter), found, everyscene: regular expression, these alone; the others as measured before")
-    parser.add_argument("--sizes", default="320x180", help="part everyscene: by comma [320x180]")
-    parser.add_argument("--seeds", type=int, default=8, help="part everyscene: seeds of the chain [8]")
+    parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of results/, a page for each part [docs]")
+    parser.add_argument("--only", help=f"parts, by comma [{','.join(usual())}; {','.join(PEERS)} with --peers]")
+    parser.add_argument("--peers", action="store_true", help="also beside Cycles on this machine; wants Blender and numpy")
     parser.add_argument("--reference-samples", type=int, default=2048,
                         help="per pixel, of each reference; 8192 for errors below 0.001 [2048]")
     parser.add_argument("--tiny", action="store_true", help="tiny sizes: does every script still run?")
@@ -37,22 +38,12 @@ def options():
     return project, parser.parse_args()
 
 
-def draw_curves(bench, peers, only):
-    """The sweep; beside error-report's folder, what it was made with."""
-    load = os.getloadavg()[0]
-    print((sweep.measure(bench, peers, only) / "report.md").read_text())
-    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples, "only": only,
-            "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
-    (bench.out / "sweep.json").write_text(json.dumps(made))
-
-
-def measure(bench, name, peers, args):
+def measure(bench, name, peers):
     """One required figure; kept as JSON."""
-    more = {"found": {"only": args.scenes}, "everyscene": {"only": args.scenes, "sizes": args.sizes.split(","), "seeds": args.seeds}}
     load = os.getloadavg()[0]
     begin = time.monotonic()
     bench.walk = walk_speed(bench)
-    found = FIGURES[name](bench, peers, **more.get(name, {}))
+    found = FIGURES[name](bench, peers)
     found |= {"machine": machine(bench), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1),
               "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
     (bench.out / f"{name}.json").write_text(json.dumps(found, indent=1))
@@ -65,21 +56,18 @@ def main():
     bench = Bench(args.build.resolve(), args.out.resolve(), project, args.tiny, args.reference_samples)
     peers = json.loads((Path(__file__).parent / "peers.json").read_text())
     left_out = {}
-    parts = args.only.split(",") if args.only else ["sweep", *(name for name in FIGURES if name not in ("cycles", "walls") or args.peers)]
+    parts = args.only.split(",") if args.only else [*FIGURES] if args.peers else usual()
     for name in [] if args.page else parts:
         print(f"== {name}", flush=True)
         try:
-            if name == "sweep":
-                draw_curves(bench, peers["peers"], args.scenes)
-            elif name in FIGURES:
-                measure(bench, name, peers["peers"], args)
-            else:
-                raise SystemExit(f"--only: no part is called '{name}'; there are sweep,{','.join(FIGURES)}")
+            if name not in FIGURES:
+                raise SystemExit(f"--only: no part is called '{name}'; there are {','.join(FIGURES)}")
+            measure(bench, name, peers["peers"])
         except Missing as reason:
             print(f"left out: {reason}", flush=True)
             left_out[name] = str(reason)
     page = args.results.resolve()
-    results_page.write(bench, page, args.docs.resolve(), peers, FIGURES, "python3 tests/bench/bench.py", left_out)
+    results_page.write(bench, page, args.docs.resolve(), FIGURES, "python3 tests/bench/bench.py", left_out)
     print(f"wrote {args.results}")
     readme = page.with_name("README.md")
     if readme.exists():

@@ -1,23 +1,14 @@
-"""Cycles beside us, on the same machine in the same run, where Blender is installed: `make -f Makefile.example bench PEERS=1`."""
+"""A room from Blender rendered by Cycles and by us, where Blender is installed: `make -f Makefile.example bench PEERS=1`."""
 import math
 import os
 import shutil
-import statistics
 import subprocess
+import sys
 from pathlib import Path
 
-import cases
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
-import pixels
-from measure import Missing, figure, percent, quantity
-from references import Reference
-from shipped import YARDSTICK, Side
-
-SCENES = ("S2", "S3", "S4", "S8")
-SAMPLES = 64
-HEADER = ["scene", "Cycles' CPU s", "its RMSE / mean", "preset", "our CPU s", "our RMSE / mean", "Cycles' CPU s at our RMSE", "ratio",
-          "mean of the picture, Cycles / our paths - 1"]
-
+from measure import Missing, figure
 
 def blender():
     """The program, if it renders glTF: its importer wants numpy."""
@@ -45,42 +36,6 @@ def render(program, image, scene, frame, size, samples, seed, sky="0,0,0", light
         lines = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
         raise Missing(f"Blender rendered nothing: {lines[-1] if lines else 'no message'}")
     return exr.read(image), after.children_user - before.children_user + after.children_system - before.children_system
-
-
-def by_cycles(bench, program, case, size, samples, seed):
-    words = dict(zip(case.shared[::2], case.shared[1::2]))
-    return render(program, bench.out / "tmp" / "cycles.exr", case.file, case.frame, size, samples, seed, words.get("--environment", "0,0,0"),
-                  "SPEC" if words.get("--light-units") == "spec" else "COMPAT")
-
-
-def cycles(bench, _):
-    """Cycles beside the shipped presets, same machine, same run."""
-    program, rows = blender(), []
-    if bench.tiny:
-        raise Missing("short form")
-    for case in (case for case in cases.ours(bench) if case.name in SCENES):
-        side, reference = Side(bench, case, bench.size, 10**4), Reference(bench, case, bench.size, YARDSTICK)
-        reference.until(lambda a, b: reference.facts["spp"] >= 512, 10**4)
-        a, b = reference.halves
-        mean, _ = pixels.mean_of_halves(a, b)
-        theirs, runs = [], {"draft": [], "final": []}
-        for seed in (1, 2, 3):             # the sides alternate
-            theirs.append(by_cycles(bench, program, case, bench.size, SAMPLES, seed))
-            for quality, found in runs.items():
-                image, cpu, *_ = side.chain(seed, quality)
-                found.append((pixels.squared_error(image, a, b)[0], cpu))
-        cpu = statistics.median(c for _, c in theirs)
-        mse = statistics.mean(pixels.half_error(p, q) for (p, _), (q, _) in ((theirs[0], theirs[1]), (theirs[1], theirs[2])))
-        their_mean = statistics.mean(pixels.mean(image) for image, _ in theirs)
-        for quality, found in runs.items():
-            ours, our_cpu = max(1e-30, statistics.mean(e for e, _ in found)), statistics.median(c for _, c in found)
-            equal = cpu * mse / ours
-            rows.append([case.name, quantity(cpu), percent(math.sqrt(mse) / their_mean, 1), quality, quantity(our_cpu),
-                         percent(math.sqrt(ours) / mean, 1), quantity(equal), f"{quantity(equal / our_cpu)}x", f"{100 * (their_mean / mean - 1):+.1f} %"])
-    return figure(f"Cycles of Blender 3.4, {SAMPLES} samples, beside the presets at {bench.size}", "printed", HEADER, rows, None,
-                  ["Cycles' error is its noise, of pairs of its own pictures: its materials are not quite ours (last column). At our RMSE: by its "
-                   "1/sqrt law. Three runs each, in turn; every process counted from its start."],
-                  measured=", ".join(f"{row[0]} {row[3]} {row[7]}" for row in rows))
 
 
 def inner_means(ours, theirs, width):
@@ -124,5 +79,3 @@ def walls(bench, _):
     return figure("a room from Blender beside Cycles", "3 % (or twice the pictures' noise)", ["object", "pixels", "Cycles / ours - 1", "noise"], rows, met,
                   ["160x90, frame 12, 144 samples each; objects seen in most pixels: all of them matte."], measured=f"{rows[0][0]} {rows[0][2]}")
 
-
-FIGURES = {"cycles": cycles, "walls": walls}

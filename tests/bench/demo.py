@@ -24,6 +24,3 @@ def demo(bench, _):
                   ["quality", "CPU s per frame, normalised", "CPU s, all frames", "GB, all frames"], rows,
                   None if bench.tiny else seconds["final"] <= 300 and seconds["draft"] <= 150,
                   [f"Frames {frames} of pipelines/scenes/evening.glb, 640x360; all processes of make."])
-
-
-FIGURES = {"demo": demo}

@@ -2,7 +2,6 @@
 """How near is `make estimate`? Runs the pipeline on a few frames and compares processor seconds and bytes.
 
     python3 tests/bench/estimate.py --build build/release SCENE.glb:0-47x8:640x360 ...
-    python3 tests/bench/bench.py --only estimate          some of our scenes, into RESULTS.md
 """
 import argparse
 import shutil
@@ -10,11 +9,7 @@ import tempfile
 from pathlib import Path
 
 import pipeline
-from measure import Bench, Missing, figure
-
-CASES = [("S2", "0-47x8", "320x180"), ("S2", "0-47x8", "640x360"), ("S3", "1", "640x360"), ("S4", "0-47x12", "320x180"),
-         ("S4", "10", "640x360"), ("PC", "0", "256x256")]
-
+from measure import Bench
 
 def spent(bench, out, **variables):
     """(CPU seconds, bytes) of `make demo`, plan, preview and all."""
@@ -33,23 +28,6 @@ def compared(bench, scene, frames, size):
     ratios = said["cpu_s"] / cpu, said["bytes"] / size_of
     return [scene.stem, frames, size, f"{said['cpu_s']:.1f}", f"{cpu:.1f}", f"{ratios[0]:.2f}", f"{said['bytes'] / 1e6:.1f}",
             f"{size_of / 1e6:.1f}", f"{ratios[1]:.2f}"], ratios
-
-
-def estimate(bench, _):
-    """`make estimate` against a run of Makefile.example."""
-    rows, ratios, notes = [], [], []
-    for name, frames, size in [("S1", "0", "48x28")] if bench.tiny else CASES:
-        try:
-            row, both = compared(bench, bench.scene(name)[0], frames, size)
-        except Missing as reason:
-            notes.append(f"{name} left out: {reason}")
-            continue
-        rows.append(row)
-        ratios += both
-    notes.append("Final settings of Makefile.example; all processes of make.")
-    return figure("Time and disk said before a run, against what it took", "make estimate within a factor of 1.5",
-                  ["scene", "frames", "size", "CPU s said", "taken", "ratio", "MB said", "taken", "ratio"], rows,
-                  all(1 / 1.5 <= r <= 1.5 for r in ratios) if rows and not bench.tiny else None, notes)
 
 
 def main():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The shipped preset against our own path tracer in every scene: what is seen wrong, beside CPU seconds.
 
-    python3 tests/bench/bench.py --only everyscene                          all scenes at 320x180, 8 seeds, into RESULTS.md
+    python3 tests/bench/everyscene.py                                       all scenes at 320x180, 8 seeds: hours
     python3 tests/bench/everyscene.py --quick                               a dozen scenes at 160x90: some minutes
     python3 tests/bench/everyscene.py --quick --json new.json --against old.json      two programs compared
     python3 tests/bench/everyscene.py --scenes 'hut|S8' --sizes 320x180,960x540 --seeds 8
@@ -30,7 +30,7 @@ import cases
 import exr
 import pixels
 from comparing import compared
-from measure import Bench, figure, machine, percent, quantity, walk_speed
+from measure import Bench, machine, percent, quantity, walk_speed
 from references import Curve, Reference
 from seen import Seen
 from shipped import STAGES, YARDSTICK, Side, Unfinished, frames_without_camera
@@ -173,17 +173,6 @@ def summary(rows):
     return notes + [f"{row['scene']} {row['size']}: {row['refused']}" for row in rows if "refused" in row]
 
 
-def met(rows):
-    """Whether the required figures hold, at the sizes measured."""
-    good = [row for row in rows if "refused" not in row]
-    for size in {row["size"] for row in good}:
-        for kind, least in LEAST.items():
-            found = by_family(good, size, kind)
-            if found and statistics.median(v for v, _ in found) < least:
-                return False
-    return all(row["speed_up"] >= 0.9 and row["blobs"] <= BLOBS and not any(r["apart"] for r in row["bias"].values()) and not row["not_finite"] for row in good)
-
-
 def run(bench, only, sizes, seeds, patience, reference_cpu, kept, variables=None):
     """Rows of all wanted scenes; those measured before are kept in the file `kept` and replaced one by one."""
     def wanted(name):
@@ -203,16 +192,6 @@ def run(bench, only, sizes, seeds, patience, reference_cpu, kept, variables=None
             kept.parent.mkdir(parents=True, exist_ok=True)
             kept.write_text(json.dumps(of_machine | {"rows": list(rows.values())}, indent=1))
     return list(rows.values()), [rows[name] for name in measured]
-
-
-def everyscene(bench, _=None, only="", sizes=("320x180",), seeds=8, patience=600, reference_cpu=600):
-    """The preset against our path tracer in every scene."""
-    if bench.tiny:
-        only, sizes, seeds, reference_cpu = "^hut-50-inside-both$", (bench.size,), 2, 0
-    rows, _ = run(bench, only, sizes, seeds, patience, reference_cpu, bench.out / "every" / "rows.json")
-    return figure("The preset against our path tracer in every scene",
-                  "at equal seen error no scene below .9; median 10 under lamps, 4 by windows, 1.2 in the open; no blobs; no layer off by more than 1.5 %",
-                  HEADER, [line(row) for row in rows], None if bench.tiny else met(rows), summary(rows))
 
 
 def main():

@@ -6,9 +6,6 @@ import shutil
 import struct
 
 
-LEAST_ROUGHNESS = 0.1
-
-
 class Asset:
     """A glTF file in parts."""
 
@@ -29,14 +26,6 @@ class Asset:
     def has_light(self):
         return (any("KHR_lights_punctual" in node.get("extensions", {}) for node in self.gltf["nodes"])
                 or any(any(m.get("emissiveFactor", [])) for m in self.gltf.get("materials", [])))
-
-    @property
-    def hides_light(self):
-        """Lights without extent and surfaces (nearly) without roughness: what reaches a matte surface from the one by the other
-        no eye path can find."""
-        return (any("KHR_lights_punctual" in node.get("extensions", {}) for node in self.gltf["nodes"])
-                and any(m.get("pbrMetallicRoughness", {}).get("roughnessFactor", 1) < LEAST_ROUGHNESS
-                        for m in self.gltf.get("materials", [])))
 
     def copied(self, folder):
         """Another one in a new folder, beside copies of the files it names."""
@@ -136,53 +125,3 @@ def bounds(gltf):
                     v = sum(place[4 * k + i] * p[k] for k in range(3)) + place[12 + i]
                     lower[i], upper[i] = min(lower[i], v), max(upper[i], v)
     return (lower, upper) if lower[0] <= upper[0] else ([-1] * 3, [1] * 3)
-
-
-def with_sun(asset, folder):
-    """A copy with a sun from the upper front right: what it lights tells where things are. All is matte in it."""
-    copy = asset.copied(folder)
-    g = copy.gltf
-    g["materials"] = [{"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0}}]    # stores photons wherever it is lit
-    for mesh in g.get("meshes", []):
-        for primitive in mesh["primitives"]:
-            primitive["material"] = 0
-            primitive.get("extensions", {}).pop("KHR_materials_variants", None)
-    copy.sun([-0.5, -0.8, -0.6])
-    return copy.save()
-
-
-def roughened(asset, folder, least):
-    """A copy whose surfaces are rough enough for a path tracer to find lights without extent in them."""
-    copy = asset.copied(folder)
-    for material in copy.gltf["materials"]:
-        values = material.setdefault("pbrMetallicRoughness", {})
-        values["roughnessFactor"] = max(least, values.get("roughnessFactor", 1))
-    for animation in copy.gltf.get("animations", []):
-        animation["channels"] = [c for c in animation["channels"] if "roughnessFactor" not in json.dumps(c["target"])]
-    return copy.save()
-
-
-def furnished(asset, folder, lower, upper):
-    """A copy with a camera on a scene between two corners, ground and lamp if it lacks them; and the names of what was added."""
-    copy, added = asset.copied(folder), []
-    centre = [(a + b) / 2 for a, b in zip(lower, upper)]
-    r = max(1e-6, math.dist(lower, upper) / 2)
-
-    def place(*v):
-        return [c + r * x for c, x in zip(centre, v)]
-    if not asset.has_camera:
-        eye = place(0.9, 0.9, 2.9)
-        copy.gltf.setdefault("cameras", []).append({"type": "perspective", "perspective": {"yfov": 0.66, "znear": 0.001 * r}})
-        copy.node(name="AddedCamera", camera=len(copy.gltf["cameras"]) - 1, matrix=looking(eye, [c - e for c, e in zip(centre, eye)]))
-        y = lower[1] - 0.01 * r
-        x, z, side = centre[0], centre[2], 3 * r
-        copy.quad("AddedGround", [[x - side, y, z + side], [x + side, y, z + side], [x + side, y, z - side], [x - side, y, z - side]],
-                  {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}})
-        added += ["camera", "ground"]
-    if not asset.has_light:
-        # A square of side r at height 2.5 r, facing down: radiance 20 gives the ground about 3 W/m^2.
-        copy.quad("AddedLamp", [place(-0.9, 2.5, 0.4), place(-0.9, 2.5, 1.4), place(0.1, 2.5, 1.4), place(0.1, 2.5, 0.4)][::-1],
-                  {"emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
-                   "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}})
-        added.append("lamp")
-    return copy.save(), "given " + ", ".join(added)

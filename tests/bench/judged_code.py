@@ -8,11 +8,9 @@ PHOTONS = [*SCENE, "lib/material", "lib/light", "lib/photon", "formats/photons",
 PATHS = [*SCENE, "lib/material", "lib/light", "lib/render", "tools/stages/render_frame.cpp"]
 ALL = ["formats", "lib", "tools", "Makefile.example", "pipelines"]     # of parts that are not listed: whole frames
 JUDGES = {
-    "path-tracer": PATHS, "references": PATHS, "photon-rate": PHOTONS, "photon-growth": PHOTONS, "nearest": ["lib/core", "lib/density"],
-    "start": ["tools", "modules", "cmake", "CMakeLists.txt", "lib/CMakeLists.txt"], "reading": ["lib/core", "formats/photons", "formats/CMakeLists.txt"],
-    "estimate": ["lib/plan", "tools/scene-plan.cpp", "tools/stages/samples.cpp", "Makefile.example", "pipelines/stages.mk"], "million": [*SCENE, "lib/light", "tools"],
-    "loading": [*SCENE, "lib/light", "tools"], "gather-rays": [*SCENE, "lib/irradcache", "lib/gather"],
-    "hall": [*SCENE, "lib/irradcache", "lib/gather", "lib/render"]}
+    "path-tracer": PATHS, "photon-rate": PHOTONS, "nearest": ["lib/core", "lib/density"],
+    "start": ["tools", "modules", "cmake", "CMakeLists.txt", "lib/CMakeLists.txt"],
+    "reading": ["lib/core", "formats/photons", "formats/CMakeLists.txt"]}
 
 
 def changes_since(project, commit, name):

@@ -43,24 +43,11 @@ class Bench:
         """(file, frame) of a scene by its short name."""
         files = {"S1": ("S1_cornell.glb", 0), "S2": ("S2_cornell_moving.glb", 10), "S3": ("S3_indirect_room.glb", 1),
                  "S4": ("S4_atrium.glb", 10), "PC": ("cornell_classic.gltf", 0)}
-        if name in ("spot", "room"):
-            return self.made_scene(name)
         file, frame = files[name]
         for folder in (self.project / "pipelines" / "scenes", self.shared and self.shared / "made"):
             if folder and (folder / file).exists():
                 return folder / file, frame
         raise Missing(f"{file} is not here (../shared/scenes is absent)")
-
-    def made_scene(self, name):
-        """S3 with its lamp narrowed to a cone; a furnished room in which a ball moves, at frame 20."""
-        import moving_room
-        import spot_room
-        file = self.out / "tmp" / f"{name}{'-tiny' if self.tiny else ''}.glb"
-        if name == "spot":
-            spot_room.make(file)
-        elif not file.exists():
-            moving_room.make(file, 4000 if self.tiny else 200_000)
-        return file, 0 if name == "spot" else 20
 
     def third_party_halves(self, name):
         """Cycles' reference of a scene, two files."""
@@ -104,18 +91,6 @@ class Bench:
             make(name)
         return files
 
-    def path_frame(self, name, samples, seed, size=None):
-        """(frame, statistics file) of a path-traced frame with layers and ids."""
-        scene, frame = self.scene(name)
-        options = ["--frame", frame, "--size", size or self.size, "--integrator", "path", "--spp", samples, "--seed", seed,
-                   "--channels", "RGBA,layers,id"]
-
-        def make(stem):
-            self.run([self.bin / "frame-render", scene, *options, "-q", "-o", self.out / "frames" / f"{stem}.exr",
-                      "--stats", self.out / "frames" / f"{stem}.json"])
-        return self.cached("frames", f"{name}-path-{samples}-{seed}", [scene, self.bin / "frame-render", *options],
-                           [".exr", ".json"], make)
-
     def reference_halves(self, name, size=None, samples=None):
         """Our own reference, two files. Kept when tools change: unbiased is unbiased; remove the folder to renew it."""
         scene, frame = self.scene(name)
@@ -137,7 +112,7 @@ class Bench:
 
 
 def figure(title, asked, header, rows, met, notes=(), measured=""):
-    """What a function of required.py or gathering.py returns. `measured`: the value that was asked for, in a few words."""
+    """What a function of required.py returns. `measured`: the value that was asked for, in a few words."""
     return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes), "measured": measured}
 
 

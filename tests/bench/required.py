@@ -6,15 +6,9 @@ Ratios are of CPU seconds within one run, the sides alternating, medians of the 
 import math
 import os
 
-import cycles
-import demo
-import gathering
-import instructions
-import million
-from estimate import estimate
-from everyscene import everyscene
-from found import found
-from two_threads import million_threads, threads
+from cycles import walls
+from demo import demo
+from two_threads import threads
 from measure import Missing, big, figure, median, percent, quantity, timed, wait_for_quiet
 
 
@@ -92,35 +86,6 @@ def photon_rate(bench, _):
                   None if bench.tiny else ratio >= 0.5 and same, notes)
 
 
-def photon_growth(bench, _):
-    """Seconds and memory from 1M to 64M photons."""
-    scene, frame = bench.scene("S2")
-    counts = [10**5, 2 * 10**5] if bench.tiny else [10**6, 4 * 10**6, 16 * 10**6, 64 * 10**6]
-    output = bench.memory / f"tempolux-bench-{os.getpid()}.photons"
-    notes, runs = [], {count: [] for count in counts}
-    try:
-        for _ in range(1 if bench.tiny else 3):
-            for count in counts:
-                free = os.statvfs(output.parent)
-                fits = free.f_bavail * free.f_frsize > 128 * count
-                target = output if fits else "/dev/null"
-                note = f"{big(count)} went to /dev/null: {output.parent} has no room for it"
-                if not fits and note not in notes:
-                    notes.append(note)
-                runs[count].append(bench.tool("photon-trace", scene, "--frame", frame, "--photons", count, "-o", target))
-                output.unlink(missing_ok=True)
-    finally:
-        output.unlink(missing_ok=True)
-    seconds = [median([run["cpu_s"] for run in runs[count]]) / count * 1e6 for count in counts]
-    memory = [max(run["peak_memory_bytes"] for run in runs[count]) for count in counts]
-    rows = [[big(count), quantity(s * count / 1e6), quantity(s), quantity(s / seconds[0]), f"{m / 2**20:.1f}",
-             f"{m / memory[0]:.3f}"] for count, s, m in zip(counts, seconds, memory)]
-    met = all(abs(s / seconds[0] - 1) <= 0.1 and abs(m / memory[0] - 1) <= 0.1 for s, m in zip(seconds, memory))
-    return figure("Photon tracing, growth", "time linear within 10 %, peak memory constant within 10 %",
-                  ["photons", "CPU s", "CPU s per million", "over the first", "peak memory, MiB", "over the first"], rows,
-                  None if bench.tiny else met, notes)
-
-
 def nearest(bench, _):
     """Exact k-nearest against nanoflann, by tests/bench/nearest."""
     found = bench.program("nearest", *(["20000", "2000", "1"] if bench.tiny else ["1000000", "100000", "5"]))
@@ -167,39 +132,6 @@ def reading(bench, _):
                    f"checksum alone {found['crc_folded_gb_per_s']:.0f} GB/s."])
 
 
-def references(bench, _):
-    """Means and errors of the path tracer against Cycles' references."""
-    rows, notes, met = [], [], True
-    for name in ("S2", "S3", "S4"):
-        halves = bench.third_party_halves(name)
-        totals = {}
-        for samples in (16, 64, 256):
-            image, _stats = bench.path_frame(name, samples, 1)
-            totals[samples] = bench.compare(image, halves, image.with_name(image.stem + "-cycles.json"))
-        slope = math.log(totals[256]["total"]["rmse"] / totals[16]["total"]["rmse"]) / math.log(16)
-        last = totals[256]["total"]
-        good = abs(last["bias"]) <= 0.003 and abs(slope + 0.5) <= 0.05
-        met = met and good
-        rows.append([name, *(quantity(totals[s]["total"]["rmse"]) for s in totals), f"{slope:.3f}",
-                     quantity(last["reference_noise"]), percent(last["bias"], 3), percent(last["bias_standard_error"], 3)])
-        if name == "S4":
-            per_object = object_table(last["objects"])
-    result = figure("Path tracer against Cycles' references", "mean within 0.3 %; error falls as 1/sqrt(samples)",
-                    ["scene", "RMSE, 16 samples", "64", "256", "slope", "noise of the reference", "mean, ours - reference",
-                     "standard error"], rows, met, notes)
-    result["more"] = {"title": "S4 by object, 256 samples", "header": ["object", "pixels", "mean, ours - reference",
-                      "standard error", "share of squared error"], "rows": per_object}
-    return result
-
-
-def object_table(objects):
-    """Objects of 64 pixels or more, the most significant difference first; the rest is noise of few pixels."""
-    seen = [o for o in objects if not o["few_pixels"] and o["bias"] is not None]
-    seen.sort(key=lambda o: -abs(o["bias"]) / max(1e-9, o["bias_standard_error"] or 1e9))
-    return [[o["id"], o["pixels"], percent(o["bias"]), percent(o["bias_standard_error"] or 0),
-             percent(o["share_of_squared_error"], 1)] for o in seen]
-
-
-FIGURES = {"everyscene": everyscene, "path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
-           "threads": threads, "start": start} | demo.FIGURES | {"estimate": estimate, "reading": reading, "references": references,
-           "found": found} | gathering.FIGURES | million.FIGURES | cycles.FIGURES | {"million-threads": million_threads} | instructions.FIGURES
+FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "nearest": nearest, "threads": threads, "start": start,
+           "reading": reading, "demo": demo, "walls": walls}
+PEERS = ("walls",)     # parts that want another renderer

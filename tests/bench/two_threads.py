@@ -1,7 +1,7 @@
 """Two threads against one: elapsed time of the parallel phases, and what one thread does alone. Functions as in required.py."""
 import os
+from pathlib import Path
 
-import million
 from measure import figure, median, percent, quantity, wait_for_quiet
 
 
@@ -26,23 +26,6 @@ def compared(bench, tools, rounds):
     return rows, met
 
 
-def result(bench, title, tools, rounds, base):
-    quiet = True if bench.tiny else wait_for_quiet(120)
-    load = os.getloadavg()[0]
-    try:
-        rows, met = compared(bench, tools, rounds)
-    finally:
-        million.remove(base)
-    notes = [f"Load average before: {load:.1f}. Other phases: opening the scene, reading and writing files; the tree and the "
-             "compression of frames use all threads too."]
-    if not quiet:
-        notes.append("Others were using the processors: wall times say little here, run it again on a quiet machine.")
-    return figure(title, "1.8x in wall time",
-                  ["", "1 thread, wall s", "2 threads, wall s", "ratio", "CPU s of 2 threads / 1",
-                   "other phases, share of elapsed time with 2 threads"], rows,
-                  met if quiet and not bench.tiny else None, notes)
-
-
 def threads(bench, _):
     """Wall time of the parallel phases with one thread and with two."""
     scene, frame = bench.scene("S2")
@@ -58,12 +41,18 @@ def threads(bench, _):
              ("frame-render, cache", [*render, "--irradcache", cache, "--points", points]),
              ("frame-render, photons", [*render, "--photons", photon_map, "--spp", 16]),
              ("frame-render, path", [*render, "--integrator", "path", "--spp", 16])]
-    return result(bench, "Two threads against one, parallel phases", tools, bench.rounds, base)
-
-
-def million_threads(bench, _):
-    """The same on a million triangles at 960x540."""
-    file, triangles = million.scene(bench)
-    base = f"{bench.memory}/tempolux-bench-{os.getpid()}"
-    tools = million.processes(bench, file, "96x54" if bench.tiny else "960x540", base)[1:]     # scene-plan has no such phase
-    return result(bench, f"The same on {triangles} triangles, 960x540", tools, 1 if bench.tiny else 7, base)
+    quiet = bench.tiny or wait_for_quiet(120)
+    load = os.getloadavg()[0]
+    try:
+        rows, met = compared(bench, tools, bench.rounds)
+    finally:
+        for file in Path(base).parent.glob(Path(base).name + ".*"):
+            file.unlink()
+    notes = [f"Load average before: {load:.1f}. Other phases: opening the scene, reading and writing files; the tree and the "
+             "compression of frames use all threads too."]
+    if not quiet:
+        notes.append("Others were using the processors: wall times say little here, run it again on a quiet machine.")
+    return figure("Two threads against one, parallel phases", "1.8x in wall time",
+                  ["", "1 thread, wall s", "2 threads, wall s", "ratio", "CPU s of 2 threads / 1",
+                   "other phases, share of elapsed time with 2 threads"], rows,
+                  met if quiet and not bench.tiny else None, notes)
