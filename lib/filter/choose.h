@@ -20,8 +20,8 @@ struct Halves {
 /// (a + b) / 2; each is halved first, because a + b may overflow.
 inline float mean_of(float a, float b) { return a / 2 + b / 2; }
 
-/// The neighbourhood of a pixel: pixels of its kind, weighted. The weights are those of two box filters of 7 x 7
-/// pixels, one after the other, over pixels of one kind. So close pixels weigh more.
+/// The weighted neighbourhood of a pixel: two box filters of 7 x 7 pixels, one after the other, over pixels of its
+/// kind. So close pixels weigh more.
 class Neighbourhood {
  public:
   /// `kinds`, by pixel: 1 inside surfaces, 0 at edges.
@@ -49,8 +49,8 @@ float dark_of(const PicturePlanes& picture);
 
 /// The light of the whole picture, all layers together, by which errors of a layer are judged.
 struct PictureLight {
-  /// The mean of the 3 x 3 pixels around, plus a quarter of what the pixel's own light exceeds this mean by, plus
-  /// `dark` [W/m^2/sr]; channel means. So a bright pixel does not decide for those around it.
+  /// m + max(0, own - m) / 4 + dark [W/m^2/sr], where own is the light of the pixel and m the mean over 3 x 3 pixels,
+  /// both as means of the channels. The middle term keeps one bright pixel from deciding for the pixels around it.
   Plane level;
   float dark;
   /// `picture`: the sum of all layers. dark_light: dark_of() the whole picture, of which `picture` may be a part.

@@ -6,23 +6,25 @@
 
 namespace tempolux {
 
-/// A pixel whose fit rests on less than this many pixels' light is treated as a surface without light of its own.
+/// The light of a surface counts as unknown at a pixel whose fit has less weight than this many pixels.
 inline constexpr float kFewestPixels = 10;
 
-/// For each pixel p whose light the fit cannot find, estimates this light v by layer and channel. v minimises the sum
-/// over q of
-///     (radiance(q) - sum of share(n) radiance(n) - share(q) albedo(q) v)^2 / albedo(q)^2.
-/// - q: the pixels of p's surface in the window that see several surfaces and lack the same light. radiance(q): the
-/// collected radiance there.
-/// - n: q and its neighbours, where their light was fitted. share(n): the share of n's surface in q. radiance(n):
-/// their fitted radiance.
-/// - share(q): the remainder to 1.
-/// Where the weight of `fitted` is below kFewestPixels, v is the light of p's own surface and replaces its layers.
-/// Elsewhere v is the light of the surfaces that coverage.other counts, and is returned.
+/// Estimates unknown light v of a surface (radiance / albedo) from pixels in which the surface covers a part. There are
+/// two cases:
+/// - The fit at pixel p has a weight below kFewestPixels. v is the light of p's own surface; it replaces
+///   `fitted` there.
+/// - Pixel p also sees surfaces that no neighbouring centre shows (coverage.other). v is their light and is returned.
 ///
-/// If the fit has a value, it counts as its weight / `frames` pixels, for a window of `frames` frames. If it has
-/// none, the plain mean of the collected light counts as one pixel. v is not negative unless that mean is. Returns by
-/// layer the light of surfaces that no neighbouring centre shows; empty planes if no pixel has such a share.
+/// A pixel q with such a part is a mixture: radiance(q) = K(q) + s(q) albedo(q) v. K(q) is the light of the surfaces in
+/// q whose light is known, by their shares of q and their fitted light at q or its neighbours; s(q) is the remaining
+/// share. Least squares over the pixels q of p's surface within 6 pixels that have the same unknown part:
+///     v minimises  sum over q of (radiance(q) - K(q) - s(q) albedo(q) v)^2 / albedo(q)^2
+/// for each layer and channel. One more term keeps v close to a first estimate: in the first case the fit at p,
+/// which counts as weight / `frames` pixels (`frames`: frames in the window); without a fit and in the second case the
+/// mean of radiance / albedo over the pixels q, which counts as one pixel. v is negative only if this mean is.
+///
+/// half: 0 or 1, the half of the samples. Returns a plane by layer and channel; empty planes if no pixel sees such
+/// surfaces.
 std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const Light& collected,
                                const Coverage& coverage, int frames, Light& fitted);
 

@@ -32,16 +32,17 @@ struct BrightLight {
   std::array<Vec3d, 3> rotational{}, translational{};  ///< as in IrradianceRecord
 };
 
-/// Divides the light L(y) that a surface reflects into an explicit part and the rest. Of the light of irradiance point
-/// p, the share h_p is the high part (photonmap-split). Of the high part, the share
+/// Divides the light L(y) that a surface reflects at y towards x into an explicit part and a remaining part. h is the
+/// share of the high part (photonmap-split) in the light of the irradiance point that represents y, and l = |x - y|:
 ///
-///     w(l) = t^2 (3 - 2 t),  t = (l - 4 R) / (2 R) clamped to [0, 1],  R = spacing / sqrt(pi)
+///     explicit part   h w(l) L(y),   w(l) = t^2 (3 - 2 t),  t = (l - 4 R) / (2 R) clamped to [0, 1]
+///     remaining part  (1 - h w(l)) L(y), see remaining_share()
 ///
-/// is sampled explicitly at a place x at distance l = |x - y|. R is the radius of a disc with the area of one point.
-/// Rays that meet y contribute the rest, remaining_share() x L(y). Both parts use the point that represents y and the
-/// distance to y, so they add up to L(y) at each y, for any h and w. From l = 4 R on, 1/l^2 is bounded. Rays that meet
-/// y so close that they continue (IncomingRadiance) contribute all of L(y); the explicit part then counts with the
-/// probability that they do not continue.
+/// R = spacing / sqrt(pi) is the radius of a disc with the area of one point; from l = 4 R on, 1/l^2 is bounded. The
+/// explicit part is sampled like a light; gather rays that meet y contribute the remaining part. Both use the same
+/// point and the same l, so they add up to L(y), for any h and w. A ray that meets y so close that it continues
+/// (IncomingRadiance) contributes all of L(y); the explicit part is then weighed with the probability that a ray does
+/// not continue.
 ///
 /// The explicit part is an integral over surfaces of h w L cos cos / l^2. It is sampled at sites: places that are
 /// uniform by area, 16 for each point, each with the light of the point that represents it. The sites of a point form a

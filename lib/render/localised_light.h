@@ -13,10 +13,11 @@ namespace tempolux {
 
 /// Indirect irradiance [W/m^2] of a frame by localised gathering:
 ///     E = f E_y + (1 - f) E_t
-/// E_y is interpolated between records gathered for the frame. E_t is interpolated between static records: their
-/// irradiance includes the changes by movers, their gradients are those of the static irradiance, and negative sums
-/// are clamped to 0. f is the gathered share for the influence at the place, and 1 on movers. Method:
-/// docs/methods/dynamic.md. Thread-safe.
+/// - E_y: interpolated between the records that were gathered for the frame.
+/// - E_t: interpolated between the static records. Each record's irradiance is its static irradiance plus the change by
+///   movers, or 0 if this sum is negative; its gradients are of the static irradiance alone.
+/// - f: gathered_share(), which grows with the influence at the place; 1 on movers.
+/// Method: docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
   /// changes[i] belongs to static_records[i]. least_cosine: the smallest cosine between normals for which a record of
@@ -25,8 +26,9 @@ class LocalisedLight {
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 
-  /// Empty if a record that the place needs is missing. `noise` [W/m^2] also receives f n_y + (1 - f) n_t, the noise of
-  /// both sets of records (RecordStore::Interpolated::noise). Changes by movers add none to n_t.
+  /// E [W/m^2]; empty if no record of a set with a share above 0 is valid at the place. `noise` [W/m^2] receives
+  /// f n_y + (1 - f) n_t, the interpolated noise of both sets of records (RecordStore::Interpolated::noise). n_t is the
+  /// noise of the static irradiance alone.
   std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading, Rgb* noise = nullptr) const;
   /// f in [0, 1].
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;

@@ -17,7 +17,7 @@ struct Excess {
   Layer layer;
   Rgbd radiance;
   int samples;       ///< samples of the outlier's part
-  double seen2 = 0;  ///< square of what is seen of it if it stays, in allowed errors
+  double seen2 = 0;  ///< visible squared error of the bright pixel if the light stays, in units of e^2
   double light() const { return channel_mean(radiance); }
 };
 
@@ -108,14 +108,15 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Moves to `spread` what fits at box radius r, in the order of `waiting`. Light L goes to 3 x 3 cells of r x r pixels
-/// around. S is the sum of their allowed errors e, U the light that they have got before. The middle of three boxes of
-/// b = 2 r + 1 pixels holds m^2 of the light, m = (3 b^2 + 1) / (4 b^3); so n = 1 / m^2 pixels, if these are fewer,
-/// stand for the cells. An outlier fits if
-///     L <= S: alone it stays below the error of each pixel, and
-///     n L / S (2 U / S + L / S) <= seen2: the sum of ((U + L) / S)^2 - (U / S)^2 over the pixels, the squared error
-///     that it adds in allowed errors, is less than its own as a single bright pixel.
-/// Cells beyond the border have no room: blur() mirrors their light back.
+/// Moves outliers that can be spread with box radius r from `waiting` to `spread`, in their order. An outlier of light
+/// L spreads over the 3 x 3 cells of r x r pixels around it. S is the sum of the allowed errors e of these cells, U the
+/// light that they have received before, n their number of pixels. Three boxes of b = 2 r + 1 pixels leave the share
+/// m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3); if 1 / m^2 is less than n, it replaces n, and S and
+/// U are reduced by the same factor. The outlier is spread if
+///     L <= S: the light per pixel is below the allowed error, and
+///     n L / S (2 U / S + L / S) <= seen2: the squared error that the outlier adds, n ((U + L)^2 - U^2) / S^2 in units
+///     of e^2, is at most its visible squared error as a single bright pixel.
+/// Cells outside the picture add nothing to S, because blur() mirrors their light back.
 void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& errors, const std::vector<double>& got,
                   int width, int r, std::vector<Excess>& spread) {
   struct Cell {

@@ -30,7 +30,8 @@ struct BrightestSamples {
   }
 };
 
-/// Further samples of a pixel that decide about an outlier. The picture does not include them, so it stays unbiased.
+/// Further samples of a pixel, which only decide whether its bright sample is an outlier. The picture does not include
+/// them, so it stays unbiased.
 struct FurtherSamples {
   PathParts mean;
   PartCounts count;
@@ -55,14 +56,18 @@ struct SampledPixels {
 };
 
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994],
-/// docs/methods/outliers.md. Each of the two brightest samples may contribute to its pixel as much as the largest of
-/// three values: the error that the pixel may have, the light that the pixel's other samples (FurtherSamples
-/// included) show in that layer, and the light that the 24 pixels around show there. The rest may be spread: outliers
-/// come in ascending order of their light, and each takes the smallest box in which it stays below the allowed error
-/// and adds less squared error to what has been spread there than it has as a single bright pixel below white. A pixel
-/// receives light in proportion to the allowed error; a pixel without a surface (coverage 0) neither gives nor
-/// receives. An outlier that fits nowhere stays in its pixel. The sum of a layer over the picture
-/// stays the same up to rounding. Returns the share of the picture's light that was spread.
+/// docs/methods/outliers.md.
+///
+/// Each of the two brightest samples of a part keeps a contribution of at most
+///     error(radiance around) + max(mean of the pixel's other samples, mean of the 24 pixels around), in its layer;
+/// the other samples include FurtherSamples. The excess is the outlier. Outliers are spread in ascending order of their
+/// light, each over the smallest box in which its light per pixel is below the allowed error and its squared error,
+/// added to the light that was spread there before, is less than the visible squared error of the bright pixel. An
+/// outlier for which no box suffices stays in its pixel.
+///
+/// A pixel receives light in proportion to its allowed error; a pixel without a surface (coverage 0) neither gives nor
+/// receives. The sum of a layer over the picture stays the same up to rounding. Returns the share of the picture's
+/// light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
 
 /// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.

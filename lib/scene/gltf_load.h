@@ -1,4 +1,4 @@
-// lib/scene/gltf_load.h -- loads a glTF 2.0 file, .gltf or .glb; the only user of tinygltf.
+// lib/scene/gltf_load.h -- loads a glTF 2.0 file, .gltf or .glb. Its parts are gltf_*.h, private to this folder.
 #pragma once
 
 #include <cstdint>

@@ -21,11 +21,13 @@ struct TemporalOptions {
   float refresh = 0.05f;
 };
 
-/// Counts of one frame. `rays` are the gather rays of new records and all their continuations. Cells traced again, by
-/// reason: `moved`: a mover is or was in the way of the old ray; `lost`: their anchor's light is more than twice or
-/// less than half as strong as before; `unanchored`: no point represents what they hit; `near`: close hits, by
-/// rotation; `aged`: they got a new ray. `scaled` cells were scaled with their anchor's light. `kept` records had no
-/// reason to change; in `explicit_only` records only the bright points were sampled anew.
+/// Counts of one frame.
+/// - Cells that were traced again, by reason. `moved`: a mover blocks or blocked the old ray. `lost`: the light of the
+///   anchor is more than twice or less than half as strong as before. `unanchored`: no point represents the hit.
+///   `near`: close hits whose turn it was. `aged`: drawn by age, with a new ray.
+/// - `scaled`: cells whose radiance was multiplied by the ratio of their anchor's light.
+/// - `kept`: records that stayed the same. `explicit_only`: records in which only bright points were sampled anew.
+/// - `update`, `birth`: rays of kept and of new records.
 struct TemporalCounts {
   std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, near = 0, aged = 0, scaled = 0;
   std::uint64_t records = 0, kept = 0, explicit_only = 0, born = 0, fading = 0, removed = 0, deforming = 0;

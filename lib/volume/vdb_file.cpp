@@ -61,7 +61,7 @@ void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   for (std::size_t a = 0; a < 3; ++a) {
     const std::int64_t steps = (std::int64_t(low[a]) + kFarStep / 2) >> 16;  // rounded to nearest
     moved[int(a)] = double(steps * kFarStep);
-    for (VoxelBlock& block : blocks)  // numbers beyond 32 bits stay outside VoxelGrid's range, which refuses them
+    for (VoxelBlock& block : blocks)  // an index above 32 bits becomes the largest one, which VoxelGrid refuses
       block.origin[a] = std::int32_t(std::min<std::int64_t>(block.origin[a] - steps * kFarStep, INT32_MAX - 7));
   }
   world_from_index.translation = world_from_index.point(moved);

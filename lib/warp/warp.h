@@ -50,8 +50,8 @@ struct WarpOptions {
   /// decides.
   double specular_share = 0.02;
   double seen_probability = 0.75;  ///< probability above which an error counts as seen (docs/methods/vision.md)
-  /// A pixel composed of several surfaces is accepted if the keys' colours agree to this share of the pixel's light. A
-  /// key shows light near an edge, above all a contact shadow, only from a pixel's distance on.
+  /// A pixel composed of several surfaces is accepted if the keys' colours agree to this share of the pixel's light.
+  /// The whole pixels of keys do not show the light within a pixel of an edge, such as a contact shadow.
   double edge_share = 0.05;
   double slow_deg_per_s = 1.41;  ///< moving pixels slower than this are masked; see slow_speed.h
   double most_magnified = 4;     ///< largest area in target pixels of a key's pixel

@@ -23,8 +23,10 @@ struct CountedPhotons {
   formats::MeshirradFile file;  ///< its header is complete except for the filter and the history, which is the map's
   MeshOptions mesh;             ///< the widths
 };
-/// Counts the photons of a frame over all its elements; for windows, over the sides that photons reach. Adds their
-/// number to stats.
+/// Cuts the frame's surfaces into elements and counts in each the photons that arrived there. The result holds all
+/// elements of the frame; with for_windows only the sides of elements at which photons arrived. Adds the numbers of
+/// photons and of photons without a surface to the statistics. Throws InputError for a map of another scene, of a part
+/// of the light, or without a wanted kind.
 CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const Tracer& tracer);
 
 /// Writes a file and adds its number of elements to stats.
