@@ -68,7 +68,7 @@ struct PictureLight {
 ///     distribution, 1981].
 /// Each estimate is summed over colours, divided by the square of the picture's light at the pixel (PictureLight), and
 /// averaged over the neighbourhood. So errors count as they are seen: an error of a dark pixel counts more than the
-/// same error beside it in the light. The divisor is the same for all three estimates.
+/// same error of a bright pixel. The divisor is the same for all three estimates.
 ///
 /// The candidate with the least error is taken; the shares of candidates are averaged over the neighbourhood, too
 /// [Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012]. The result is w F + (1 - w)

@@ -87,8 +87,8 @@ double kernel_width(double area, double photons, double in_kernel = kPhotonsInKe
 /// Edge length of elements in standard deviations of the filter. Light is interpolated linearly between elements, so
 /// smaller ones would not show more.
 inline constexpr double kCellOfWindows = 2;
-/// Widths for surfaces of this area [m^2] at which `photons` photons arrive in all frames of a full window, `in_kernel`
-/// of them under the filter.
+/// Widths of filter and elements for windows. On surfaces of `area` [m^2], `photons` photons arrive in all frames of a
+/// full window together; the filter is so wide that it averages `in_kernel` of them.
 MeshOptions window_widths(double area, double photons, double in_kernel = kPhotonsInKernel);
 
 /// Area of all surfaces of the frame, one side [m^2].

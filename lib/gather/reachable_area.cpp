@@ -44,7 +44,8 @@ Ray Reach::across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const {
           true};
 }
 
-/// m: how far the path along the surface gets after a ray has met something.
+/// m: length of a path along the surface, up to `reach`. `ray` has met `hit`; the path continues over bends of the
+/// surface and ends at an obstacle.
 float Reach::over_bends(Ray ray, Hit hit, Vec3 normal, Vec3 outwards, float reach) const {
   float gone = hit.t;
   for (int bends = 0; bends < kMostBends && gone < reach; ++bends) {

@@ -27,7 +27,7 @@ class BilinearWarp {
   /// so that the density is never 0.
   explicit BilinearWarp(std::array<double, 4> values);
   Vec2 operator()(Vec2 u) const;
-  double density(Vec2 u) const;  ///< of the mapped points at u; the mean is 1
+  double density(Vec2 u) const;  ///< density of the mapped points at `u`; its mean over the square is 1
 
  private:
   std::array<double, 4> w_;

@@ -26,9 +26,9 @@ inline Rgb transmittance(const MaterialValues& m, float distance) {
 /// solid, a crossed back leaves it. Solids are identified by their materials; crossing a back of another material
 /// leaves the innermost solid. Only the innermost solid absorbs. Up to kDeepest solids may be nested; if there are
 /// more, the outermost is forgotten.
-/// A path may start inside a solid. This shows when it meets a back without having entered: the last distance is then
-/// inside. A path that meets nothing more counts as outside of all solids, so an open solid does not absorb light
-/// that escapes.
+/// A path may start inside a solid. If it meets a back without having entered a solid, the distance since its last hit
+/// counts as inside that solid. A path that leaves the scene without a further hit counts as outside of all solids, so
+/// an open solid does not absorb light that escapes.
 class Inside {
  public:
   bool any() const { return count_ > 0; }

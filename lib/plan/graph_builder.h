@@ -72,7 +72,7 @@ std::string with_channels(std::string channels, const std::string& more);
 std::string joined(const std::vector<int>& frames);
 
 // light_files.cpp; `lit` is the first frame of a state of light.
-/// Adds what lights a frame as options.
+/// Adds options that name the files with the frame's light.
 void add_light(GraphBuilder& g, int frame, Command& command);
 /// The photon map of a state of light: the global map, or the dynamic map.
 std::string photon_map(GraphBuilder& g, int lit);

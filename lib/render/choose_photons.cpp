@@ -7,7 +7,7 @@ namespace tempolux {
 namespace {
 
 constexpr double kPathsAPhoton = 70;
-/// Factor at which photons cost about as much as all other stages: 16 times a quarter of a second.
+/// With this many times the usual photons, photons cost about as much as all other stages: 16 x .25 s.
 constexpr double kMost = 16;
 
 }  // namespace

@@ -31,10 +31,10 @@ struct SeenAround {
 ///
 /// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d of visible surfaces
 /// nor than half the height h of the picture at that distance; directions have steps of a third of the angle of view.
-/// The cell's cameras stand in the middles of those of the cube's eight parts that the camera itself sees; their
-/// pictures are half as wide again. Each follows 24 x 14 stratified positions, through mirrors and glass
-/// (seen_through), and then one and two cosine-distributed bounces. Only the ratio of `width` and `height`, those of
-/// the picture, counts.
+/// The cell has up to eight cameras: one at the centre of each octant of the cube, if the given camera sees this
+/// centre. Their pictures are half as wide again. Each camera sends rays through 24 x 14 stratified positions of its
+/// picture, which pass mirrors and glass (seen_through) and then make up to two cosine-distributed bounces. Only the
+/// ratio of `width` and `height` of the picture counts.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
 /// Spheres around cells of an octree. Cell sizes are powers of two and corners their multiples, so that a place which

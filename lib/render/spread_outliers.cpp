@@ -230,8 +230,8 @@ std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<L
   return all;
 }
 
-/// Sets `seen2` of each outlier: the square of its light below white over the error that its pixel may have then. White
-/// is where evaluation puts it: the median pixel has .18 of it.
+/// Sets `seen2` of each outlier: (light that it adds below white / allowed error at the pixel's radiance)^2. White is
+/// the median pixel's radiance divided by .18, as where seen errors are measured.
 void note_what_is_seen(const SampledPixels& samples, const std::vector<Layers>& pixels, std::vector<Excess>& outliers) {
   std::vector<double> radiances;
   for (std::size_t p = 0; p < pixels.size(); ++p)

@@ -100,8 +100,8 @@ float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, fl
     const float before = transmittance;
     transmittance *= std::max(0.0f, 1 - media.extinction(origin + direction * t.distance) / t.majorant);
     if (transmittance >= kRouletteBelow) continue;
-    // Above the threshold the estimate becomes a tenth with probability transmittance / threshold; once below, it is
-    // reduced by this step's share only.
+    // The path continues with probability transmittance / threshold, and the estimate becomes the threshold: a tenth at
+    // the first time, then the estimate before this step.
     const float threshold = std::min(before, kRouletteBelow);
     if (!(numbers.accept * threshold < transmittance)) return 0;
     transmittance = threshold;
