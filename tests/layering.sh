@@ -39,10 +39,15 @@ for folder in lib/*/; do
   case " lib/core/ lib/image/ lib/volume/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/transport/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/temporal/ lib/render/ lib/compose/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in
     *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
 done
-# each third-party header in one file of the tree (tests and benchmarks apart; JSON and CLI: one layer)
-for header in embree3/ OpenEXR/ png.h jpeglib.h tiny_gltf draco/ meshoptimizer webp/ seccomp.h fftw3 xxhash; do
+# each third-party header in one file of the tree (tests and benchmarks apart)
+for header in embree3/ OpenEXR/ OpenImageIO/ openvdb/ png.h jpeglib.h tiny_gltf nlohmann/json.hpp CLI/ draco/ meshoptimizer webp/ seccomp.h fftw3 xxhash; do
   files=$(grep -rlE --include='*.h' --include='*.cpp' "^ *#include [<\"]$header" formats lib tools modules 2>/dev/null)
   [ "$(echo "$files" | grep -c .)" -le 1 ] || { echo "$header is included by more than one file:" $files; bad=1; }
+done
+# headers that include a library are private to their folder
+for header in lib/trace/trees.h lib/scene/gltf_model.h; do
+  others=$(grep -rlF --include='*.h' --include='*.cpp' "\"$header\"" lib tools modules | grep -v "^${header%/*}/")
+  [ -z "$others" ] || { echo "$header is private to ${header%/*}, but included by:" $others; bad=1; }
 done
 tbb=$(grep -rlE '^ *#include [<"]tbb/' lib tools formats 2>/dev/null | grep -v '^lib/core/'); [ -z "$tbb" ] || { echo "tbb outside lib/core: $tbb"; bad=1; }
 if grep -rnE '\b(exit|abort|getenv)\(' lib formats --include='*.cpp' --include='*.h' | grep -v 'check.h'; then echo '^ lib and formats call no exit and read no environment'; bad=1; fi

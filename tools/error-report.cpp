@@ -5,7 +5,6 @@
 //
 // Writes report.md, error-SCENE.svg, error-SCENE.png and index.html into the folder. Runs are
 // pairs of stats (formats/stats) and comparison (formats/comparison); manifest: formats/report/report.md.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include "formats/error.h"
 #include "lib/report/gnuplot.h"
 #include "lib/report/report_page.h"
+#include "tools/common/cli.h"
 #include "tools/common/tool_main.h"
 
 using namespace tempolux;

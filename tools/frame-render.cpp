@@ -6,8 +6,7 @@
 //                  -o f.0012.exr
 //
 // Channels and attributes: formats/frames/frames.md.
-#include <CLI/CLI.hpp>
-
+#include "tools/common/cli.h"
 #include "tools/common/option_words.h"
 #include "tools/stages/render_frame.h"
 

@@ -10,12 +10,12 @@
 //                     -o s.####.radsamples --cache c.####.irradcache
 //
 // Formats: formats/radsamples/radsamples.md, formats/irradcache/irradcache.md.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
 #include "formats/error.h"
+#include "tools/common/cli.h"
 #include "tools/stages/gather_frames.h"
 #include "tools/stages/photon_windows.h"
 

@@ -7,7 +7,6 @@
 //     ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr
 //
 // Method: docs/methods/warping.md. Formats: formats/flow/flow.md, formats/mask/mask.md.
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "lib/render/frame_renderer.h"
 #include "lib/warp/slow_speed.h"
 #include "lib/warp/warped_image.h"
+#include "tools/common/cli.h"
 #include "tools/common/keep_memory.h"
 #include "tools/stages/warp_frames.h"
 

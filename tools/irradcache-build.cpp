@@ -9,13 +9,13 @@
 //     irradcache-build         hall.glb --frames 0-47 --photons p.photons --size 960x540 -o c.irradcache
 //
 // Formats: formats/irradpoints/irradpoints.md, formats/irradcache/irradcache.md.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
+#include "tools/common/cli.h"
 #include "tools/common/tool_main.h"
 #include "tools/stages/build_records.h"
 #include "tools/stages/importance.h"

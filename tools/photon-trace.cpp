@@ -8,11 +8,11 @@
 //                  -o p.####.photons
 //
 // Formats: formats/photons/photons.md, formats/paths/paths.md. Method: docs/methods/dynamic.md.
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
+#include "tools/common/cli.h"
 #include "tools/stages/trace_photons.h"
 
 using namespace tempolux;

@@ -4,8 +4,7 @@
 //     photon-trace room.glb -o - | photonmap-split - --low low.photons --high high.photons --energy 8
 //
 // Method: docs/methods/split.md. Formats: formats/photons/photons.md, formats/irradpoints/irradpoints.md.
-#include <CLI/CLI.hpp>
-
+#include "tools/common/cli.h"
 #include "tools/stages/split_files.h"
 
 using namespace tempolux;

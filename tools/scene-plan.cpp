@@ -4,95 +4,26 @@
 //
 // Writes out/plan.json, out/plan.mk and out/state/*. If scene, options and programs have not changed, it only finds
 // that out and writes nothing. Format: formats/plan/plan.md.
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <map>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "formats/error.h"
 #include "formats/hash.h"
 #include "lib/core/parallel.h"
 #include "lib/plan/estimate.h"
+#include "tools/common/cli.h"
 #include "tools/common/option_words.h"
 #include "tools/common/percent_option.h"
-#include "tools/stages/measured.h"
+#include "tools/stages/plan_range.h"
 #include "tools/stages/samples.h"
-#include "tools/stages/planning.h"
 
 using namespace tempolux;
 
 namespace {
 
-struct Options {
-  std::string scene, folder = "out", estimate, quality = "final", method = "frames", filter = "auto", report, measured;
-  std::vector<std::string> recipes, words;
-  double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
-  Wish wish;
-};
-
-/// The wish in full, its words checked.
-Wish wish_of(tools::Tool& tool, const Options& options) {
-  Wish wish = options.wish;
-  wish.quality = *named<Quality>(kQualities, options.quality);
-  wish.method = *named<FrameMethod>(kFrameMethods, options.method);
-  wish.filter = options.filter == "auto" ? Wish::kAutoFilter : options.filter == "none" ? 0 : std::stoi(options.filter);
-  wish.camera = tool.common().camera;
-  // Collects the shared options that are not part of the scene's states.
-  for (const CLI::Option* option : tool.app().get_options())
-    if (const auto& shared = tools::kSharedWords; std::ranges::find(shared, option->get_name()) != shared.end())
-      for (const std::string& word : option->results()) wish.common += option->get_name() + ' ' + word + '\n';
-  for (const std::string& one : options.words) {
-    const std::size_t colon = one.find(':');
-    const std::map<std::string, std::string*> stages{
-        {"points", &wish.points}, {"records", &wish.records}, {"pixels", &wish.pixels}, {"smoke", &wish.smoke_words}};
-    const auto stage = stages.find(one.substr(0, colon));
-    if (stage == stages.end() || colon == std::string::npos)
-      throw InputError("--words '" + one + "': write STAGE:OPTIONS; the stages are points, records, pixels, smoke");
-    *stage->second = one.substr(colon + 1);
-    tools::check_words("--words " + stage->first, *stage->second);
-  }
-  for (const auto& [name, words] : {std::pair{"--channels", wish.channels},
-                                    {"--update", wish.update},
-                                    {"--refine", wish.refine},
-                                    {"--strategy", wish.strategy}})
-    tools::check_words(name, words);
-  const std::vector<int>& frames = tool.common().frames;
-  if (options.report == "ends") wish.report = {frames.front(), frames.back()};
-  else if (!options.report.empty()) wish.report = tools::parse_frames(options.report);
-  for (const int frame : wish.report)
-    if (std::ranges::find(frames, frame) == frames.end())
-      throw InputError("--report " + options.report + ": frame " + std::to_string(frame) + " is none of --frames");
-  if (!options.measured.empty()) {
-    if (wish.method != FrameMethod::preview || wish.photons > 0)
-      throw InputError("--measured: photons of --method preview; leave it out with another method or with --photons");
-    wish.measured = tools::measured_photons(options.measured, options.share < 0 ? wish.seen() : options.share);
-  }
-  return with_preset(wish);
-}
-
-void plan_range(tools::Tool& tool, const Options& options, const std::string& arguments) {
-  const Wish wish = wish_of(tool, options);
-  std::optional<tools::PlanFolder> folder;
-  if (options.estimate.empty()) folder.emplace(options.folder);
-  if (folder && folder->up_to_date(arguments)) return tool.say(options.folder + ": nothing has changed");
-  tool.stats().phase("load");
-  tools::Planner planner(tool, options.scene, wish, options.recipes, folder ? &*folder : nullptr);
-  tool.stats().phase("write");
-  if (!folder) return tools::write_samples(options.estimate, planner, wish);
-  if (!options.measured.empty()) folder->inputs().hash_of(options.measured);
-  folder->write(planner.planned(), planner.tool_hash(), arguments, tool.history_line());
-  for (const PlannedSegment& segment : planner.planned().plan.segments)
-    for (const Reason& reason : segment.decisions.reasons)
-      tool.say("frames " + std::to_string(segment.first) + "-" + std::to_string(segment.last) + ": " + reason.stage +
-               ": " + reason.because);
-}
-
 /// Options that choose the methods.
-void add_methods(tools::Tool& tool, Options& options) {
+void add_methods(tools::Tool& tool, tools::PlanOptions& options) {
   Wish& wish = options.wish;
   tool.choice_option("--quality", options.quality, {"draft", "final"},
                      "draft: more noise, in less than half of the time; final");
@@ -117,7 +48,7 @@ void add_methods(tools::Tool& tool, Options& options) {
 }
 
 /// Options that replace figures of the preset.
-void add_figures(tools::Tool& tool, Options& options) {
+void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   CLI::App& app = tool.app();
   Wish& wish = options.wish;
   const auto text = [&](const char* name, std::string& value, const char* type, const char* help) {
@@ -164,7 +95,7 @@ int main(int argc, char** argv) {
   tools::Tool tool("scene-plan",
                    "Decide which stages a range of frames needs, and from which files each picture is made.", argc,
                    argv);
-  Options options;
+  tools::PlanOptions options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; without one --estimate prints");
   tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")
@@ -189,7 +120,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
   return tool.run([&] {
     if (options.scene.empty() && options.estimate.empty()) throw InputError("scene is required; see scene-plan --help");
-    if (!options.scene.empty()) plan_range(tool, options, hash_hex(arguments));
+    if (!options.scene.empty()) tools::plan_range(tool, options, hash_hex(arguments));
     else std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
     return int(tools::exit_ok);
   });

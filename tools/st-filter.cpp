@@ -6,9 +6,9 @@
 //
 // Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How:
 // docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
-#include <CLI/CLI.hpp>
 #include <string_view>
 
+#include "tools/common/cli.h"
 #include "tools/common/keep_memory.h"
 #include "tools/stages/filter_frames.h"
 #include "tools/stages/filter_mesh.h"

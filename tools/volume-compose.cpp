@@ -6,7 +6,6 @@
 //     volume-compose room.glb --frames 0-23 --photons p.####.photons --base f.####.exr -o s.####.exr
 //
 // Method: docs/methods/volume_photons.md.
-#include <CLI/CLI.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "lib/gather/final_gather.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
+#include "tools/common/cli.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
 #include "tools/stages/gather_input.h"

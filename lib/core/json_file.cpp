@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 
 namespace tempolux {
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/json.h"
 
 namespace tempolux {
 

@@ -1,7 +1,7 @@
 // lib/report/comparison_json.cpp -- writes comparison.md's JSON.
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "lib/core/json.h"
 #include "lib/report/comparison.h"
 
 namespace tempolux {

@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "lib/core/json_file.h"
 
 namespace tempolux {

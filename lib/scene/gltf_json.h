@@ -1,10 +1,11 @@
 // lib/scene/gltf_json.h -- parses the JSON of a glTF file and checks its types; private to the gate.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <string_view>
+
+#include "lib/core/json.h"
 
 namespace tempolux::gltf {
 

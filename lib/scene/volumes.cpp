@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "lib/volume/vdb_file.h"
 
 namespace tempolux {

@@ -1,11 +1,11 @@
 // tools/common/manual.cpp -- writes options as Markdown, and bash completion.
 #include "tools/common/manual.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "tools/common/cli.h"
 #include "tools/common/option_words.h"
 
 namespace tempolux::tools {

@@ -1,9 +1,10 @@
 // tools/common/option_words.h -- names of values and limits of numbers, in --help and in the man page.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <limits>
 #include <string>
+
+#include "tools/common/cli.h"
 
 namespace tempolux::tools {
 

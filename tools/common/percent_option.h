@@ -1,10 +1,11 @@
 // tools/common/percent_option.h -- limits given as a number, or as a share of pixels that ends in "%".
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <utility>
+
+#include "tools/common/cli.h"
 
 namespace tempolux::tools {
 

@@ -9,8 +9,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <vector>
+
+#include "lib/core/json.h"
 
 namespace tempolux::tools {
 namespace {

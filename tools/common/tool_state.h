@@ -1,7 +1,6 @@
 // tools/common/tool_state.h -- the members of Tool; for tool_main.cpp, options.cpp and history.cpp only.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/cli.h"
 #include "tools/common/tool_main.h"
 
 namespace tempolux::tools {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "tools/common/file_head.h"
 
 namespace tempolux::tools {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <functional>
 #include <initializer_list>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "formats/identity.h"
 #include "formats/record_statistics.h"
+#include "lib/core/json_file.h"
 #include "tools/common/output.h"
 
 namespace tempolux {

@@ -1,10 +1,10 @@
 // tools/info/info_images.cpp -- tempolux-info on images: facts, difference, pictures.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "lib/image/any_io.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"

@@ -1,9 +1,9 @@
 // tools/info/info_json.cpp -- tempolux-info on JSON files: statistics, comparisons, plans.
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/json.h"
 #include "lib/core/json_file.h"
 #include "tools/info/info_facts.h"
 

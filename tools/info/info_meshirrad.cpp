@@ -1,10 +1,10 @@
 // tools/info/info_meshirrad.cpp -- tempolux-info on .meshirrad: facts.
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/meshirrad/meshirrad.h"
 #include "formats/record_statistics.h"
+#include "lib/core/json.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {

@@ -1,9 +1,9 @@
 // tools/info/info_paths.cpp -- tempolux-info on .paths: facts.
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/paths/paths.h"
+#include "lib/core/json.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {

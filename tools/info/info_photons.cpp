@@ -2,10 +2,10 @@
 #include <array>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/photons/summary.h"
+#include "lib/core/json.h"
 #include "lib/image/statistics.h"
 #include "tools/info/info_facts.h"
 #include "tools/info/point_table.h"

@@ -1,11 +1,11 @@
 // tools/info/info_radsamples.cpp -- tempolux-info on .radsamples: facts.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/radsamples/radsamples.h"
+#include "lib/core/json.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {

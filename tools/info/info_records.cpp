@@ -1,11 +1,11 @@
 // tools/info/info_records.cpp -- tempolux-info on .irradpoints and .irradcache: facts, export.
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/irradcache/summary.h"
 #include "formats/irradpoints/summary.h"
+#include "lib/core/json.h"
 #include "lib/image/statistics.h"
 #include "tools/info/info_facts.h"
 #include "tools/info/point_table.h"

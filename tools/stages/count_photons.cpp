@@ -1,12 +1,12 @@
 #include "tools/stages/count_photons.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "lib/gather/gather_points.h"
 #include "lib/temporal/light_jumps.h"
+#include "tools/common/cli.h"
 
 namespace tempolux::tools {
 namespace {

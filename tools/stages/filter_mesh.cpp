@@ -1,10 +1,10 @@
 #include "tools/stages/filter_mesh.h"
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/text_header.h"
+#include "tools/common/cli.h"
 #include "tools/stages/count_photons.h"
 
 namespace tempolux::tools {

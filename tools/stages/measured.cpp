@@ -1,9 +1,9 @@
 #include "tools/stages/measured.h"
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "lib/core/json_file.h"
 
 namespace tempolux::tools {

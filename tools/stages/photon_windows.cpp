@@ -1,6 +1,5 @@
 #include "tools/stages/photon_windows.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +9,7 @@
 
 #include "formats/text_header.h"
 #include "lib/temporal/photon_windows.h"
+#include "tools/common/cli.h"
 #include "tools/stages/count_photons.h"
 
 namespace tempolux::tools {

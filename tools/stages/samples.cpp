@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "lib/core/json_file.h"
 #include "lib/plan/graph_builder.h"
 

@@ -1,6 +1,5 @@
 #include "tools/stages/trace_photons.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "lib/photon/photon_map.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/static_scene.h"
+#include "tools/common/cli.h"
 
 namespace tempolux::tools {
 namespace {

@@ -1,6 +1,5 @@
 #include "tools/stages/update_photons.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +10,7 @@
 #include "lib/photon/photon_ledger.h"
 #include "lib/photon/photon_refine.h"
 #include "tools/common/arguments.h"
+#include "tools/common/cli.h"
 #include "tools/common/option_words.h"
 
 namespace tempolux::tools {

@@ -1,10 +1,9 @@
 // tools/stages/vision_options.cpp -- aqm-compare's options of viewer and display.
 #include "tools/stages/vision_options.h"
 
-#include <CLI/CLI.hpp>
-
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
+#include "tools/common/cli.h"
 #include "tools/common/option_words.h"
 
 namespace tempolux::tools {

@@ -1,0 +1,24 @@
+// tools/stages/plan_range.h -- scene-plan: turns the options into a wish, and plans a range of frames.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/plan/decisions.h"
+#include "tools/common/tool_main.h"
+
+namespace tempolux::tools {
+
+struct PlanOptions {
+  std::string scene, folder = "out", estimate, quality = "final", method = "frames", filter = "auto", report, measured;
+  std::vector<std::string> recipes, words;
+  double share = -1;  ///< of pixels in which a viewer may see errors; below 0: the preset's
+  Wish wish;
+};
+
+/// Plans the frames of the run and writes the plan's folder, or the samples of an estimate. `arguments`: a hash of the
+/// command; a folder whose plan was made by the same command from unchanged inputs stays as it is. Throws InputError
+/// for options that contradict each other.
+void plan_range(Tool& tool, const PlanOptions& options, const std::string& arguments);
+
+}  // namespace tempolux::tools
