@@ -22,7 +22,8 @@ constexpr float kThin = 64;
 constexpr float kLift = 1e-4f;    ///< share of a radius: largest error at the rim from the rounding of stored normals
 constexpr int kMostHalvings = 6;  ///< of a footprint's radius, if hardly any of the footprint is surface
 constexpr std::size_t kLeavesAtOnce = 16;
-/// Probes that must arrive if a footprint is not a whole disc. Their noise equals that of one photon among k.
+/// Probes that must arrive where a footprint is not a whole disc. The relative error 1 / sqrt(16) of the area of one
+/// footprint is small compared with the noise of the photons, because many footprints light a place.
 constexpr int kAreaProbes = 16;
 
 }  // namespace

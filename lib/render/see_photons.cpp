@@ -17,7 +17,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture over which the mean square is taken
+constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture for the mean square of one kind of light
 constexpr std::size_t kLooks = 4096;      ///< camera rays that follow mirrors and glass
 
 /// A photon's contribution to the mean radiance of the picture, and its position in the picture.
