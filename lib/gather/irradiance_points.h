@@ -19,8 +19,8 @@ namespace tempolux {
 
 struct PointOptions {
   std::uint64_t seed = 0;
-  /// Number per side of all static surfaces together, or of all surfaces if none is static. Movers get as many per
-  /// area, and every surface gets at least one.
+  /// Number of points on the front sides of all static surfaces together (all surfaces if none is static); the back
+  /// sides get as many. Movers get as many per area, and every surface gets at least one.
   std::uint32_t count = 20000;
   /// Spheres around what cameras see, in scene space: points lie in these only. Empty: on all surfaces.
   std::vector<AimSphere> seen = {};
