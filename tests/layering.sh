@@ -51,6 +51,10 @@ for header in lib/trace/trees.h lib/scene/gltf_model.h; do
 done
 tbb=$(grep -rlE '^ *#include [<"]tbb/' lib tools formats 2>/dev/null | grep -v '^lib/core/'); [ -z "$tbb" ] || { echo "tbb outside lib/core: $tbb"; bad=1; }
 if grep -rnE '\b(exit|abort|getenv)\(' lib formats --include='*.cpp' --include='*.h' | grep -v 'check.h'; then echo '^ lib and formats call no exit and read no environment'; bad=1; fi
+# a main declares options and calls tools/stages
+for tool in tools/*.cpp; do
+  [ "$(wc -l < "$tool")" -le 150 ] || { echo "$tool: more than 150 lines; move work to tools/stages"; bad=1; }
+done
 # lengths come from footprints, from what is seen near by and from the photons' spacing, never from the size of the scene
 if grep -rnE 'diagonal\(|frame\(?\)?\.bounds' lib/density lib/gather lib/irradcache lib/photon lib/render --include='*.cpp' --include='*.h' |
   grep -v 'reachable_area.cpp.*const Box3& bounds'; then echo '^ a length of the scene'; bad=1; fi   # there: rounding of coordinates
