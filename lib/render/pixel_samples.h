@@ -93,7 +93,7 @@ inline void join(const StoredNoiseT<double>& sum, int first, int count, StoredNo
   mean = {joined(mean.caustic, sum.caustic), joined(mean.indirect, sum.indirect)};
 }
 
-/// The same for samples that have one of each part.
+/// The same for a sum by parts, of `count` samples each: a layer is the sum of its three parts.
 inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   LayersT<double> all = sum.own;
   for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += sum.lit.value[l] + sum.onward.value[l];
