@@ -203,7 +203,7 @@ def page(kept, command):
             "`?`: the reference's own noise is more than a tenth of the squared error. One seed of one scene tells a gain to 10 or 20 %: CPU time on a busy machine, the few\n"
             "pixels that hold most of the error. Where records tell the indirect light their error is a tenth of the picture's by design (docs/pixels.md), so that ideas of records\n"
             "show here as far as they cost time or are wrong: what keeps light from leaking or from being missed is judged by tests whose answers are known\n"
-            "(tests/lib/gather, tests/bench/walls.py) and stays whatever its line says.\n")
+            "(tests/lib/gather) and stays whatever its line says.\n")
 
 
 def main():

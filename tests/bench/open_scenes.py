@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Scenes that closed rooms of a few metres do not stand for: open grounds, a street, a thin wall, leaves, many lamps.
 
-    python3 tests/bench/open_scenes.py FOLDER       writes them all as .glb and prints what each is rendered with
+    python3 tests/bench/open_scenes.py FOLDER [NAME...]    writes them as .glb, all or some; prints the options of each
 
 hut-R: a hut of 4 m with a door and a window on a ground that reaches R metres to each side, R = 5, 50, 500, 5000. Two
 cameras, `inside` and `outside`; with a sun (hut-R-sun.glb) or without (hut-R-sky.glb), under the sky of SKY.
@@ -218,7 +218,9 @@ def make(folder, wanted=lambda name: True):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    for name, (file, camera, options) in make(parser.parse_args().folder).items():
+    parser.add_argument("names", nargs="*", help="these scenes alone [all]")
+    args = parser.parse_args()
+    for name, (file, camera, options) in make(args.folder, lambda name: not args.names or name in args.names).items():
         print(name, file, "--camera", camera, *options)
 
 
