@@ -126,7 +126,7 @@ double EnvironmentLight::probability(std::uint32_t row, std::uint32_t column) co
 }
 
 /// A cap is uniform over its area, all else bilinear over longitude and latitude.
-double EnvironmentLight::pdf(const Place& place, const Luminances& at, double sin_polar) const {
+double EnvironmentLight::pdf_solid_angle(const Place& place, const Luminances& at, double sin_polar) const {
   const double of_cell = probability(place.row, place.column);
   if (!(of_cell > 0)) return 0;
   const double a = polar(place.row), b = polar(place.row + 1), width = 2 * kPiD / width_;
@@ -170,13 +170,13 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   const double sine = std::sin(angle);
   sample.direction = Vec3(Vec3d{std::sin(longitude) * sine, std::cos(angle), std::cos(longitude) * sine});
   sample.radiance = pixels.radiance(place.x, place.y);
-  sample.pdf_solid_angle = pdf(place, at, sine);
+  sample.pdf_solid_angle = pdf_solid_angle(place, at, sine);
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY;
 }
 
 double EnvironmentLight::pdf_solid_angle(const Place& place, Vec3 direction) const {
   const Vec3d d(direction);
-  return pdf(place, luminances(corners(place.row, place.column)), std::sqrt(d.x * d.x + d.z * d.z));
+  return pdf_solid_angle(place, luminances(corners(place.row, place.column)), std::sqrt(d.x * d.x + d.z * d.z));
 }
 
 }  // namespace tempolux

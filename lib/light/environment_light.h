@@ -60,7 +60,7 @@ class EnvironmentLight {
   double polar(std::uint32_t row) const;  ///< angle from +Y of a row's upper edge
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
   double probability(std::uint32_t row, std::uint32_t column) const;
-  double pdf(const Place& place, const Luminances& at, double sin_polar) const;
+  double pdf_solid_angle(const Place& place, const Luminances& at, double sin_polar) const;
   std::uint32_t row_for(double u1) const;
   std::uint32_t column_for(std::uint32_t row, double u2) const;
   void integrate();

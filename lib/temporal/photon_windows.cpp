@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  ///< elements that one task processes
 constexpr int kRegions = 3;           ///< regions whose tests can reject constant light: element, kernel, ring
-/// Expected photons, counted as photons of equal power, that a block needs to be tested: with fewer, the tails of its
+/// Expected photons, counted as photons of equal flux, that a block needs to be tested: with fewer, the tails of its
 /// distribution are not Gaussian.
 constexpr double kPhotonsInBlock = 8;
 
@@ -58,7 +58,7 @@ void each_step(int reach, const Visit& visit) {
   }
 }
 
-/// Number of tests for a region of `rate` photons of equal power per frame while a window grows to its full size.
+/// Number of tests for a region of `rate` photons of equal flux per frame while a window grows to its full size.
 int tests_of(double rate, const Added& most, int reach) {
   int tests = 0;
   each_step(reach, [&](int from, int to) {

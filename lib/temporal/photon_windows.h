@@ -37,7 +37,7 @@ struct HitBlock {
   double photons = 0;
   double flux = 0;     ///< sum of the photons' luminance
   double squares = 0;  ///< sum of their squared luminance: the variance of `flux` (compound Poisson)
-  /// Number of photons of equal power that would scatter as much: at most `photons`.
+  /// Number of photons of equal flux that would scatter as much: at most `photons`.
   double equal_photons() const { return squares > 0 ? flux * flux / squares : 0; }
   HitBlock& operator+=(const HitBlock& o) {
     photons += o.photons;
@@ -54,7 +54,7 @@ struct HitBlock {
 /// How much the light of the added frames differs from the light of the old ones, in standard deviations. If the
 /// light is equal, each photon of both falls into an added frame with probability p = added / (old + added). With S
 /// the flux of both and Q the sum of squares of both, the flux of the added frames has the mean p S, the variance p
-/// (1 - p) Q, and, exactly for photons of equal power, the skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S. The
+/// (1 - p) Q, and, exactly for photons of equal flux, the skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S. The
 /// deviation z is corrected to z - g (z^2 - 1) / 6, which is nearly Gaussian (Cornish and Fisher). 0 if there are no
 /// photons.
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames);
