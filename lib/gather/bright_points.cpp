@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/irradiance_points.h"
@@ -199,6 +200,9 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
   const Vec3 normal = at.normal;
   const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
   const Media* const media = tracer_.frame().media.get();
+  std::optional<Frame> frame;
+  Bsdf::Direction eye;
+  if (at.seen_from) eye = at.coat->along(frame.emplace(normal).to_local(*at.seen_from));
   BrightLight light;
   if (sites_of_.empty()) return light;
   const LightTree::Start start = tree_->start(place.position, normal);
@@ -213,7 +217,9 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const double distance = length(d), here = dot(n, d), there = -dot(m, d);  // cosines times the distance
     const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
     if (!(here > 0 && there > 0 && dot(wi, geometric) > 0)) continue;
-    const float part = share(site, float(distance), at.reads_close);
+    const Vec3 wi_local = frame ? frame->to_local(wi) : Vec3{};
+    const float width = frame ? lobe_width(*at.coat, wi_local, eye) : 1;
+    const float part = share(site, float(distance) * width, at.reads_close);
     if (!(part > 0)) continue;
     ++counts.shadow_rays;
     const Ray shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);
@@ -222,11 +228,14 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     if (media) [[unlikely]]
       seen *= double(media_transmittance(*media, shadow, {random, number, way_shadow}));
     const double d2 = distance * distance, cosine = here / distance;
-    const double arrival = at.coat ? double(at.coat->arrival_weight(float(cosine))) : 1;
+    const Rgb arrival = frame     ? at.coat->eval_specular(at.coat->along(wi_local), eye)
+                        : at.coat ? Rgb(at.coat->arrival_weight(float(cosine)))
+                                  : Rgb(1.0f);
     const Rgbd power =
-        seen * (double(site.area) * double(sites.count) * arrival / (chosen.probability * double(samples)));
+        seen * Rgbd(arrival) * (double(site.area) * double(sites.count) / (chosen.probability * double(samples)));
     const Rgbd e = power * (here * there / (d2 * d2));
     light.irradiance += e;
+    if (frame) continue;
     // E = P (n d) (-m d) / d^4 with d = y - x, so dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4,
     // projected onto the plane.
     const Vec3d along = (m - n * dot(m, n)) * here + (d - n * here) * (4 * here * there / d2);

@@ -1,7 +1,9 @@
 // lib/gather/bright_points.h -- bright irradiance points, sampled explicitly as lights are (docs/methods/split.md).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -78,6 +80,13 @@ class BrightPoints {
                                                                          : 1.0f;
   }
 
+  /// sqrt(1 / (pi p)), at most 1, where p [1/sr] is the density of wi in the lobes S: the width of these lobes around
+  /// wi in units of the width of a Lambert lobe around its normal. 0 for mirrors and glass. Rays of a narrow lobe that
+  /// sees a spot meet it often, so the spot's light is sampled explicitly from a distance that is larger by 1 / width.
+  static float lobe_width(const Bsdf& bsdf, Vec3 wi, const Bsdf::Direction& wo) {
+    return std::min(1.0f, 1 / std::sqrt(kPi * bsdf.gloss_density(wi, wo)));
+  }
+
   /// A place that receives light of bright points.
   struct Receiver {
     const SurfacePoint& place;
@@ -85,6 +94,9 @@ class BrightPoints {
     /// The Bsdf of the place, if its lobes weight light by direction (Bsdf::arrival_weight); else null.
     const Bsdf* coat = nullptr;
     bool reads_close = false;  ///< rays from here read the points of close hits, too, and do not continue
+    /// Unit. If given, the light is the radiance [W/m^2/sr] that the lobes S of `coat` reflect this way, in place of an
+    /// irradiance, and has no gradients.
+    std::optional<Vec3> seen_from = {};
   };
   /// The mean over `samples` explicit samples of the light that arrives at the place. Adds the shadow rays to `counts`.
   BrightLight arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const;

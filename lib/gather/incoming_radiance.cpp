@@ -31,6 +31,7 @@ struct IncomingRadiance::Met {
   SurfacePoint hit;
   Vec3 wo, geometric;            ///< normal on the side of wo
   float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
+  float leg = INFINITY;          ///< m: length of its last straight part
   const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
   std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures
 };
@@ -46,9 +47,9 @@ struct IncomingRadiance::Further {
   /// stored.
   bool sees_lamps = false;
   float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered it
-  /// True if the bright points were sampled explicitly at the ray's start: the ray's hit then contributes the remaining
-  /// share alone.
-  bool bright_sampled = false;
+  /// Width of the lobe that sent the ray, if the bright points were sampled explicitly for this lobe at the ray's start
+  /// (BrightPoints::lobe_width): the ray's hit then contributes the remaining share alone. 0: not sampled.
+  float sampled_lobe = 0;
 
   LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
@@ -72,13 +73,13 @@ IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, c
 Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
   Met met;
   met.hit = place;
-  meet(normal, 0, met);
+  meet(normal, 0, 0, met);
   return *met.bsdf;
 }
 
 /// Fills in the rest of `met` if met.hit is known. Evaluates the textures of the material at this hit; a normal map
 /// bends the normal.
-inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
+inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
   if (tracer_.frame().materials[met.hit.material].textures) [[unlikely]] {
@@ -87,7 +88,8 @@ inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
   }
   met.wo = wo;
   met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
-  met.distance = distance;
+  met.leg = leg;
+  met.distance = before + leg;
 }
 
 /// Calls take(i, met, point) for each ray that meets a surface, in order; point: the point that represents the hit, or
@@ -120,7 +122,7 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
         continue;
       }
       tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
-      meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
+      meet(-ray.direction, length(met[i].hit.position - ray.origin), 0, met[i]);
       if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
     }
     const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
@@ -142,7 +144,7 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   std::fill(sources.begin(), sources.end(), RadianceSource{});
   next.clear();
   for (std::size_t i = 0; i < rays.size(); ++i)
-    next.push_back({rays[i], keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ != nullptr});
+    next.push_back({rays[i], keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ ? 1.0f : 0.0f});
   const Gathered to{counts, next, sources};
   for (int depth = 0; !next.empty(); ++depth) {
     std::swap(now, next);
@@ -201,13 +203,11 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       ++to.counts.points_read;
       const bool even = lights_.empty() || points_.is_uniform(*point);
       if (source) source->partial |= !even;
-      const float remaining = from.bright_sampled ? bright_->remaining_share(*point, met.distance) : 1.0f;
-      result =
-          scale * (even ? point->all : beside_edge(met, *point, from.bright_sampled, random, to.counts)) * remaining;
+      const float remaining = remaining_share(met, point, from);
+      result = scale * (even ? point->all : beside_edge(met, *point, from.sampled_lobe, random, to.counts)) * remaining;
       if (source) source->noise += from.weight * scale * points_.point(*point).noise * remaining;
     } else {
-      const Rgb kept =
-          scale * (from.bright_sampled && point && !near ? bright_->remaining_share(*point, met.distance) : 1.0f);
+      const Rgb kept = scale * (near ? 1.0f : remaining_share(met, point, from));
       result = kept * scattered(met, point, from, kept, random, depth, to);
       if (source) source->partial = true;
     }
@@ -216,7 +216,16 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   // The other lobes: one sampled direction, with Russian roulette on its weight. The Lambert lobe was handled above.
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
   const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
-  const auto next = bsdf.sample(side->wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
+  const Bsdf::Direction wo = bsdf.along(side->wo_local);
+  const float choice = random.get1(2, Purpose::lobe);
+  const bool sampled =
+      bright_ && !(material.transmission > 0) && !bsdf.specular_is_delta() && !bsdf.draws_diffuse(wo, choice);
+  if (sampled) {  // event S is drawn with this probability
+    const BrightLight light = bright_->arriving({met.hit, side->normal, &bsdf, true, met.wo}, 1, random, to.counts);
+    result += Rgb(light.irradiance / double(1 - bsdf.fork_probability(wo)));
+    if (source) source->partial = true;
+  }
+  const auto next = bsdf.sample(wo, choice, random.get2(2, Purpose::scatter));
   if (next.diffuse || is_black(next.weight)) return result;
   const Vec3 travel = side->frame.to_world(next.wi);
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
@@ -225,7 +234,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Further after = from;
   after.key = mix64(from.key + 2);
   after.weight *= weight;
-  after.bright_sampled = false;
+  after.sampled_lobe = sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0;
   after.phase = 0;
   if (source) source->partial = true;
   return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to,
@@ -254,7 +263,7 @@ Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 tr
   const float on = length(met.hit.position - start.position);
   const Rgb left = inside ? transmittance(*inside, on) : Rgb(1.0f);
   from.weight *= left;
-  meet(-travel, distance + on, met);
+  meet(-travel, on, distance, met);
   const Rgb emitted = from.sees_lamps ? lights_.emitted(met.hit, met.wo, 0) : Rgb(0.0f);
   const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
   return left * (emitted + reflected(met, point, from, depth, to));
@@ -279,7 +288,7 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
                         from.of,
                         true,
                         pdf_hg(at.g, at.travel, travel),
-                        false});
+                        0});
   return light;
 }
 
@@ -295,7 +304,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   if (point) irradiance = points_.point(*point).caustic;
   if (point && points_.is_uniform(*point) && met.distance >= points_.spacing() * threshold(random))
     irradiance += points_.point(*point).direct;
-  else irradiance += sampled_light(met, side, point, from.bright_sampled, random, to.counts);
+  else irradiance += sampled_light(met, side, point, from.sampled_lobe, random, to.counts);
   if (bright_) {
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
@@ -308,34 +317,40 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
   if (depth > 0 && !survives(weight, kLargestSurvival, random.get1(1, Purpose::roulette))) return irradiance;
   to.further.push_back(
-      {spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ != nullptr});
+      {spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ ? 1.0f : 0.0f});
   return irradiance;
 }
 
-/// Direct irradiance at a hit from one light sample. point: represents the hit, or nullptr. bright_sampled: light of
-/// close lamps was sampled explicitly at the ray's start (BrightPoints::remaining_lamp_share).
+/// The share that the ray contributes of the light at its hit, which `point` represents; 1 if no point does.
+inline float IncomingRadiance::remaining_share(const Met& met, const PointLookup::Light* point,
+                                               const Further& from) const {
+  return from.sampled_lobe > 0 && point ? bright_->remaining_share(*point, met.leg * from.sampled_lobe) : 1.0f;
+}
+
+/// Direct irradiance at a hit from one light sample. point: represents the hit, or nullptr. sampled_lobe:
+/// Further::sampled_lobe, for the light of close lamps (BrightPoints::remaining_lamp_share).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point,
-                                    bool bright_sampled, const PathRandom& random, GatherCounts& counts) const {
+                                    float sampled_lobe, const PathRandom& random, GatherCounts& counts) const {
   DirectSample direct;
   const Receiver at{met.hit, side.normal_geometric, side.normal, met.bsdf->has_specular() ? met.bsdf : nullptr};
   if (lights_.empty() ||
       !sample_direct(lights_, at, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), direct))
     return Rgb(0.0f);
-  const float share =
-      bright_sampled && !direct.light.distant
-          ? bright_->remaining_lamp_share(point, met.distance, length(direct.light.position - met.hit.position))
-          : 1.0f;
+  const float share = sampled_lobe > 0 && !direct.light.distant
+                          ? bright_->remaining_lamp_share(point, met.leg * sampled_lobe,
+                                                          length(direct.light.position - met.hit.position))
+                          : 1.0f;
   if (!(share > 0)) return Rgb(0.0f);
   ++counts.shadow_rays;
   return direct.irradiance * (share * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));
 }
 
 /// Irradiance at a hit where direct light is not that of the point.
-Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, bool bright_sampled,
+Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, float sampled_lobe,
                                   const PathRandom& random, GatherCounts& counts) const {
   const IrradiancePoint& point = points_.point(light);
   return point.indirect + point.caustic +
-         sampled_light(met, SeenSide(met.hit, met.wo), &light, bright_sampled, random, counts);
+         sampled_light(met, SeenSide(met.hit, met.wo), &light, sampled_lobe, random, counts);
 }
 
 }  // namespace tempolux

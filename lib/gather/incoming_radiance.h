@@ -72,7 +72,8 @@ class IncomingRadiance {
   struct Met;
   struct Further;
   struct Gathered;
-  void meet(Vec3 wo, float distance, Met& met) const;
+  void meet(Vec3 wo, float leg, float before, Met& met) const;
+  float remaining_share(const Met& met, const PointLookup::Light* point, const Further& from) const;
   template <class Take, class Key, class TakeMedium, class Miss>
   void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key,
               const TakeMedium& take_medium, const Miss& miss) const;
@@ -84,9 +85,9 @@ class IncomingRadiance {
   Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                 const PathRandom& random, int depth, const Gathered& to) const;
   static float threshold(const PathRandom& random);
-  Rgb beside_edge(const Met& met, const PointLookup::Light& light, bool bright_sampled, const PathRandom& random,
+  Rgb beside_edge(const Met& met, const PointLookup::Light& light, float sampled_lobe, const PathRandom& random,
                   GatherCounts& counts) const;
-  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, bool bright_sampled,
+  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, float sampled_lobe,
                     const PathRandom& random, GatherCounts& counts) const;
 
   const Tracer& tracer_;

@@ -114,6 +114,48 @@ TEST(LampLight, FloorUnderALampBesideACeiling) {
     }
 }
 
+/// A place under which a metal floor reflects the spot of a lamp 3 mm below the ceiling. The spot has the intensity
+/// reflectance / pi x 2 pi x cos = cos [W/sr], so the irradiance is an integral over the floor. The mean of 200 gathers
+/// is within 2 % of the integral; one gather has an RMS error below 15 %. Seen to fail: reflected rays that contribute
+/// all of the spot's light (means of .45 and .37, RMS errors of 2.2 and 1.4).
+TEST(LampLight, SpotReflectedByGloss) {
+  for (const float roughness : {1.0f, 0.3f}) {
+    Ceiling ceiling(0.003);
+    Material metal = matte(Rgb(1.0f));
+    metal.metallic = 1;
+    metal.roughness = roughness;
+    ceiling.scene.add_quad({-1.5f, 0, 1.5f}, {1.5f, 0, 1.5f}, {1.5f, 0, -1.5f}, {-1.5f, 0, -1.5f}, metal);
+    const SceneFrame& frame = ceiling.scene.frame();
+    const Tracer tracer(frame);
+    const Lights lights(frame, build_emission_table({&frame, 1}));
+    PointLookup lookup(ceiling.points, kSpacing, point_clearance(tracer));
+    const std::vector<LampPhoton> photons = note_lamps_beside(tracer, lights, lookup);
+    const BrightPoints bright(tracer, lights, lookup, {}, {.beside_lamps = photons});
+    const Vec3 place{0.3f, 0.5f, 0}, spot{0, 1, 0};
+    constexpr int n = 300, kGathers = 200;
+    const Bsdf floor(metal);
+    double exact = 0, sum = 0, squares = 0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const Vec3 y{3 * (float(i) + 0.5f) / n - 1.5f, 0, 3 * (float(j) + 0.5f) / n - 1.5f};
+        const auto local = [](Vec3 w) { return Vec3{w.x, w.z, w.y}; };  // the Bsdf's z is up
+        const Vec3 wi = normalize(spot - y), wo = normalize(place - y);
+        const double seen =
+            double(floor.eval_specular(local(wi), local(wo)).g * wi.y) * double(wi.y) / double(length2(spot - y));
+        exact += seen * double(wo.y * wo.y) / double(length2(place - y)) * 9.0 / n / n;
+      }
+    for (int g = 0; g < kGathers; ++g) {
+      GatherCounts counts;
+      const FinalGather gather(tracer, lights, lookup, {.seed = std::uint64_t(g), .rays = 500, .bright = &bright});
+      const double e = double(gather.gather(place_at(place, {0, -1, 0}), {0, -1, 0}, counts).irradiance.g) / exact;
+      sum += e / kGathers;
+      squares += (e - 1) * (e - 1) / kGathers;
+    }
+    EXPECT_NEAR(sum, 1, 0.02) << roughness;
+    EXPECT_LT(std::sqrt(squares), 0.15) << roughness;
+  }
+}
+
 /// A room with a point lamp 12 cm from a wall, a small lamp that shines at the ceiling 8 cm above it, and a block close
 /// to both: corners, close hits, and fittings too small for points. With explicit samples the mean is that of rays
 /// alone which sample direct light at the same hits, within 5 standard errors of the difference of 400 gathers each.
