@@ -198,7 +198,6 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
   const SurfacePoint& place = at.place;
   const Vec3 normal = at.normal;
   const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
-  const Media* const media = tracer_.frame().media.get();
   BrightLight light;
   if (sites_of_.empty()) return light;
   const LightTree::Start start = tree_->start(place.position, normal);
@@ -216,11 +215,10 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const float part = share(site, float(distance), at.reads_close);
     if (!(part > 0)) continue;
     ++counts.shadow_rays;
-    const Ray shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);
-    if (tracer_.occluded(shadow)) continue;
-    Rgbd seen(radiance(site, -wi) * part);
-    if (media) [[unlikely]]
-      seen *= double(media_transmittance(*media, shadow, {random, number, way_shadow}));
+    const Rgb passed = transmittance(tracer_, spawn_shadow_ray(place, site.place.position, site.place.offset),
+                                     {random, number, way_shadow});
+    if (is_black(passed)) continue;
+    const Rgbd seen = Rgbd(radiance(site, -wi) * part) * Rgbd(passed);
     const double d2 = distance * distance, cosine = here / distance;
     const double arrival = at.coat ? double(at.coat->arrival_weight(float(cosine))) : 1;
     const Rgbd power =
