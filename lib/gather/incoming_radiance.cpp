@@ -49,7 +49,8 @@ struct IncomingRadiance::Further {
   /// True if the bright points were sampled explicitly at the ray's start: the ray's hit then contributes the remaining
   /// share alone.
   bool bright_sampled = false;
-  bool specular = false;  ///< events S have happened since the ray's start; panes that were passed straight do not count
+  bool specular =
+      false;  ///< events S have happened since the ray's start; panes that were passed straight do not count
 
   LastScatter scattering() const { return {phase > 0, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
@@ -262,8 +263,7 @@ Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 tr
   const Rgb left = inside ? transmittance(*inside, on) : Rgb(1.0f);
   from.weight *= left;
   meet(-travel, distance + on, met);
-  const Rgb emitted =
-      sees_lamps ? weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0) : Rgb(0.0f);
+  const Rgb emitted = sees_lamps ? weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0) : Rgb(0.0f);
   const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
   return left * (emitted + reflected(met, point, from, depth, to));
 }

@@ -15,8 +15,8 @@ constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;  ///< limits of the nu
 constexpr std::size_t kEnough = 1 << 10;                   ///< photons that must land: their flux is then known to 3 %
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
-/// Where a photon lands, if it meets a Lambert lobe within `reach` m, maybe behind panes. Its flux is that of a map with
-/// a single photon.
+/// Where a photon lands, if it meets a Lambert lobe within `reach` m, maybe behind panes. Its flux is that of a map
+/// with a single photon.
 std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission,
                                  float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;

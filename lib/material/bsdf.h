@@ -168,7 +168,7 @@ class Bsdf {
   float eta_ = 1;            ///< index on wo's side / index on the other side; 1 for transmission through a thin wall
   float eta_reflected_ = 1;  ///< the same for the Fresnel term
   float light_share_behind_ = 0;
-  bool pane_ = false;        ///< the wall is thin and smooth
+  bool pane_ = false;                ///< the wall is thin and smooth
   std::optional<RoughGlass> rough_;  ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
