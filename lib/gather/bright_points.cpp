@@ -199,7 +199,6 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
   const SurfacePoint& place = at.place;
   const Vec3 normal = at.normal;
   const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
-  const Media* const media = tracer_.frame().media.get();
   std::optional<Frame> frame;
   Bsdf::Direction eye;
   if (at.seen_from) eye = at.coat->along(frame.emplace(normal).to_local(*at.seen_from));
@@ -222,11 +221,10 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const float part = share(site, float(distance) * width, at.reads_close);
     if (!(part > 0)) continue;
     ++counts.shadow_rays;
-    const Ray shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);
-    if (tracer_.occluded(shadow)) continue;
-    Rgbd seen(radiance(site, -wi) * part);
-    if (media) [[unlikely]]
-      seen *= double(media_transmittance(*media, shadow, {random, number, way_shadow}));
+    const Rgb passed = transmittance(tracer_, spawn_shadow_ray(place, site.place.position, site.place.offset),
+                                     {random, number, way_shadow});
+    if (is_black(passed)) continue;
+    const Rgbd seen = Rgbd(radiance(site, -wi) * part) * Rgbd(passed);
     const double d2 = distance * distance, cosine = here / distance;
     const Rgb arrival = frame     ? at.coat->eval_specular(at.coat->along(wi_local), eye)
                         : at.coat ? Rgb(at.coat->arrival_weight(float(cosine)))

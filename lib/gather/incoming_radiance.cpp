@@ -46,12 +46,15 @@ struct IncomingRadiance::Further {
   /// The ray follows events S, so lights that it meets are caustic light of its starting point, which no point has
   /// stored.
   bool sees_lamps = false;
-  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered it
+  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface did, or there was an event S
   /// Width of the lobe that sent the ray, if the bright points were sampled explicitly for this lobe at the ray's start
   /// (BrightPoints::lobe_width): the ray's hit then contributes the remaining share alone. 0: not sampled.
   float sampled_lobe = 0;
+  /// Events S have happened since the ray's start. A pane that is passed straight is none.
+  bool specular = false;
+  float leg = 0;  ///< m: length of the ray's last straight part before the pane that the ray has passed; else 0
 
-  LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }
+  LastScatter scattering() const { return {phase > 0, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
 
 /// Where the results are stored.
@@ -234,15 +237,19 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Further after = from;
   after.key = mix64(from.key + 2);
   after.weight *= weight;
-  after.sampled_lobe = sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0;
-  after.phase = 0;
+  after.leg = next.straight ? met.leg : 0;
+  if (!next.straight) {
+    after.sampled_lobe = sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0;
+    after.phase = 0;
+    after.specular = true;
+  }
   if (source) source->partial = true;
   return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to,
                                                    solid && front == next.transmitted ? &material : nullptr);
 }
 
-/// Radiance along a ray that continues after an event S at `start`. `distance`: length of the path so far [m]. The ray
-/// may be inside solid glass.
+/// Radiance along a ray that continues after an event S or behind a pane at `start`. `distance`: length of the path so
+/// far [m]. The ray may be inside solid glass.
 Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from,
                                               int depth, const Gathered& to, const MaterialValues* inside) const {
   Hit hit;
@@ -257,14 +264,17 @@ Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 tr
       return left * scattered_in_media(collision, from, to);
     }
   }
-  if (!meets) return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
+  const bool sees_lamps = from.phase > 0 || (from.sees_lamps && from.specular);
+  if (!meets)
+    return sees_lamps && lights_.has_environment() ? weighed_environment(lights_, travel, from.scattering())
+                                                   : Rgb(0.0f);
   Met met;
   met.hit = tracer_.surface_point(hit);
   const float on = length(met.hit.position - start.position);
   const Rgb left = inside ? transmittance(*inside, on) : Rgb(1.0f);
   from.weight *= left;
-  meet(-travel, on, distance, met);
-  const Rgb emitted = from.sees_lamps ? lights_.emitted(met.hit, met.wo, 0) : Rgb(0.0f);
+  meet(-travel, from.leg + on, distance - from.leg, met);
+  const Rgb emitted = sees_lamps ? weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0) : Rgb(0.0f);
   const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
   return left * (emitted + reflected(met, point, from, depth, to));
 }
@@ -342,7 +352,7 @@ Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const 
                           : 1.0f;
   if (!(share > 0)) return Rgb(0.0f);
   ++counts.shadow_rays;
-  return direct.irradiance * (share * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));
+  return direct.irradiance * (transmittance(tracer_, direct.shadow, {random, 1, way_shadow}) * share);
 }
 
 /// Irradiance at a hit where direct light is not that of the point.

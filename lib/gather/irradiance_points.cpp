@@ -196,7 +196,7 @@ struct DirectLight {
   Rgb at(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random) const {
     Rgbd sum{0.0};
     for_samples(point, scattering, random, [&](const DirectSample& direct, const WayBits& bits) {
-      sum += Rgbd(direct.irradiance) * double(transmittance(tracer, direct.shadow, bits));
+      sum += Rgbd(direct.irradiance) * Rgbd(transmittance(tracer, direct.shadow, bits));
     });
     return Rgb(sum / double(samples));
   }

@@ -15,14 +15,28 @@ constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;  ///< limits of the nu
 constexpr std::size_t kEnough = 1 << 10;                   ///< photons that must land: their flux is then known to 3 %
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
-/// Where a photon lands, if it meets a Lambert lobe within `reach` m. Its flux is that of a map with a single photon.
+/// Where a photon lands, if it meets a Lambert lobe within `reach` m, maybe behind panes. Its flux is that of a map
+/// with a single photon.
 std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission,
                                  float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;
   Ray ray{emission.origin + emission.normal * emission.origin_offset, emission.travel, 0, reach};
   Hit hit;
-  if (!tracer.intersect(ray, hit)) return std::nullopt;
-  SurfacePoint place = tracer.surface_point(hit);
+  SurfacePoint place;
+  Rgb flux = emission.flux;
+  for (std::uint32_t panes = 0;; ++panes) {
+    if (!tracer.intersect(ray, hit)) return std::nullopt;
+    place = tracer.surface_point(hit);
+    const Rgb passed = passed_straight(tracer.frame(), place, emission.travel);
+    if (is_black(passed)) break;
+    const float p = max_component(passed);
+    if (!(random.get1(panes, Purpose::lobe) < p)) {
+      flux *= 1 / (1 - p);
+      break;
+    }
+    flux *= passed / p;
+    ray.t_min = hit.t + place.offset / std::abs(dot(place.normal_geometric, ray.direction));
+  }
   const SurfaceMaterial material(tracer.frame(), place);
   const Vec3 wi = -emission.travel;
   const bool front = dot(place.normal_geometric, wi) > 0;
@@ -40,7 +54,7 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
     ray.t_max = hit.t;
     share *= media_transmittance(*media, ray, {random, 0, way_shadow});
   }
-  return LampPhoton{place, normal, bsdf, emission.flux * share, distance, point ? point->point : kNone};
+  return LampPhoton{place, normal, bsdf, flux * share, distance, point ? point->point : kNone};
 }
 
 }  // namespace

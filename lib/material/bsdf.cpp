@@ -55,6 +55,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
       rough_.emplace(ior, alpha, material.thin_walled, front);
       light_share_behind_ = material.thin_walled ? 0.5f : front ? 0.0f : 1.0f;
     }
+    pane_ = material.thin_walled && !rough_;
     if (transmission_ >= 1) return;
   }
   rho_ = material.base_color * (1 - metallic);
@@ -108,6 +109,12 @@ Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
 Rgb Bsdf::specular_albedo(float cos_o) const {
   const Reflection r = reflection(cos_o);
   return r.single + r.multiple;
+}
+
+Rgb Bsdf::passed_straight(float cos_o) const {
+  if (!pane_ || !(cos_o > 0)) return Rgb(0.0f);
+  float cos_t;
+  return transmission_tint_ * (transmission_ * (1 - fresnel_dielectric(cos_o, eta_reflected_, cos_t)));
 }
 
 /// c(w); 1 without a reflection above the Lambert lobe.
@@ -241,6 +248,7 @@ void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
     return;
   }
   s.transmitted = true;
+  s.straight = pane_;
   s.wi = eta_ == 1 ? -wo : refract(wo, eta_, cos_t);
   s.weight = transmission_tint_;
   s.pdf_solid_angle = transmission_ * (1 - reflectance);

@@ -64,6 +64,9 @@ class Bsdf {
   float light_share_behind() const { return light_share_behind_; }
   /// Reflectance rho of the Lambert lobe, without coupling. [1]
   Rgb diffuse_albedo() const { return rho_; }
+  /// Share of light that goes straight through a smooth thin wall (a pane) [1]: transmission (1 - F(cos_o)) base_color.
+  /// sample() draws this passage, too. Black for other materials, and for cos_o <= 0.
+  Rgb passed_straight(float cos_o) const;
   /// c(w) of the head of this class [1]; 1 for a matte material; cos_theta > 0.
   float diffuse_coupling(float cos_theta) const;
   /// A_S(wo) [1]: the share of uniform light that the S lobes reflect towards wo, from the albedo table; 0 for a
@@ -101,6 +104,7 @@ class Bsdf {
     bool diffuse = false;       ///< event D, else S
     bool delta = false;
     bool transmitted = false;  ///< wi is on the other side, z < 0
+    bool straight = false;     ///< passes a pane, wi = -wo: light goes on as by alpha, and no event has happened
   };
   /// Draws wi for wo: u_lobe chooses the lobe, u the direction; all numbers are in [0, 1). The weight is that of the
   /// chosen event alone, f_D cos / (P(D) pdf_D) or f_S cos / (P(S) pdf_S), so that light paths can be sorted by
@@ -164,6 +168,7 @@ class Bsdf {
   float eta_ = 1;            ///< index on wo's side / index on the other side; 1 for transmission through a thin wall
   float eta_reflected_ = 1;  ///< the same for the Fresnel term
   float light_share_behind_ = 0;
+  bool pane_ = false;                ///< the wall is thin and smooth
   std::optional<RoughGlass> rough_;  ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };

@@ -466,7 +466,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   path.flux = reflected *
               (survives ? aimed / survival : 0);  // roulette depends on the surface only: aimed photons carry less flux
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
-  (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
+  if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
   if (solid && !next.diffuse) path.inside.scatter(point.material, front, next.transmitted);
   path.ray = spawn_ray(point, travel);

@@ -4,6 +4,7 @@
 #include "lib/material/inside.h"
 #include "lib/render/known_light.h"
 #include "lib/render/shading.h"
+#include "lib/scene/texture_lookup.h"
 #include "lib/transport/emission.h"
 #include "lib/transport/media.h"
 #include "lib/transport/roulette.h"
@@ -139,6 +140,13 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   const Vec3 wi = x.frame.to_world(next.wi);
   if (next.transmitted ? !x.sees_behind(wi) : !x.sees(wi)) return false;
   state.throughput *= next.weight * (1 / times);
+  if (next.straight) {  // light samples of the last vertex have passed the pane, too: MIS goes on as if it were not
+                        // there
+    state.path.pass_straight();
+    if (!survives(state, kLargestSurvival)) return false;
+    go_on(spawn_ray(x.surface, state.ray.direction), state);
+    return true;
+  }
   state.path.scatter(next.diffuse);
   if (next.diffuse) {
     state.throughput *= at.remaining_share;
@@ -237,8 +245,8 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   if (is_black(diffuse) && is_black(glossy)) return;
   count(1, counts_.shadow, state);
   const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
-  const float passed = transmittance(scene_.tracer, shadow, {random.hashed(), state.bounce, way_shadow});
-  if (!(passed > 0)) return;
+  const Rgb passed = transmittance(scene_.tracer, shadow, {random.hashed(), state.bounce, way_shadow});
+  if (is_black(passed)) return;
   Rgb arriving = state.throughput * light.facing_irradiance * (std::abs(wi.z) / share) * passed;
   if (state.inside.any())
     arriving *= state.inside.transmittance_over(scene_.frame().materials, length(light.position - x.surface.position));
@@ -381,9 +389,9 @@ bool EyeTracer::step(PathState& state) const {
   parts_.own.coverage = 1;
   SurfacePoint point = scene_.tracer.surface_point(state.hit);
   arrive(point, state);
-  // True if only light by events S may still be added.
+  // True if only light by events S may still be added, or lights behind panes.
   const bool only_specular = state.indirect_known;
-  if (only_specular && state.caustic_known) return false;
+  if (only_specular && state.caustic_known && !may_be_pane(frame.materials[point.material])) return false;
 
   const Vec3 smooth = point.normal;
   const SurfaceMaterial material(frame, point, state.cone.width);

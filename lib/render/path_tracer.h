@@ -60,6 +60,11 @@ class EyePath {
       case Layer::volume: break;
     }
   }
+  /// Passes a pane straight. No event for light behind an event D; what the camera sees through panes is sorted as what
+  /// other glass shows.
+  void pass_straight() {
+    if (sharp_) scatter(false);
+  }
   /// Scatters in a medium. After an event S the light counts as part of what that event shows.
   void scatter_in_medium() {
     sharp_ = false;

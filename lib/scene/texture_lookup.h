@@ -77,6 +77,10 @@ inline float coverage(const Material& material, float texel) {
 }
 /// True if a ray can pass through a surface of this material.
 bool lets_rays_pass(const Material& material);
+/// False: light never goes straight through the surface, for any texture values (Bsdf::passed_straight).
+inline bool may_be_pane(const Material& material) {
+  return material.transmission > 0 && material.thin_walled && !material.unlit;
+}
 /// How the texture of the base colour is decoded.
 TextureTransfer base_color_transfer(const Material& material);
 

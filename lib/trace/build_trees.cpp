@@ -192,6 +192,7 @@ void Tracer::build(const SceneFrame& frame, StaticTree& static_scene) {
   impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
   for (const Surface& surface : frame.surfaces) {
     impl_->surfaces.emplace_back(surface);
+    impl_->panes |= may_be_pane(frame.materials[surface.material]);
     if (surface.instanced()) impl_->surfaces.back().instance_offset = impl_->instance_offset(surface);
   }
 }

@@ -163,5 +163,6 @@ bool Tracer::occluded(const Ray& ray) const {
 
 std::uint64_t Tracer::refused_ray_count() const { return impl_->refused.load(); }
 const SceneFrame& Tracer::frame() const { return *impl_->frame; }
+bool Tracer::has_panes() const { return impl_->panes; }
 
 }  // namespace tempolux

@@ -60,7 +60,7 @@ class Tracer {
   /// call is then no slower than single rays. If two surfaces are equally near, it may report another one than
   /// intersect(); the same list always gives the same hits.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike = true) const;
-  /// True if a surface lies between the ray's ends.
+  /// True if a surface lies between the ray's ends. Panes are surfaces, too: for light call transmittance().
   bool occluded(const Ray& ray) const;
 
   SurfacePoint surface_point(const Hit& hit) const;
@@ -69,6 +69,8 @@ class Tracer {
   /// Number of rays refused because they were not finite; for stats.
   std::uint64_t refused_ray_count() const;
   const SceneFrame& frame() const;
+  /// True if light may go straight through some surface (may_be_pane).
+  bool has_panes() const;
 
  private:
   struct Impl;

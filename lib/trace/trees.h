@@ -148,6 +148,7 @@ struct Tracer::Impl {
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
   std::deque<AlphaSurface> alpha;  ///< data of the filters; a deque, since filters point to its elements
+  bool panes = false;
   mutable std::atomic<std::uint64_t> refused{0};
 
   ~Impl() {

@@ -1,6 +1,10 @@
 #include "lib/transport/media.h"
 
 #include "lib/core/sampling.h"
+#include "lib/material/bsdf.h"
+#include "lib/material/seen_side.h"
+#include "lib/material/surface_material.h"
+#include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
 
@@ -12,10 +16,36 @@ float media_transmittance(const Media& media, const Ray& ray, const WayBits& bit
                                 bits);
 }
 
-float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits) {
-  if (tracer.occluded(ray)) return 0;
+Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction) {
+  if (!may_be_pane(frame.materials[point.material])) return Rgb(0.0f);
+  const SurfaceMaterial material(frame, point);
+  const Vec3 wo = -normalize(direction);
+  return Bsdf(material, dot(point.normal_geometric, wo) > 0).passed_straight(SeenSide(point, wo).wo_local.z);
+}
+
+namespace {
+
+/// Share of light that surfaces on the way let through.
+Rgb passed_surfaces(const Tracer& tracer, Ray ray) {
+  if (!tracer.has_panes()) return Rgb(tracer.occluded(ray) ? 0.0f : 1.0f);
+  Rgb passed(1.0f);
+  // The ray keeps origin and direction, so that alpha decides as for an occluded ray.
+  for (Hit hit; tracer.intersect(ray, hit);) {
+    if (!may_be_pane(tracer.frame().materials[tracer.frame().surfaces[hit.surface].material])) return Rgb(0.0f);
+    const SurfacePoint point = tracer.surface_point(hit);
+    passed *= passed_straight(tracer.frame(), point, ray.direction);
+    if (is_black(passed)) break;
+    ray.t_min = hit.t + point.offset / std::abs(dot(point.normal_geometric, ray.direction));
+  }
+  return passed;
+}
+
+}  // namespace
+
+Rgb transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits) {
+  const Rgb passed = passed_surfaces(tracer, ray);
   const Media* const media = tracer.frame().media.get();
-  return media ? media_transmittance(*media, ray, bits) : 1.0f;
+  return media && !is_black(passed) ? passed * media_transmittance(*media, ray, bits) : passed;
 }
 
 bool collides(const Media& media, const Ray& ray, float end, const PathRandom& random, std::uint32_t bounce,

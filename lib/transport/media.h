@@ -24,8 +24,12 @@ enum Way : std::uint32_t { way_path = 0, way_shadow = 1, way_shadow_of_medium = 
 /// Estimate of the transmittance of the media along a ray (estimate_transmittance). The direction need not be unit.
 float media_transmittance(const Media& media, const Ray& ray, const WayBits& bits);
 
-/// The same for a shadow ray; 0 if a surface is in the way. Without media the result is exactly 0 or 1.
-float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits);
+/// Share of light that goes straight through a surface along `direction`, of any length (Bsdf::passed_straight).
+Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction);
+
+/// Share of light that arrives along a shadow ray: that of the media, times that of each pane on the way. Black if
+/// another surface is in the way. Without media and panes the result is exactly 0 or 1.
+Rgb transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits);
 
 /// A collision with a medium, where the path is scattered.
 struct MediumPoint {
