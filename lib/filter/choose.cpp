@@ -131,13 +131,16 @@ class Choice {
   /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
   template <class Term>
   Plane around(const Term& term, Plane* square = nullptr) const {
-    Plane values(near_.width(), near_.height());
+    Plane values = Plane::unset(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
-      if (counts_[p]) values.at(x, y) = (term(p, 0) + term(p, 1) + term(p, 2)) / squared(picture_.level.at(x, y));
+      const float sum = (term(p, 0) + term(p, 1) + term(p, 2)) / squared(picture_.level.at(x, y));
+      values.at(x, y) = counts_[p] ? sum : 0;
     });
     Plane mean = near_.mean(values);
-    for_each_pixel([&](std::size_t, int x, int y) { values.at(x, y) *= values.at(x, y); });
-    if (square) *square = near_.mean(values);
+    if (square) {
+      for_each_pixel([&](std::size_t, int x, int y) { values.at(x, y) *= values.at(x, y); });
+      *square = near_.mean(values);
+    }
     return mean;
   }
 
@@ -215,9 +218,10 @@ class Choice {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::vector<float>& raw = (raw_.*half)[c];
         std::vector<float>& result = (best_.*half)[c];
-        Plane taken(near_.width(), near_.height());
+        Plane taken = Plane::unset(near_.width(), near_.height());
         for_each_pixel([&](std::size_t p, int x, int y) {
-          if (share_.at(x, y) > 0) taken.at(x, y) = (raw[p] - result[p]) / weights.at(x, y);
+          const float off = (raw[p] - result[p]) / weights.at(x, y);
+          taken.at(x, y) = share_.at(x, y) > 0 ? off : 0;
         });
         taken = sums(taken);
         for_each_pixel([&](std::size_t p, int x, int y) { result[p] += share_.at(x, y) * taken.at(x, y); });

@@ -154,7 +154,6 @@ struct FrameFilter::State {
     for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
       if (middle.light.group(g)) filter_group(g, coverage, picture, image);
     renew_picture(raw, sum_layers(image), image);
-    leave_numbers(image);
   }
 };
 
@@ -185,6 +184,7 @@ void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
 
 Image FrameFilter::finish(Image image) {
   filter(image);
+  leave_numbers(image);
   write_remaining_noise(remaining_error(), image);
   return image;
 }
