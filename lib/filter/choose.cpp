@@ -30,24 +30,53 @@ float light_of(const PicturePlanes& picture, std::size_t pixel) {
   return light;
 }
 
-/// Sums over the window around each pixel.
-Plane box_sums(const Plane& values, int width, int height) {
-  Plane rows(width, height), out = Plane::unset(width, height);
-  const auto add_up = [&](const auto& from, float* to) {
-    for (int x = 0; x < width; ++x) {
-      float sum = 0;
-      for (int d = -kAround; d <= kAround; ++d) sum += from(x, d);
-      to[x] = sum;
+/// Sums over the pixels of the window around each pixel; with `kinds` (0 or 1, by pixel) over those of the pixel's kind.
+/// Rows are summed along x first, and the last seven of them stay in the cache.
+Plane box_sums(const Plane& values, int width, int height, const std::uint8_t* kinds = nullptr) {
+  constexpr std::size_t kLines = 2 * kAround + 1, kRows = 32;  // rows of a chunk
+  Plane out = Plane::unset(width, height);
+  parallel_chunks(std::size_t(height), kRows, [&](std::size_t first, std::size_t last) {
+    const auto columns = std::size_t(width);
+    std::vector<float> of_kind(columns + 2 * kAround), lines(2 * kLines * columns);
+    const auto line = [&](int y, std::size_t kind) {
+      return lines.data() + (2 * (std::size_t(y + kAround) % kLines) + kind) * columns;
+    };
+    const auto add_along = [&](const float* row, float* to) {
+      for (std::size_t x = 0; x < columns; ++x) {
+        float sum = 0;
+        for (std::size_t d = 0; d < kLines; ++d) sum += row[x + d];
+        to[x] = sum;
+      }
+    };
+    const auto add_across = [&](int y, std::size_t kind, const auto& put) {
+      std::array<const float*, kLines> rows;
+      for (std::size_t d = 0; d < kLines; ++d) rows[d] = line(y + int(d) - kAround, kind);
+      for (std::size_t x = 0; x < columns; ++x) {
+        float sum = 0;
+        for (std::size_t d = 0; d < kLines; ++d) sum += rows[d][x];
+        put(x, sum);
+      }
+    };
+    for (int y = int(first) - kAround; y < int(last) + kAround; ++y) {
+      const bool inside = y >= 0 && y < height;
+      for (std::size_t kind = 0; kind < (kinds ? 2 : 1); ++kind) {
+        if (!inside) std::fill_n(line(y, kind), columns, 0.0f);
+        else if (!kinds) add_along(values.row(y) - kAround, line(y, kind));
+        else {
+          const float* from = values.row(y);
+          const std::uint8_t* own = kinds + std::size_t(y) * columns;
+          for (std::size_t x = 0; x < columns; ++x) of_kind[x + kAround] = own[x] == kind ? from[x] : 0.0f;
+          add_along(of_kind.data(), line(y, kind));
+        }
+      }
+      const int middle = y - kAround;
+      if (middle < int(first)) continue;
+      float* to = out.row(middle);
+      add_across(middle, 0, [&](std::size_t x, float sum) { to[x] = sum; });
+      if (!kinds) continue;
+      const std::uint8_t* own = kinds + std::size_t(middle) * columns;
+      add_across(middle, 1, [&](std::size_t x, float sum) { to[x] = own[x] ? sum : to[x]; });
     }
-  };
-  for_each_row(height, [&](int y) {
-    const float* row = values.row(y);
-    add_up([row](int x, int d) { return row[x + d]; }, rows.row(y));
-  });
-  for_each_row(height, [&](int y) {
-    const float* row = rows.row(y);
-    const auto stride = std::ptrdiff_t(rows.stride());
-    add_up([row, stride](int x, int d) { return row[x + d * stride]; }, out.row(y));
   });
   return out;
 }
@@ -102,13 +131,16 @@ class Choice {
   /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
   template <class Term>
   Plane around(const Term& term, Plane* square = nullptr) const {
-    Plane values(near_.width(), near_.height());
+    Plane values = Plane::unset(near_.width(), near_.height());
     for_each_pixel([&](std::size_t p, int x, int y) {
-      if (counts_[p]) values.at(x, y) = (term(p, 0) + term(p, 1) + term(p, 2)) / squared(picture_.level.at(x, y));
+      const float sum = (term(p, 0) + term(p, 1) + term(p, 2)) / squared(picture_.level.at(x, y));
+      values.at(x, y) = counts_[p] ? sum : 0;
     });
     Plane mean = near_.mean(values);
-    for_each_pixel([&](std::size_t, int x, int y) { values.at(x, y) *= values.at(x, y); });
-    if (square) *square = near_.mean(values);
+    if (square) {
+      for_each_pixel([&](std::size_t, int x, int y) { values.at(x, y) *= values.at(x, y); });
+      *square = near_.mean(values);
+    }
     return mean;
   }
 
@@ -132,8 +164,8 @@ class Choice {
     return shares;
   }
 
-  /// Mixes the candidates by their shares and estimates the squared error of the mixture.
-  void take_best() {
+  /// Mixes the candidates by their shares.
+  void mix() {
     const std::vector<Plane> shares = take_shares();
     for (std::size_t c = 0; c < 3; ++c)
       for (const auto half : {&Halves::a, &Halves::b}) {
@@ -143,6 +175,12 @@ class Choice {
           for_each_pixel(
               [&](std::size_t p, int x, int y) { mixed[p] += shares[k].at(x, y) * (candidates_[k].*half)[c][p]; });
       }
+  }
+
+  /// Takes the best mixture of the candidates and estimates its squared error.
+  void take_best() {
+    if (candidates_.size() == 1) best_ = candidates_[0];
+    else mix();
     gain_ = around(
         [&](std::size_t p, std::size_t c) {
           const float apart = raw_.a[c][p] - raw_.b[c][p];
@@ -180,9 +218,10 @@ class Choice {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::vector<float>& raw = (raw_.*half)[c];
         std::vector<float>& result = (best_.*half)[c];
-        Plane taken(near_.width(), near_.height());
+        Plane taken = Plane::unset(near_.width(), near_.height());
         for_each_pixel([&](std::size_t p, int x, int y) {
-          if (share_.at(x, y) > 0) taken.at(x, y) = (raw[p] - result[p]) / weights.at(x, y);
+          const float off = (raw[p] - result[p]) / weights.at(x, y);
+          taken.at(x, y) = share_.at(x, y) > 0 ? off : 0;
         });
         taken = sums(taken);
         for_each_pixel([&](std::size_t p, int x, int y) { result[p] += share_.at(x, y) * taken.at(x, y); });
@@ -212,22 +251,7 @@ Neighbourhood::Neighbourhood(std::vector<std::uint8_t> kinds, int width, int hei
 }
 
 /// Sums over the pixels of the same kind in the window.
-Plane Neighbourhood::sums(const Plane& values) const {
-  std::array<Plane, 2> of_kind{Plane(width_, height_), Plane(width_, height_)};
-  const auto kinds = [&](int y) { return kinds_.data() + std::size_t(y) * std::size_t(width_); };
-  for_each_row(height_, [&](int y) {
-    const float* from = values.row(y);
-    for (int x = 0; x < width_; ++x) {
-      of_kind[1].row(y)[x] = kinds(y)[x] ? from[x] : 0;
-      of_kind[0].row(y)[x] = kinds(y)[x] ? 0 : from[x];
-    }
-  });
-  for (Plane& plane : of_kind) plane = box_sums(plane, width_, height_);
-  for_each_row(height_, [&](int y) {
-    for (int x = 0; x < width_; ++x) of_kind[0].row(y)[x] = of_kind[kinds(y)[x]].row(y)[x];
-  });
-  return std::move(of_kind[0]);
-}
+Plane Neighbourhood::sums(const Plane& values) const { return box_sums(values, width_, height_, kinds_.data()); }
 
 Plane Neighbourhood::mean(const Plane& values) const {
   Plane means = sums(values);

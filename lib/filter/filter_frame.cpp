@@ -154,7 +154,6 @@ struct FrameFilter::State {
     for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
       if (middle.light.group(g)) filter_group(g, coverage, picture, image);
     renew_picture(raw, sum_layers(image), image);
-    leave_numbers(image);
   }
 };
 
@@ -185,6 +184,7 @@ void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
 
 Image FrameFilter::finish(Image image) {
   filter(image);
+  leave_numbers(image);
   write_remaining_noise(remaining_error(), image);
   return image;
 }
@@ -196,9 +196,9 @@ RemainingError FrameFilter::remaining_error() const { return state_->remaining.e
 namespace {
 
 /// Distance in pixels from which other pixels affect a pixel: the windows of both fits, two for smoothing and the
-/// one-surface test, the windows of unmix() and resolve(), ten times the window of choose(), and one for the light of
-/// the picture.
-constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 10 * 3 + 1; }
+/// one-surface test, the windows of unmix() and resolve(), six times the window of choose() for a lone candidate (its
+/// error and what it gives back, two means of means each), and one for the light of the picture.
+constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3 + 1; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
   Image out{width, height, {}, {}, {}, {}};
@@ -221,7 +221,7 @@ Image cut_out(const Image& image, int left, int top, int width, int height) {
 }  // namespace
 
 Image filter_alone(Image image, const FilterOptions& options) {
-  constexpr int kWide = 480, kHigh = 270;
+  constexpr int kWide = 640, kHigh = 360;
   FilterOptions of_tile = options;
   of_tile.dark = dark_of(picture_of(sum_layers(image), image));
   Image out{image.width, image.height, {}, {}, {}, {}};

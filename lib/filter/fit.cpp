@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "lib/core/parallel.h"
 #include "lib/filter/lane.h"
@@ -15,19 +16,23 @@ namespace {
 /// pixels of a window are in one column.
 constexpr float kPull = 0.02f;
 constexpr float kPlane = 3;  ///< variance of a fitted plane's value over the variance of a mean
-constexpr std::size_t kTaps = std::size_t(kMostPlaces) * kMostPlaces;
-using Taps = std::array<Float8, kTaps>;
-
 /// Sums of weight, weight dx ... over the window, for eight pixels at once.
 struct Moments {
   Float8 one{}, x{}, y{}, xx{}, xy{}, yy{};
 };
 
+/// Fits windows of 2 kRadius + 1 pixels a side; the compiler unrolls them.
+template <int kRadius>
 class StripFit {
  public:
   StripFit(const Surfaces& surfaces, const BothHalves& from, const BothHalves* guides, const FitOptions& options,
            BothHalves& out)
-      : surfaces_(surfaces), from_(from), guides_(guides), options_(options), out_(out) {}
+      : surfaces_(surfaces), from_(from), guides_(guides), options_(options), out_(out) {
+    const auto row = std::ptrdiff_t(surfaces.use.stride());
+    std::ptrdiff_t* offset = offsets_.data();
+    for (int dy = -kRadius; dy <= kRadius; ++dy)
+      for (int dx = -kRadius; dx <= kRadius; ++dx) *offset++ = options.stride * (dy * row + dx);
+  }
 
   void run(int y, std::size_t x0) {
     y_ = y;
@@ -36,9 +41,9 @@ class StripFit {
         // the last eight may reach into the margin, which is never stored
         std::min(kEight, std::size_t(surfaces_.width) - x0);
     Float8* same = same_.data();
-    for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
+    for (int dy = -kRadius; dy <= kRadius; ++dy) {
       const SurfaceEight row(surfaces_, y, dy * options_.stride, std::ptrdiff_t(x0));
-      for (int dx = -options_.radius; dx <= options_.radius; ++dx) *same++ = row.surface(dx * options_.stride);
+      for (int dx = -kRadius; dx <= kRadius; ++dx) *same++ = row.surface(dx * options_.stride);
     }
     alignas(32) std::array<float, kEight> support;
     for (std::size_t h = 0; h < 2; ++h) {
@@ -54,22 +59,24 @@ class StripFit {
   }
 
  private:
-  Float8 at(const Plane& plane, int dx, int dy) const {
-    return load8(plane.row(y_ + dy * options_.stride) + std::ptrdiff_t(x0_) + dx * options_.stride);
-  }
+  static constexpr std::size_t kTaps = std::size_t(2 * kRadius + 1) * (2 * kRadius + 1);
+  using Taps = std::array<Float8, kTaps>;
+
+  /// The first of the eight pixels; those of the window are at `offsets_` from there, because all planes have one size.
+  const float* middle(const Plane& plane) const { return plane.row(y_) + x0_; }
 
   /// Computes the weights of half h.
   Moments weigh(std::size_t h) {
-    const int radius = options_.radius;
+    const float* weights = middle(from_[h].weight);
     const Light* other = guides_ ? &(*guides_)[1 - h] : nullptr;
     Moments sums;
     if (other) take_own(*other);
     std::size_t tap = 0;
-    for (int dy = -radius; dy <= radius; ++dy) {
+    for (int dy = -kRadius; dy <= kRadius; ++dy) {
       Float8 one{}, x{}, xx{};
-      for (int dx = -radius; dx <= radius; ++dx, ++tap) {
-        Float8 weight = same_[tap] * at(from_[h].weight, dx, dy);
-        if (other) weight *= agreement(*other, dx, dy);
+      for (int dx = -kRadius; dx <= kRadius; ++dx, ++tap) {
+        Float8 weight = same_[tap] * load8(weights + offsets_[tap]);
+        if (other) weight *= agreement(offsets_[tap]);
         weights_[tap] = weight;
         const Float8 fx = all8(float(dx)), first = weight * fx;
         one += weight;
@@ -90,22 +97,24 @@ class StripFit {
   void take_own(const Light& light) {
     Float8 square{};
     for (std::size_t c = 0; c < 3; ++c) {
-      own_guide_[c] = at(light.guide[c], 0, 0);
+      guide_[c] = middle(light.guide[c]);
+      own_guide_[c] = load8(guide_[c]);
       square += own_guide_[c] * own_guide_[c];
     }
-    own_variance_ = at(light.guide_variance, 0, 0) + rounding_variance(square);
+    guide_variance_ = middle(light.guide_variance);
+    own_variance_ = load8(guide_variance_) + rounding_variance(square);
   }
 
   /// value_weight() of the guides.
-  Float8 agreement(const Light& light, int dx, int dy) const {
+  Float8 agreement(std::ptrdiff_t offset) const {
     Float8 difference{};
     for (std::size_t c = 0; c < 3; ++c) {
-      const Float8 off = own_guide_[c] - at(light.guide[c], dx, dy);
+      const Float8 off = own_guide_[c] - load8(guide_[c] + offset);
       difference = multiply_add(off, off, difference);
     }
     const Float8 z =
         1 -
-        difference / (kValueErrors * kValueErrors * (own_variance_ + at(light.guide_variance, dx, dy)) + kTinyVariance);
+        difference / (kValueErrors * kValueErrors * (own_variance_ + load8(guide_variance_ + offset)) + kTinyVariance);
     return where(z > 0, z * z);
   }
 
@@ -123,9 +132,9 @@ class StripFit {
                  a = per_weight - b * mx - c * my;
     store8(per_weight, per_weight_.data());
     std::size_t tap = 0;
-    for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
+    for (int dy = -kRadius; dy <= kRadius; ++dy) {
       const Float8 of_row = multiply_add(c, all8(float(dy)), a);
-      for (int dx = -options_.radius; dx <= options_.radius; ++dx, ++tap)
+      for (int dx = -kRadius; dx <= kRadius; ++dx, ++tap)
         kernel_[tap] = weights_[tap] * multiply_add(b, all8(float(dx)), of_row);
     }
   }
@@ -133,15 +142,14 @@ class StripFit {
   /// Sum over the window of factors (value - own), for three planes. Differences to the own value keep constant light
   /// exact, to the last bit.
   std::array<Float8, 3> sum_of(const Taps& factors, const ColourPlane& from) const {
-    const std::array<Float8, 3> own{at(from[0], 0, 0), at(from[1], 0, 0), at(from[2], 0, 0)};
+    const float *red = middle(from[0]), *green = middle(from[1]), *blue = middle(from[2]);
+    const Float8 own_r = load8(red), own_g = load8(green), own_b = load8(blue);
     Float8 r{}, g{}, b{};
-    std::size_t tap = 0;
-    for (int dy = -options_.radius; dy <= options_.radius; ++dy)
-      for (int dx = -options_.radius; dx <= options_.radius; ++dx, ++tap) {
-        r = multiply_add(factors[tap], at(from[0], dx, dy) - own[0], r);
-        g = multiply_add(factors[tap], at(from[1], dx, dy) - own[1], g);
-        b = multiply_add(factors[tap], at(from[2], dx, dy) - own[2], b);
-      }
+    for (std::size_t tap = 0; tap < kTaps; ++tap) {
+      r = multiply_add(factors[tap], load8(red + offsets_[tap]) - own_r, r);
+      g = multiply_add(factors[tap], load8(green + offsets_[tap]) - own_g, g);
+      b = multiply_add(factors[tap], load8(blue + offsets_[tap]) - own_b, b);
+    }
     return {r, g, b};
   }
 
@@ -177,6 +185,9 @@ class StripFit {
   BothHalves& out_;
   int y_ = 0;
   std::size_t x0_ = 0, count_ = 0;
+  std::array<std::ptrdiff_t, kTaps> offsets_;           ///< by place in the window, in floats of a plane
+  std::array<const float*, 3> guide_{};
+  const float* guide_variance_ = nullptr;
   Float8 own_variance_{};
   std::array<Float8, 3> own_guide_{};
   Taps same_, weights_, kernel_;                        ///< by place in the window, row after row
@@ -209,11 +220,15 @@ BothHalves fit(const Surfaces& surfaces, const BothHalves& from, const BothHalve
       for (std::size_t c = 0; c < 3 && !from[h].layers[l][c].empty(); ++c)
         out[h].layers[l][c] = Plane::unset(surfaces.width, surfaces.height);
   }
-  parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
-    StripFit strip(surfaces, from, guides, options, out);
-    for (int y = int(first); y < int(last); ++y)
-      for (std::size_t x = 0; x < std::size_t(surfaces.width); x += kEight) strip.run(y, x);
-  });
+  const auto fit_all = [&]<int kRadius>(std::integral_constant<int, kRadius>) {
+    parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
+      StripFit<kRadius> strip(surfaces, from, guides, options, out);
+      for (int y = int(first); y < int(last); ++y)
+        for (std::size_t x = 0; x < std::size_t(surfaces.width); x += kEight) strip.run(y, x);
+    });
+  };
+  if (options.radius == 1) fit_all(std::integral_constant<int, 1>());
+  else fit_all(std::integral_constant<int, 2>());
   for (Light& half : out) take_guide(surfaces, variance, half);
   return out;
 }

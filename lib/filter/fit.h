@@ -6,11 +6,10 @@
 namespace tempolux {
 
 struct FitOptions {
-  int radius = 2;      ///< windows have 2 radius + 1 pixels a side, at most kMostPlaces in all
+  int radius = 2;      ///< windows have 2 radius + 1 pixels a side; 1 or 2
   int stride = 1;      ///< distance in pixels between the window's pixels; radius * stride is at most kMargin
   bool alike = false;  ///< both halves get the same weights, and guides are not used
 };
-inline constexpr int kMostPlaces = 5;
 
 /// For each half h, pixel p, layer and channel: the value at p of the plane
 ///     a + b dx + c dy   with the least sum over q of   weight(p, q) (light(q) - a - b dx - c dy)^2,

@@ -71,11 +71,18 @@ void EnvironmentLight::build_distribution() {
   std::vector<double> row_weight(height_ + 1);
   cell_end_.resize(std::size_t(height_ + 1) * width_);
   parallel_chunks(height_ + 1, 16, [&](std::size_t first, std::size_t last) {
-    std::vector<double> weight(width_);
+    std::vector<double> weight(width_), upper(width_ + 1), lower(width_ + 1);
+    const auto take_row = [&](std::size_t y, std::vector<double>& to) {
+      for (std::uint32_t x = 0; x < width_; ++x) to[x] = luminance(Rgbd(environment_.radiance[y * width_ + x]));
+      to[width_] = to[0];
+    };
+    take_row(first == 0 ? 0 : first - 1, lower);
     for (std::size_t row = first; row < last; ++row) {
+      std::swap(upper, lower);
+      take_row(std::min<std::size_t>(row, height_ - 1), lower);
       double sum = 0;
       for (std::uint32_t x = 0; x < width_; ++x)
-        sum += weight[x] = luminances(corners(std::uint32_t(row), x)).at(0.5, 0.5);
+        sum += weight[x] = Luminances{upper[x], upper[x + 1], lower[x], lower[x + 1]}.at(0.5, 0.5);
       const double a = polar(std::uint32_t(row)), b = polar(std::uint32_t(row) + 1);
       row_weight[row] = sum * (std::cos(a) - std::cos(b));
       const double scale = sum > 0 ? (kUnits - width_) / sum : 0;

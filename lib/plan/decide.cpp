@@ -63,13 +63,14 @@ struct Look {
 
 class FramePilot {
  public:
-  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds)
+  /// tree: the pilots of a segment share the tree of its static scene.
+  FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds, StaticTree& tree)
       : kinds_(kinds),
         wish_(wish),
         frame_(source.at(number, true)),
         table_(source.emission(frame_.frame)),
         view_(view_at(frame_, source, wish)),
-        tracer_(frame_),
+        tracer_(frame_, tree),
         lights_(frame_, table_) {}
 
   /// `places`: number of places of the rough frame. enough(look): true if the measurement answers the question.
@@ -211,7 +212,7 @@ int pictures_together(std::size_t pictures, const Decisions& d) {
 
 /// Decides which parts of a frame's light follow from the light of the static scene.
 void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source,
-                   Decisions& d) {
+                   StaticTree& tree, Decisions& d) {
   const std::string name = "photon-trace --map dynamic";
   const auto anew = [&](const std::string& because) { d.reasons.push_back({name, because}); };
   const std::vector<int> states = segment.states();
@@ -227,7 +228,7 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
                static_work = d.records_of(together) / together;
   const MovingChoice choice =
       wish.moving == "auto"
-          ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(),
+          ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds, tree).moving(), states.size(),
                           static_work)
           : MovingChoice{*named<MovingMethod>(kMovingMethods, wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
@@ -249,19 +250,20 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
 }
 
 /// For light textures: the number of light paths that stores the wanted photons, and the width of the filter.
-void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
+void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, StaticTree& tree,
+                    Decisions& d) {
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
   double kernel = 0;
   for (const int frame : d.looked) {
-    FramePilot pilot(wish, source, frame, d.kinds);
+    FramePilot pilot(wish, source, frame, d.kinds, tree);
     if (frame == d.looked[d.looked.size() / 2]) kernel = pilot.kernel();
     pilots.push_back(pilot.preview());
   }
   const PreviewChoice choice = choose_preview(pilots, kernel, wish.photons, kPreviewWindow);
   d.photon_paths = choice.paths;
   d.texture_width = choice.width;
-  d.view = view_of(segment, wish.width, wish.height, source);
+  d.view = view_of(segment, wish.width, wish.height, source, tree);
   d.reasons.push_back(
       {"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
 }
@@ -286,8 +288,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
   return frames;
 }
 
-std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source) {
-  StaticTree static_tree;
+std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source, StaticTree& tree) {
   SeenAround seen;
   double radius = 0;
   bool from_afar = false;
@@ -295,7 +296,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     const SceneFrame frame = source.at(picture, false);
     from_afar = from_afar || shines_from_afar(frame);
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
-    const Tracer tracer(frame, static_tree);
+    const Tracer tracer(frame, tree);
     look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // With lamps only, photons are not aimed, and in a room points lie on all surfaces: the first picture decides.
     if (picture == segment.first && !from_afar && spheres_around(seen.places, radius).empty()) return "";
@@ -306,25 +307,26 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
 
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source) {
   Decisions d;
+  StaticTree tree;
   d.pixel_error = wish.pixel_error;
   d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
   d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe"
                                                                  : "nothing reflects by a Lambert lobe"});
   if (d.photons() && wish.method == FrameMethod::preview) {
-    decide_preview(segment, wish, source, d);
+    decide_preview(segment, wish, source, tree, d);
   } else if (d.photons()) {
     if (wish.indirect == "paths" && media)
       throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
     d.photon_paths = 0;
     std::unique_ptr<FramePilot> middle;
-    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds); };
+    const auto pilot_of = [&](int frame) { return std::make_unique<FramePilot>(wish, source, frame, d.kinds, tree); };
     join(look_at(d.looked, wish, media, pilot_of, middle), wish, media, d);
     if (d.records()) d.new_share = middle->new_share(segment);
     d.together = pictures_together(segment.pictures().size(), d);
-    decide_moving(segment, wish, media, source, d);
+    decide_moving(segment, wish, media, source, tree, d);
     decide_split(*middle, wish, d);
-    if (d.photons()) d.view = view_of(segment, wish.width, wish.height, source);
+    if (d.photons()) d.view = view_of(segment, wish.width, wish.height, source, tree);
   }
   decide_walk(segment, d);
   return d;

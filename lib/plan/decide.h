@@ -10,6 +10,7 @@
 #include "lib/plan/decisions.h"
 #include "lib/plan/plan.h"
 #include "lib/scene/at_frame.h"
+#include "lib/trace/trace.h"
 
 namespace tempolux {
 
@@ -34,8 +35,9 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
 
 /// What the camera sees over a segment, as the content of a view file (formats/plan/view.h): up to 16 different
 /// pictures, evenly spaced. "" if the scene is not much larger than what is seen, so that photons need no aim and
-/// points lie everywhere. `width` and `height` of the pictures in pixels; only their ratio counts.
-std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source);
+/// points lie everywhere. `width` and `height` of the pictures in pixels; only their ratio counts. tree: of the static
+/// scene, if it was built before.
+std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source, StaticTree& tree);
 
 /// Hash of all that decide() depends on, so that its result can be kept in a file.
 std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool media);

@@ -23,7 +23,8 @@ const std::vector<formats::ViewSphere>& Importance::at(int frame) {
   const SceneSource source{[&](int f, bool with_media) { return input_.at(f, with_media); },
                            [&](int f) { return input_.emission(f); }, camera};
   const Wish usual;  // default picture size, of which only the aspect ratio counts
-  const std::string text = view_of(plan.segments.front(), usual.width, usual.height, source);
+  StaticTree tree;
+  const std::string text = view_of(plan.segments.front(), usual.width, usual.height, source, tree);
   if (!text.empty()) found->second = formats::parse_view(text, "what the camera sees");
   return found->second;
 }
