@@ -145,7 +145,7 @@ class Placement {
     });
     for (std::size_t i = 0; i < records.size(); ++i)
       if (records[i] && store_.add(*records[i])) {
-        if (source_) source_->added(i);
+        if (source_ && source_->added) source_->added(i);
         if (again[i]) compare(*records[i], *again[i], counts_);
       }
   }
