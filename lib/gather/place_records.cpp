@@ -114,8 +114,7 @@ class Placement {
   };
 
   bool is_covered(const SeenPoint& seen) const {
-    return store_.covers(seen.surface.position, seen.normal, options_.min_weight,
-                         options_.min_radius_px * seen.footprint);
+    return store_.covers(seen.surface.position, seen.normal, options_.min_weight);
   }
 
   IrradianceRecord gathered(const FinalGather& gather, const SeenPoint& seen, GatherCounts& counts) const {

@@ -72,7 +72,7 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const auto matters = [&](const SeenPoint& seen) {
     return rides(seen) || field.gathered_share(seen.surface.position, seen.normal) > 0;
   };
-  RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
+  RecordStore store;
   const GatherCounts counts = place_for_all({input.gather, input.tracer, options, matters, &source}, cameras, store);
   cache.gathered.assign(store.records().begin(), store.records().end());
   cache.least_cosine = store.least_cosine();

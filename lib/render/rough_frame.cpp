@@ -243,7 +243,7 @@ struct Pair {
 /// Places records where the picture needs them. Distances decide the places, so no light is gathered.
 RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   const PlacementOptions options;
-  RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
+  RecordStore store;
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& counts) {
     IrradianceRecord record;
     record.position = seen.surface.position;

@@ -136,7 +136,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   }
   const PointsRead read(tool, tracer, lights, points, std::move(high_shares), options.gather);
   const FinalGather gather(tracer, lights, read.lookup, options.gather);
-  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
+  RecordStore store;
 
   tool.stats().phase("records", true);
   const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state),
@@ -167,7 +167,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const std::string name = frame_name(options.update, number);
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
-  RecordStore fixed({.least_cosine = 0});
+  RecordStore fixed({.least_cosine = float(file.header.least_cosine)});
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
