@@ -92,7 +92,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, Options options, int n
   tool.stats().phase("write");
   base.image.text["tempolux:history"] += smoke.history + tool.history_line(number);
   set_identity(base.image, identity_of(frame));
-  save_exr(output.temporary_path(), base.image, {options.half_float, ExrWriteOptions::Compression::zip});
+  save_exr(output.temporary_path(), base.image, {options.half_float});
   output.commit();
   tool.stats().end_phase();
   tool.stats().count("rays", double(smoke.rays.camera + smoke.rays.shadow + smoke.rays.bounce));

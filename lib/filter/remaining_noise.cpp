@@ -10,23 +10,14 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBlock = 32;        ///< pixels: edge of the blocks from which the standard error is estimated
-constexpr double kMiddle = 0.18;  ///< value to which the exposure brings the median of the pixels' means
+constexpr int kBlock = 32;  ///< pixels: edge of the blocks from which the standard error is estimated
 const std::string kNoise = "tempolux:noise.";
 
-/// The factor that brings the median of the pixels' means to kMiddle. If more than half of the pixels are black, the
-/// median of the others is used; 1 for a black picture.
 double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
-  std::vector<float> means(picture[0]->size());
+  std::vector<double> means(picture[0]->size());
   for (std::size_t p = 0; p < means.size(); ++p)
-    means[p] = ((*picture[0])[p] + (*picture[1])[p] + (*picture[2])[p]) / 3;
-  const auto median = [&] {
-    const auto middle = means.begin() + std::ptrdiff_t(means.size() / 2);
-    std::nth_element(means.begin(), middle, means.end());
-    return double(*middle);
-  };
-  if (!means.empty() && !(median() > 0)) std::erase_if(means, [](float mean) { return !(mean > 0); });
-  return means.empty() ? 1 : kMiddle / median();
+    means[p] = double(((*picture[0])[p] + (*picture[1])[p] + (*picture[2])[p]) / 3);
+  return tempolux::exposure_of(std::move(means));
 }
 
 constexpr double kWhite = 255;

@@ -58,7 +58,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
   return changes;
 }
 
-InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
+InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const RecordChange> changes,
                                const InfluenceThresholds& thresholds)
     : store_({.least_cosine = 0}), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
@@ -71,7 +71,7 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
     pair.radius_unclamped = records[i].radius_unclamped;
     pair.object = records[i].object;
     pair.clearance = records[i].clearance;
-    pair.irradiance = {influences[i], max_component(records[i].irradiance), 0};
+    pair.irradiance = {changes[i].influence, max_component(records[i].irradiance), 0};
     sum += double(pair.irradiance.g);
     pairs.push_back(pair);
   }

@@ -40,8 +40,8 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 /// Influence at any place, interpolated between static records as their irradiance is. Thread-safe.
 class InfluenceField {
  public:
-  /// influences[i] [W/m^2] belongs to records[i], which store their static irradiance.
-  InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
+  /// changes[i] belongs to records[i], which store their static irradiance.
+  InfluenceField(std::span<const IrradianceRecord> records, std::span<const RecordChange> changes,
                  const InfluenceThresholds& thresholds);
 
   /// Influence in the unit of the thresholds: W/m^2 if they are absolute, else the share of the largest channel of

@@ -114,8 +114,7 @@ class Placement {
   };
 
   bool is_covered(const SeenPoint& seen) const {
-    return store_.covers(seen.surface.position, seen.normal, options_.min_weight,
-                         options_.min_radius_px * seen.footprint);
+    return store_.covers(seen.surface.position, seen.normal, options_.min_weight);
   }
 
   IrradianceRecord gathered(const FinalGather& gather, const SeenPoint& seen, GatherCounts& counts) const {
@@ -145,7 +144,7 @@ class Placement {
     });
     for (std::size_t i = 0; i < records.size(); ++i)
       if (records[i] && store_.add(*records[i])) {
-        if (source_) source_->added(i);
+        if (source_ && source_->added) source_->added(i);
         if (again[i]) compare(*records[i], *again[i], counts_);
       }
   }

@@ -44,8 +44,8 @@ struct RecordSource {
   /// Makes a record with its limited radius and its clearance. slot: index below kPlacedTogether among the records that
   /// are gathered in parallel.
   std::function<IrradianceRecord(const SeenPoint&, std::size_t slot, GatherCounts&)> gather;
-  /// Called when the record of a slot has been added to the store.
-  std::function<void(std::size_t slot)> added;
+  /// Called when the record of a slot has been added to the store; may be empty.
+  std::function<void(std::size_t slot)> added = {};
 };
 inline constexpr std::size_t kPlacedTogether = 256;
 

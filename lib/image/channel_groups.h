@@ -1,6 +1,7 @@
 // lib/image/channel_groups.h -- the groups of channels that --channels names (formats/frames/frames.md).
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,11 @@ namespace tempolux {
 /// indirect and volume; id: id.object; motion: forward.*, backward.*, valid, speed; any other group: the channel of
 /// this name and GROUP.*.
 bool is_in_group(std::string_view channel, std::string_view group);
+
+/// True if the requested groups include this one.
+inline bool asked(const std::vector<std::string>& groups, std::string_view group) {
+  return std::ranges::find(groups, group) != groups.end();
+}
 
 /// Removes all channels outside these groups. Throws InputError for a group of which the image has no channel.
 void keep_channels(const std::vector<std::string>& groups, Image& image);

@@ -102,9 +102,8 @@ Matrix to_imath(const std::array<double, 16>& m) {
 
 /// A header with size, compression and channels only.
 Imf::Header make_bare_header(const Image& image, const ExrWriteOptions& options) {
-  const bool zip = options.compression == ExrWriteOptions::Compression::zip;
   Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
-                     zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
+                     options.zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
   header.zipCompressionLevel() = kDeflateLevel;
   for (const Channel& channel : image.channels)
     header.channels().insert(channel.name, Imf::Channel(!channel.ids.empty()                      ? Imf::UINT
@@ -147,8 +146,7 @@ class MemoryOut : public Imf::OStream {
 
 /// Lines [first, first + count) of the image as chunks: int32 line, int32 size, bytes.
 std::string encode_slab(const Image& image, const ExrWriteOptions& options, int first, int count) {
-  if (options.compression == ExrWriteOptions::Compression::none && !options.half)
-    return plain_lines(image, first, count);
+  if (!options.zip && !options.half) return plain_lines(image, first, count);
   Imf::Header header = make_bare_header(image, options);
   const Imath::Box2i window({0, first}, {image.width - 1, first + count - 1});
   header.dataWindow() = window;

@@ -15,7 +15,7 @@ namespace tempolux {
 struct ExrWriteOptions {
   bool half = false;  ///< channels whose last name is R, G, B or A as float16 (nearest, ties to even);
                       ///< InputError for |value| > 65504. Z, N, P, motion and all others keep 32 bits.
-  enum class Compression { none, zip } compression = Compression::zip;
+  bool zip = true;    ///< compress the samples
 };
 
 /// Writes one scan-line EXR, single part, top line first, channels sorted by name (formats/frames/frames.md). The file

@@ -33,7 +33,7 @@ struct Image {
   std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
   const Channel* find(std::string_view name) const;  ///< nullptr if absent
   Channel* find(std::string_view name);
-  /// Adds a channel of zeros and returns it (the reference is valid until the next call).
+  /// Adds a channel of zeros and returns it. The reference is valid until the next call; samples stay where they are.
   Channel& add(std::string name);
   Channel& add_ids(std::string name);
   /// The three planes LAYER.R, .G, .B; layer "" is R, G, B. Throws InputError listing the layers if missing.

@@ -53,4 +53,14 @@ double srgb_code(double value) {
   return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * table.at(v) - 0.055);
 }
 
+double exposure_of(std::vector<double> means) {
+  const auto median = [&] {
+    const auto middle = means.begin() + std::ptrdiff_t(means.size() / 2);
+    std::nth_element(means.begin(), middle, means.end());
+    return *middle;
+  };
+  if (!means.empty() && !(median() > 0)) std::erase_if(means, [](double mean) { return !(mean > 0); });
+  return means.empty() ? 1 : 0.18 / median();
+}
+
 }  // namespace tempolux

@@ -1,6 +1,8 @@
 // lib/image/srgb.h -- the sRGB transfer.
 #pragma once
 
+#include <vector>
+
 namespace tempolux {
 
 /// sRGB transfer (IEC 61966-2-1), encoded [0, 1] to linear [0, 1] and back. The inverse maps values below 0 to 0 and
@@ -10,5 +12,9 @@ float linear_to_srgb(float linear);
 
 /// sRGB code of a linear value, 0 to 255, not rounded; the value is clipped at 0 and 1.
 double srgb_code(double value);
+
+/// Factor that brings the median of `means`, the mean channels of a picture's pixels, to .18. If more than half of them
+/// are 0, the median of the others is used. 1 for a black picture.
+double exposure_of(std::vector<double> means);
 
 }  // namespace tempolux

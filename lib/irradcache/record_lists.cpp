@@ -42,7 +42,7 @@ void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
   const Vec3d local(r.position), normal(r.normal);
-  const double c = double(std::min(options_.least_cosine, kWideCosine)), width = 1 / level.inverse_cell;
+  const double c = double(options_.least_cosine), width = 1 / level.inverse_cell;
   const double off =
       double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));

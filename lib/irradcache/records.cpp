@@ -20,16 +20,11 @@ bool is_usable(const IrradianceRecord& r) {
 
 }  // namespace
 
-float least_cosine_of(float error_bound) {
-  return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 1 - kWideCosine);
-}
-
 template <class Found>
-inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine,
-                                const Found& found) {
+inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, const Found& found) const {
   constexpr float kSlack = 1e-5f;  // rounding may differ between vector lanes and scalars; the exact test follows
   const auto all = [](float x) { return _mm256_set1_ps(x); };
-  const __m256 least = all(least_cosine - kSlack), reach = all(1 + kSlack);
+  const __m256 least = all(options_.least_cosine - kSlack), reach = all(1 + kSlack);
   for (const Eight& e : eights) {
     const auto of = [](const float* lanes) { return _mm256_load_ps(lanes); };
     const __m256 dx = all(position.x) - of(e.x), dy = all(position.y) - of(e.y), dz = all(position.z) - of(e.z),
@@ -95,32 +90,31 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
 }
 
 template <class Found>
-inline bool RecordStore::any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const {
+inline bool RecordStore::any_near(Vec3 position, Vec3 normal, const Found& found) const {
   const Vec3d local(position);
   return std::ranges::any_of(levels_, [&](const Level& level) {
     const Bucket& bucket = level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())];
-    return any_of(bucket.eights(), position, normal, least_cosine, found);
+    return any_of(bucket.eights(), position, normal, found);
   });
 }
 
-inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position,
-                                    Vec3 normal) const {
+inline float RecordStore::weight_of(const Entry& entry, Vec3 position, Vec3 normal) const {
   const Vec3 d = position - entry.position;
   const float d2 = length2(d);
-  if (d2 >= radius * radius) return 0;
+  if (d2 >= entry.radius * entry.radius) return 0;
   const float cosine = dot(normal, entry.normal);
-  if (cosine <= least_cosine) return 0;
+  if (cosine <= options_.least_cosine) return 0;
   if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
-  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - least_cosine));
-  const float weight = std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
+  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.least_cosine));
+  const float weight = std::max(0.0f, (1 - std::sqrt(d2) / entry.radius) * (1 - angle));
   if (!(weight > 0)) return 0;
   const Clearance& seen = records_[entry.record].clearance;
   return seen.contains(d, entry.normal) ? weight : 0;
 }
 
-inline void RecordStore::accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal,
-                                    Rgb& sum, Interpolated& result) const {
-  const float w = weight_of(entry, radius, least_cosine, position, normal);
+inline void RecordStore::accumulate(const Entry& entry, Vec3 position, Vec3 normal, Rgb& sum,
+                                    Interpolated& result) const {
+  const float w = weight_of(entry, position, normal);
   if (!(w > 0)) return;
   const IrradianceRecord& r = records_[entry.record];
   const Vec3 d = position - entry.position;
@@ -136,16 +130,10 @@ inline void RecordStore::accumulate(const Entry& entry, float radius, float leas
 }
 
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
-  Interpolated result = interpolate(position, normal, options_.least_cosine);
-  if (!(result.weight > 0) && options_.least_cosine > kWideCosine) result = interpolate(position, normal, kWideCosine);
-  return result;
-}
-
-RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, float least_cosine) const {
   Interpolated result;
   Rgb sum{0.0f};
-  any_near(least_cosine, position, normal, [&](const Entry& entry) {
-    accumulate(entry, entry.radius, least_cosine, position, normal, sum, result);
+  any_near(position, normal, [&](const Entry& entry) {
+    accumulate(entry, position, normal, sum, result);
     return false;
   });
   if (result.weight > 0) {
@@ -158,23 +146,17 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, f
 float RecordStore::weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const {
   const Vec3 position = records_[record].position, normal = records_[record].normal;
   float sum = 0;
-  any_near(options_.least_cosine, position, normal, [&](const Entry& entry) {
-    if (entry.record < record && (marked.empty() || !marked[entry.record]))
-      sum += weight_of(entry, entry.radius, options_.least_cosine, position, normal);
+  any_near(position, normal, [&](const Entry& entry) {
+    if (entry.record < record && (marked.empty() || !marked[entry.record])) sum += weight_of(entry, position, normal);
     return false;
   });
   return sum;
 }
 
-bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_reach) const {
-  const auto covered = [&](float least_cosine, float reach) {
-    float sum = 0;
-    return any_near(least_cosine, position, normal, [&](const Entry& entry) {
-      return (sum += weight_of(entry, std::min(entry.radius, reach), least_cosine, position, normal)) >= weight;
-    });
-  };
-  if (covered(options_.least_cosine, INFINITY)) return true;
-  return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
+bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
+  float sum = 0;
+  return any_near(position, normal,
+                  [&](const Entry& entry) { return (sum += weight_of(entry, position, normal)) >= weight; });
 }
 
 void RecordStore::complete_noise(std::size_t first, float factor) {

@@ -32,19 +32,10 @@ struct IrradianceRecord {
 };
 
 struct InterpolationOptions {
-  /// A record counts if the cosine between its normal and the surface's is above least_cosine, in [0, 1).
+  /// A record counts if the cosine between its normal and the surface's is above least_cosine, in [0, 1): within 20
+  /// degrees.
   float least_cosine = 0.94f;
 };
-
-/// least_cosine of records placed with this error bound (lib/gather/place_records.h). On curved surfaces a bright spot
-/// rises over the horizon faster than gradients predict: a ball lit from the side came out 4 % too dark there with 20
-/// degrees and 1 % with 10. As for radii, the angle follows the bound,
-///     1 - least_cosine = 0.375 error_bound^2,   50 degrees x error_bound,
-/// within 5 to 20 degrees. Normals of fine meshes turn by more than 5 degrees within a pixel, and wider angles than 20
-/// degrees are wrong.
-float least_cosine_of(float error_bound);
-/// Cosine of about 20 degrees.
-inline constexpr float kWideCosine = 0.94f;
 
 /// Finds records by place. A record is listed in the cells that its validity sphere meets near its tangent plane. The
 /// cells belong to hashed grids, one per level; cell sizes are powers of two, from one to two radii. The cost of a
@@ -53,8 +44,6 @@ class RecordStore {
  public:
   explicit RecordStore(const InterpolationOptions& options = {}) : options_(options) {}
 
-  /// Narrows the angle within which records count, if least_cosine is larger than the present value.
-  void narrow(float least_cosine) { options_.least_cosine = std::max(options_.least_cosine, least_cosine); }
   /// Records count above this cosine between normals.
   float least_cosine() const { return options_.least_cosine; }
 
@@ -83,16 +72,13 @@ class RecordStore {
   /// that records have no visible borders. Every extrapolation is clamped at 0. A record is not valid if the point
   /// does not lie on the record's surface: |(x - x_i) . (n + n_i)/2| > 0.05 r_i (0 along circles). Ward 1988 tests
   /// only points behind the record. Points in front matter, too: the bright ground below a plate's rim would light
-  /// the top of the plate. A record is not valid either if an obstacle lies between (clearance). If no record is
-  /// valid, records within the angle of kWideCosine are used.
+  /// the top of the plate. A record is not valid either if an obstacle lies between (clearance).
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Sum of the weights, at a record's own place, of the records added before it, except the marked ones (`marked` may
   /// be empty).
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
-  /// True if the sum of the weights is at least `weight`; stops as soon as it is. Also true if the sum would be at
-  /// least `weight` with all radii limited to least_reach [m] and within the angle of kWideCosine: where normals turn
-  /// quickly, records need not be denser than the smallest radius allows.
-  bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
+  /// True if the sum of the weights is at least `weight`; stops as soon as it is.
+  bool covers(Vec3 position, Vec3 normal, float weight) const;
   /// Multiplies IrradianceRecord::noise of the records from `first` on, which is that of their rays, and adds
   /// points_noise.
   void complete_noise(std::size_t first, float factor);
@@ -138,16 +124,14 @@ class RecordStore {
   /// Calls found(entry), in order, for the entries that a slightly widened test of place and normal accepts, until
   /// found returns true.
   template <class Found>
-  static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);
+  bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, const Found& found) const;
   /// True if found(entry) is true for a record that may be valid at the point. Each record is tried once, until one is
   /// found.
   template <class Found>
-  bool any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const;
-  Interpolated interpolate(Vec3 position, Vec3 normal, float least_cosine) const;
-  /// Weight of a record at a point, with another radius than its own; 0 where it is not valid.
-  float weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const;
-  void accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal, Rgb& sum,
-                  Interpolated& result) const;
+  bool any_near(Vec3 position, Vec3 normal, const Found& found) const;
+  /// Weight of a record at a point; 0 where it is not valid.
+  float weight_of(const Entry& entry, Vec3 position, Vec3 normal) const;
+  void accumulate(const Entry& entry, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
 
   InterpolationOptions options_;
   std::vector<IrradianceRecord> records_;

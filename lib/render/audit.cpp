@@ -22,12 +22,6 @@ constexpr double kStudent = 3.25 / 3;
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
 constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8;
 
-double light_of(const Layers& pixel) {
-  double sum = 0;
-  for (const Rgb& radiance : pixel.value) sum += channel_mean(Rgbd(radiance));
-  return sum;
-}
-
 }  // namespace
 
 AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool paths, std::uint64_t seed) {
@@ -55,7 +49,7 @@ FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::
   for (std::size_t p = 0; p < objects.size(); ++p) {
     if (!mask_.empty() && !mask_[p]) continue;
     const Layers& pixel = frame.mean.pixels[p];
-    picture_ += light_of(pixel);
+    picture_ += radiance_of(pixel);
     for_parts_of(p, [&](std::size_t part) {
       ++parts_[part].pixels;
       for (std::size_t l = 0; l < kLayerCount; ++l) sums_[part].shown[l] += channel_mean(Rgbd(pixel.value[l]));

@@ -57,26 +57,22 @@ GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, 
 GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
                                 LocalisedRecords& cache) {
   cache.changes = record_changes(cache.standing, input.changes, input.points, input.seed);
-  std::vector<float> influences;
-  for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
-  const InfluenceField field(cache.standing, influences, input.influence);
+  const InfluenceField field(cache.standing, cache.changes, input.influence);
   const MovingObjects moving(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
   // E_y is blended with the share f, so its squared error counts by f^2. With f times the rays this error is 1 / f
   // times as large. In the picture it is f times, so at most once, the error of a record with all rays.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
-                              const float share =
-                                  rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
-                              IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);
-                              limit_radius(record, seen.footprint, options);
-                              input.gather.look_around(seen.surface, record);
-                              return record;
-                            },
-                            [](std::size_t) {}};
+    const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
+    IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);
+    limit_radius(record, seen.footprint, options);
+    input.gather.look_around(seen.surface, record);
+    return record;
+  }};
   const auto matters = [&](const SeenPoint& seen) {
     return rides(seen) || field.gathered_share(seen.surface.position, seen.normal) > 0;
   };
-  RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
+  RecordStore store;
   const GatherCounts counts = place_for_all({input.gather, input.tracer, options, matters, &source}, cameras, store);
   cache.gathered.assign(store.records().begin(), store.records().end());
   cache.least_cosine = store.least_cosine();

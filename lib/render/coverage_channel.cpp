@@ -6,6 +6,7 @@
 #include <span>
 
 #include "lib/core/parallel.h"
+#include "lib/image/channel_groups.h"
 #include "lib/image/pixel_surfaces.h"
 
 namespace tempolux {
@@ -129,12 +130,11 @@ class PixelCoverage {
 
 void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                           Image& image) {
-  if (std::find(channels.begin(), channels.end(), "coverage") == channels.end()) return;
-  image.add_ids("coverage");
-  std::vector<std::uint32_t>& other = image.add_ids("coverage.other").ids;
-  std::vector<std::uint32_t>& around = image.find("coverage")->ids;
+  if (!asked(channels, "coverage")) return;
+  std::uint32_t* const around = image.add_ids("coverage").ids.data();
+  std::uint32_t* const other = image.add_ids("coverage.other").ids.data();
   const PixelCoverage pixels(scene, view);
-  parallel_chunks(around.size(), 1024, [&](std::size_t first, std::size_t last) {
+  parallel_chunks(image.pixel_count(), 1024, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       const PixelCoverage::Counts counts =
           pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));

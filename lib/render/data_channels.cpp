@@ -5,6 +5,7 @@
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
+#include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
 #include "lib/render/frame_renderer.h"
 
@@ -15,10 +16,6 @@ const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specul
                                        "indirect", "volume", "Z",        "N",         "P",        "id",
                                        "albedo",   "motion", "coverage", "influence", "variance", "diffuse.variance",
                                        "samples",  "halves", "seen"};
-
-bool asked(const std::vector<std::string>& channels, const char* name) {
-  return std::find(channels.begin(), channels.end(), name) != channels.end();
-}
 
 /// Finds the same point of the same surface in another frame, where movers have moved or deformed it. The same surface
 /// has the same node and the same rank among that node's surfaces; the same point has the same barycentric coordinates.
@@ -69,21 +66,16 @@ struct DataPlanes {
   std::uint32_t* id = nullptr;
 
   DataPlanes(const std::vector<std::string>& channels, Image& image) {
-    const auto names = [&](const char* group, const std::vector<const char*>& all) {
-      return asked(channels, group) ? all : std::vector<const char*>{};
+    const auto add = [&](const char* group, float** plane, std::initializer_list<const char*> names) {
+      if (!asked(channels, group)) return;
+      for (const char* name : names) *plane++ = image.add(name).values.data();
     };
-    const std::array<std::vector<const char*>, 5> added{
-        names("Z", {"Z"}), names("N", {"N.X", "N.Y", "N.Z"}), names("P", {"P.X", "P.Y", "P.Z"}),
-        names("albedo", {"albedo.R", "albedo.G", "albedo.B"}),
-        names("motion", {"forward.u", "forward.v", "backward.u", "backward.v"})};
-    // All channels are added before any is looked up: adding may move them.
-    for (const auto& group : added)
-      for (const char* name : group) image.add(name);
-    if (asked(channels, "id")) image.add_ids("id.object");
-    const std::array<float**, 5> planes{&z, normal.data(), position.data(), albedo.data(), motion.data()};
-    for (std::size_t g = 0; g < added.size(); ++g)
-      for (std::size_t c = 0; c < added[g].size(); ++c) planes[g][c] = image.find(added[g][c])->values.data();
-    if (asked(channels, "id")) id = image.find("id.object")->ids.data();
+    add("Z", &z, {"Z"});
+    add("N", normal.data(), {"N.X", "N.Y", "N.Z"});
+    add("P", position.data(), {"P.X", "P.Y", "P.Z"});
+    add("albedo", albedo.data(), {"albedo.R", "albedo.G", "albedo.B"});
+    add("motion", motion.data(), {"forward.u", "forward.v", "backward.u", "backward.v"});
+    if (asked(channels, "id")) id = image.add_ids("id.object").ids.data();
   }
   bool none() const { return !(z || normal[0] || position[0] || albedo[0] || motion[0] || id); }
   /// Pixel i shows no surface: the other planes keep 0.

@@ -88,13 +88,7 @@ double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t>
   means.reserve(pixels.size());
   for (std::size_t p = 0; p < pixels.size(); ++p)
     if (mask.empty() || mask[p]) means.push_back(channel_mean(total(pixels[p])));
-  const auto median = [&] {
-    const auto middle = means.begin() + std::ptrdiff_t(means.size() / 2);
-    std::nth_element(means.begin(), middle, means.end());
-    return *middle;
-  };
-  if (!means.empty() && !(median() > 0)) std::erase_if(means, [](double mean) { return !(mean > 0); });
-  return means.empty() ? 1 : 0.18 / median();
+  return exposure_of(std::move(means));
 }
 
 NoiseCheck::NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask)
@@ -180,10 +174,7 @@ std::array<double, kLayerCount> NoiseCheck::shares(std::vector<Twice>& pixels) {
   return shares;
 }
 
-FrameNoise noise_of_halves(const std::vector<Layers>& a, const std::vector<Layers>& b) {
-  std::vector<Layers> mean(a);
-  for (std::size_t p = 0; p < a.size(); ++p)
-    for (std::size_t l = 0; l < kLayerCount; ++l) mean[p].value[l] = (a[p].value[l] + b[p].value[l]) * 0.5f;
+FrameNoise noise_of_halves(std::span<const Layers> mean, std::span<const Layers> a, std::span<const Layers> b) {
   const double exposure = exposure_of(mean, {});
   ImageAndLayers sums;
   for (std::size_t p = 0; p < a.size(); ++p)

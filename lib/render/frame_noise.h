@@ -10,6 +10,7 @@
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
 #include "lib/render/pixel_variance.h"
+#include "lib/render/pixels_around.h"
 
 namespace tempolux {
 
@@ -30,8 +31,7 @@ struct FrameNoise {
 /// Relative error of a linear value of .18 that changes its sRGB code by `codes`. The slope of the curve there is
 /// 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
 constexpr double pixel_error_of_codes(double codes) { return codes * (1 / (305 * 0.18)); }
-/// Factor that brings the median of the pixels' mean channels to .18. If more than half of the pixels are black, the
-/// median of the others is used. 1 for a black picture.
+/// exposure_of() the mean channels of the sum of all layers, over the pixels of the mask (empty: all).
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
 
 /// Renders pixels of a grid a second time, with different random numbers and as many samples. For the two means x and
@@ -86,7 +86,8 @@ class NoiseCheck {
       for (std::size_t l = 0; l < kLayerCount; ++l) {
         twice.first.value[l] = halves[pixel].difference(l);
         twice.second.value[l] = again_halves_[slot].difference(l);
-        for_each_around(pixel, [&](std::size_t near) {
+        const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
+        for_each_around(width_, height_, x, y, 1, [&](std::size_t near, int, int) {
           const Rgb d = halves[near].difference(l);
           twice.around.value[l] += d * d;
         });
@@ -100,14 +101,6 @@ class NoiseCheck {
     Layers once, again, first, second, around;  ///< x, y, d, e, sum of d^2 around
   };
   static std::array<double, kLayerCount> shares(std::vector<Twice>& pixels);
-  /// Calls body(pixel) for the up to eight neighbours within the picture.
-  template <class Body>
-  void for_each_around(std::size_t pixel, const Body& body) const {
-    const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
-    for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
-      for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i)
-        if (i != x || j != y) body(std::size_t(j) * std::size_t(width_) + std::size_t(i));
-  }
   struct Triple {
     Layers shown, sampled, again, stored;
   };
@@ -122,8 +115,8 @@ class NoiseCheck {
   std::vector<SampleHalves> again_halves_;
 };
 
-/// Noise of (a + b) / 2 from two independent halves of a frame: the variance is E (a - b)^2 / 4.
-FrameNoise noise_of_halves(const std::vector<Layers>& a, const std::vector<Layers>& b);
+/// Noise of `mean` = (a + b) / 2 from two independent halves of a frame: the variance is E (a - b)^2 / 4.
+FrameNoise noise_of_halves(std::span<const Layers> mean, std::span<const Layers> a, std::span<const Layers> b);
 
 template <class Body>
 void NoiseCheck::for_each_pixel_of_grid(const Body& body) const {

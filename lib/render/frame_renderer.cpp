@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <utility>
 
 #include "formats/error.h"
 #include "formats/large_pages.h"
@@ -82,21 +80,18 @@ double mean_radiance(const LayerImage& image) {
   return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 
-/// Mean of the two halves, and its error from their difference: E[(a-b)^2] / 4 is the variance of (a+b)/2.
+/// Mean of the two halves, and its noise from their difference.
 void join_halves(RenderedFrame& frame) {
   const LayerImage &a = frame.half[0], &b = frame.half[1];
   frame.mean = a;
   frame.mean.samples = a.samples + b.samples;
   for (std::size_t p = 0; p < frame.mean.sample_halves.size(); ++p) frame.mean.sample_halves[p] += b.sample_halves[p];
-  double difference2 = 0;
   for (std::size_t p = 0; p < a.pixels.size(); ++p) {
     Layers& mean = frame.mean.pixels[p];
     for (std::size_t l = 0; l < kLayerCount; ++l) mean.value[l] = (a.pixels[p].value[l] + b.pixels[p].value[l]) * 0.5f;
     mean.coverage = (a.pixels[p].coverage + b.pixels[p].coverage) * 0.5f;
-    const Rgbd d = Rgbd(total(a.pixels[p])) - Rgbd(total(b.pixels[p]));
-    difference2 += d.r * d.r + d.g * d.g + d.b * d.b;
   }
-  frame.own_rmse = std::sqrt(difference2 / 4 / double(std::max<std::size_t>(1, 3 * a.pixels.size())));
+  frame.noise = noise_of_halves(frame.mean.pixels, a.pixels, b.pixels);
 }
 
 /// Seeds of the two halves of a reference, different from any frame's seed. If one half used a frame's random numbers,
@@ -124,7 +119,6 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
       render_pass(scene, view, seeds[h], options, std::max(1, options.samples / 2), frame.half[h], frame.rays,
                   options.progress ? [&, h](double f) { options.progress((f + h) / 2); } : options.progress);
     join_halves(frame);
-    frame.noise = noise_of_halves(frame.half[0].pixels, frame.half[1].pixels);
   }
   for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
   frame.mean_radiance = mean_radiance(frame.mean);
@@ -156,37 +150,16 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
   if (!layers.sample_halves.empty()) add_variance_channels(layers, channels, image);
-  constexpr std::size_t kSum = kLayerCount;
-  std::vector<std::pair<std::size_t, std::size_t>> colours;  // the first of three channels, its layer
-  std::optional<std::size_t> alpha;
-  const auto add = [&](const std::string& prefix, std::size_t layer) {
-    colours.push_back({image.channels.size(), layer});
-    for (const char* name : {"R", "G", "B"}) image.add(prefix + name);
-  };
   for (const std::string& name : channels) {
     if (name == "RGBA") {
-      add("", kSum);
-      alpha = image.channels.size();
-      image.add("A");
+      add_colour("", image, [&](std::size_t p) { return total(layers.pixels[p]); });
+      std::vector<float>& alpha = image.add("A").values;
+      for (std::size_t p = 0; p < alpha.size(); ++p) alpha[p] = layers.pixels[p].coverage;
     }
     for (std::size_t l = 0; l < kLayerCount; ++l)
       if ((name == "layers" && (layers.media || l != std::size_t(Layer::volume))) || name == kLayerNames[l])
-        add(std::string(kLayerNames[l]) + ".", l);
+        add_colour(std::string(kLayerNames[l]) + ".", image, [&](std::size_t p) { return layers.pixels[p].value[l]; });
   }
-  parallel_chunks(layers.pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    for (const auto& [channel, layer] : colours) {
-      float *const r = image.channels[channel].values.data(), *const g = image.channels[channel + 1].values.data(),
-                   *const b = image.channels[channel + 2].values.data();
-      for (std::size_t p = first; p < last; ++p) {
-        const Rgb colour = layer == kSum ? total(layers.pixels[p]) : layers.pixels[p].value[layer];
-        r[p] = colour.r;
-        g[p] = colour.g;
-        b[p] = colour.b;
-      }
-    }
-    if (alpha)
-      for (std::size_t p = first; p < last; ++p) image.channels[*alpha].values[p] = layers.pixels[p].coverage;
-  });
 }
 
 }  // namespace tempolux

@@ -58,9 +58,7 @@ struct RenderedFrame {
   FrameNoise noise;              ///< remaining noise
   double at_limit = 0;           ///< share of the pixels that have reached the limit adaptive_limit of samples
   double spread = 0;             ///< share of the light that spread_outliers moved
-  /// RMSE of the mean over pixels and channels [radiance], estimated from the halves' difference; < 0: unknown.
-  double own_rmse = -1;
-  double mean_radiance = 0;  ///< over pixels and channels
+  double mean_radiance = 0;      ///< over pixels and channels
 };
 
 /// Renders a frame with a box filter of one pixel; the samples of a pixel are stratified over its area. Deterministic

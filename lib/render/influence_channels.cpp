@@ -6,21 +6,21 @@
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
+#include "lib/image/channel_groups.h"
 #include "lib/render/known_light.h"
 
 namespace tempolux {
 
 void add_influence_channels(const RenderScene& scene, const CameraView& view, const LocalisedLight* light,
                             const std::vector<std::string>& channels, Image& image) {
-  if (std::find(channels.begin(), channels.end(), "influence") == channels.end()) return;
+  if (!asked(channels, "influence")) return;
   if (!light)
     throw InputError(
         "--channels influence: only a cache of localised gathering knows it (irradcache-build records --update)");
-  image.add("influence");
-  std::vector<float>& share = image.add("blend").values;
-  std::vector<float>& influence = image.find("influence")->values;
+  float* const influence = image.add("influence").values.data();
+  float* const share = image.add("blend").values.data();
   const auto width = std::size_t(view.width());
-  parallel_chunks(share.size(), 512, [&](std::size_t first, std::size_t last) {
+  parallel_chunks(image.pixel_count(), 512, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       const std::optional<SeenPoint> seen =
           seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});

@@ -5,20 +5,11 @@
 #include <utility>
 
 namespace tempolux {
-namespace {
-
-std::vector<float> influences_of(std::span<const RecordChange> changes) {
-  std::vector<float> influences;
-  for (const RecordChange& change : changes) influences.push_back(change.influence);
-  return influences;
-}
-
-}  // namespace
 
 LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records, std::span<const RecordChange> changes,
                                std::span<const IrradianceRecord> gathered, float least_cosine,
                                const InfluenceThresholds& thresholds, MovingObjects moving)
-    : influence_(static_records, influences_of(changes), thresholds),
+    : influence_(static_records, changes, thresholds),
       updated_({.least_cosine = least_cosine}),
       gathered_({.least_cosine = least_cosine}),
       moving_(std::move(moving)) {

@@ -25,8 +25,23 @@ struct LayersT {
   T coverage = 0;  ///< 1 if the camera ray met a surface or a medium: the alpha channel
   RgbT<T>& operator[](Layer layer) { return value[std::size_t(layer)]; }
   const RgbT<T>& operator[](Layer layer) const { return value[std::size_t(layer)]; }
+  template <class U>
+  LayersT& operator+=(const LayersT<U>& more) {
+    for (std::size_t l = 0; l < kLayerCount; ++l) value[l] += RgbT<T>(more.value[l]);
+    coverage += T(more.coverage);
+    return *this;
+  }
+  LayersT operator+(const LayersT& more) const { return LayersT(*this) += more; }
 };
 using Layers = LayersT<float>;
+
+/// Mean channel of the sum of all layers [W/m^2/sr].
+template <class T>
+double radiance_of(const LayersT<T>& layers) {
+  double sum = 0;
+  for (const RgbT<T>& radiance : layers.value) sum += channel_mean(Rgbd(radiance));
+  return sum;
+}
 
 /// Noise of stored light, which all samples of a pixel share: numbers with a random sign whose mean squares are the
 /// variances of the layers [W/m^2/sr].
@@ -144,11 +159,7 @@ struct PathParts {
   Layers lit;                  ///< light sampled at the first matte surface
   Layers onward;               ///< light found by rays from the first matte surface's Lambert lobe
   StoredNoise stored_noise{};  ///< not included in `own`
-  Layers sum() const {
-    Layers all = own;
-    for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += lit.value[l] + onward.value[l];
-    return all;
-  }
+  Layers sum() const { return own + (lit + onward); }
 };
 
 /// Numbers of samples of each part at a path's first matte surface, and the index of the first sample of each part in

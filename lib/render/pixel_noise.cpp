@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lib/render/pixels_around.h"
+
 namespace tempolux {
 namespace {
 
@@ -52,11 +54,9 @@ void PixelNoise::look_around_mask() {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const std::size_t at = std::size_t(y) * std::size_t(width) + std::size_t(x);
-      if (on_lattice(x, y)) looked_at_[at] = 1;
-      if (!options_.mask[at]) continue;
-      for (int j = std::max(0, y - kWide); j <= std::min(height - 1, y + kWide); ++j)
-        for (int i = std::max(0, x - kWide); i <= std::min(width - 1, x + kWide); ++i)
-          looked_at_[std::size_t(j) * std::size_t(width) + std::size_t(i)] = 1;
+      if (on_lattice(x, y) || options_.mask[at]) looked_at_[at] = 1;
+      if (options_.mask[at])
+        for_each_around(width, height, x, y, kWide, [&](std::size_t near, int, int) { looked_at_[near] = 1; });
     }
 }
 
@@ -82,23 +82,14 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   state.onward_rays = float(double(onward_rays) / first_.onward);
 }
 
-/// Calls body(pixel, x, y) for the neighbours of a pixel at most `near` pixels away.
-template <class Body>
-void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) const {
-  for (int j = std::max(0, y - near); j <= std::min(view_.height() - 1, y + near); ++j)
-    for (int i = std::max(0, x - near); i <= std::min(view_.width() - 1, x + near); ++i) {
-      const std::size_t at = std::size_t(j) * std::size_t(view_.width()) + std::size_t(i);
-      if (i != x || j != y) body(pixels_[at], i, j);
-    }
-}
-
 /// Variance of light that has edges: the variance of the neighbours' samples, plus a share of the variance between
 /// neighbours that their samples do not explain. If each neighbour's samples agree but neighbours differ, an edge may
 /// run through this pixel alone: for example the rim of a lamp that just reaches into a row of dark pixels. The
 /// pixel's first samples may then miss the bright part or overestimate it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
-  for_each_neighbour(x, y, kNearSharp, [&](const Pixel& pixel, int, int) {
+  for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {
+    const Pixel& pixel = pixels_[at];
     ++n;
     within += pixel.seen_variance;
     mirrored += pixel.mirrored_variance;
@@ -134,9 +125,9 @@ struct PixelNoise::Around {
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   Around near, wide;
-  for_each_neighbour(x, y, kWide, [&](const Pixel& pixel, int i, int j) {
-    wide.add(pixel);
-    if (std::abs(i - x) <= kNear && std::abs(j - y) <= kNear) near.add(pixel);
+  for_each_around(view_.width(), view_.height(), x, y, kWide, [&](std::size_t at, int i, int j) {
+    wide.add(pixels_[at]);
+    if (std::abs(i - x) <= kNear && std::abs(j - y) <= kNear) near.add(pixels_[at]);
   });
   if (near.n == 0) return first_;
   const auto variance = [&](const auto& of) { return (of(near) + of(wide)) / 2; };

@@ -67,8 +67,6 @@ class PixelNoise {
   static constexpr int kNear = 2, kWide = 4, kNearSharp = 1;
   struct Around;
 
-  template <class Body>
-  void for_each_neighbour(int x, int y, int near, const Body& body) const;
   double own_variance(int x, int y) const;
   bool on_lattice(int x, int y) const { return x % lattice_ == lattice_ / 2 && y % lattice_ == lattice_ / 2; }
   void look_around_mask();

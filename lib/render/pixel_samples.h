@@ -24,9 +24,9 @@ struct PixelSum {
   double seen_square = 0, mirrored_square = 0, onward_square = 0;
   bool for_filter = false;  ///< FrameOptions::for_filter: only noise of layer specular counts
   void add(const PathParts& sample) {
-    add(sample.own, own);
-    add(sample.lit, lit);
-    add(sample.onward, onward);
+    own += sample.own;
+    lit += sample.lit;
+    onward += sample.onward;
     stored_noise += sample.stored_noise;
     const auto square = [](double v) { return v * v; };
     seen_square += square(seen(sample.own));
@@ -36,10 +36,7 @@ struct PixelSum {
   PixelSum operator+(const PixelSum& more) const {
     PixelSum sum = *this;
     sum.stored_noise += more.stored_noise;
-    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) {
-      for (std::size_t l = 0; l < kLayerCount; ++l) (sum.*part).value[l] += (more.*part).value[l];
-      (sum.*part).coverage += (more.*part).coverage;
-    }
+    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) sum.*part += more.*part;
     return sum;
   }
   /// Mean channel of layer specular.
@@ -55,25 +52,9 @@ struct PixelSum {
   /// Mean channel of all layers whose noise counts.
   template <class T>
   double value(const LayersT<T>& layers) const {
-    if (for_filter) return channel_mean(Rgbd(layers[Layer::specular]));
-    double sum = 0;
-    for (const RgbT<T>& radiance : layers.value) sum += channel_mean(Rgbd(radiance));
-    return sum;
-  }
-
- private:
-  static void add(const Layers& sample, LayersT<double>& sum) {
-    for (std::size_t l = 0; l < kLayerCount; ++l) sum.value[l] += Rgbd(sample.value[l]);
-    sum.coverage += double(sample.coverage);
+    return for_filter ? mirrored(layers) : radiance_of(layers);
   }
 };
-
-/// Mean channel of all layers.
-inline double radiance_of(const LayersT<double>& layers) {
-  double sum = 0;
-  for (const Rgbd& radiance : layers.value) sum += channel_mean(radiance);
-  return sum;
-}
 
 /// Joins `sum` over `count` samples to `mean`, the mean over `first` samples before.
 inline void join(const LayersT<double>& sum, int first, int count, Layers& mean) {
@@ -95,9 +76,7 @@ inline void join(const StoredNoiseT<double>& sum, int first, int count, StoredNo
 
 /// The same for a sum by parts, of `count` samples each: a layer is the sum of its three parts.
 inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
-  LayersT<double> all = sum.own;
-  for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += sum.lit.value[l] + sum.onward.value[l];
-  join(all, first, count, mean);
+  join(sum.own + (sum.lit + sum.onward), first, count, mean);
 }
 
 /// Calls body(pixel, x, y, counts) for every pixel, row by row within a tile, with tiles in parallel.

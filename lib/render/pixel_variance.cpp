@@ -4,32 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include "lib/core/parallel.h"
+#include "lib/image/channel_groups.h"
 #include "lib/render/frame_renderer.h"
 
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 4096;  ///< pixels
-
-bool asked(const std::vector<std::string>& channels, const char* name) {
-  return std::find(channels.begin(), channels.end(), name) != channels.end();
-}
-
-/// Adds the channels NAME.R .G .B with colour(pixel index) of each pixel.
-template <class Colour>
-void add_colour(const std::string& name, Image& image, const Colour& colour) {
-  const std::size_t first_channel = image.channels.size();
-  for (const char* channel : {".R", ".G", ".B"}) image.add(name + channel);
-  parallel_chunks(image.pixel_count(), kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      const Rgb value = colour(p);
-      for (int c = 0; c < 3; ++c) image.channels[first_channel + std::size_t(c)].values[p] = value[c];
-    }
-  });
-}
-
-/// Half difference of one sample, summed over the parts, which have different numbers of samples.
+/// The parts, which have different numbers of samples.
 template <class Half>
 auto parts_of(Half& half) {
   return std::array{&half.own, &half.lit, &half.onward};
@@ -38,7 +19,7 @@ auto parts_of(Half& half) {
 }  // namespace
 
 void SampleHalves::Sum::add(const Layers& sample, float samples) {
-  for (std::size_t l = 0; l < kLayerCount; ++l) radiance.value[l] += sample.value[l];
+  radiance += sample;
   count += samples;
 }
 
@@ -120,13 +101,13 @@ Rgb noise_of(const SampleHalves& halves, std::size_t l, float share, const Rgb& 
 void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
   const std::vector<SampleHalves>& halves = layers.sample_halves;
   if (asked(channels, "variance"))
-    add_colour("variance", image, [&](std::size_t p) { return halves[p].variance(kImageLayers); });
+    add_colour("variance.", image, [&](std::size_t p) { return halves[p].variance(kImageLayers); });
   if (asked(channels, "diffuse.variance"))
-    add_colour("diffuse.variance", image, [&](std::size_t p) { return halves[p].variance(kDiffuseLayers); });
+    add_colour("diffuse.variance.", image, [&](std::size_t p) { return halves[p].variance(kDiffuseLayers); });
   if (asked(channels, "halves"))
     for (std::size_t l = 0; l < kLayerCount; ++l)
       if (layers.media || l != std::size_t(Layer::volume))
-        add_colour(std::string(kLayerNames[l]) + ".noise", image, [&](std::size_t p) {
+        add_colour(std::string(kLayerNames[l]) + ".noise.", image, [&](std::size_t p) {
           const Rgb noise = noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]);
           const Rgb* stored = layers.stored_noise.empty() ? nullptr : layers.stored_noise[p].of(Layer(l));
           return stored ? noise + *stored : noise;

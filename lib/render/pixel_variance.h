@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/core/parallel.h"
 #include "lib/image/image.h"
 #include "lib/render/path_tracer.h"
 
@@ -48,6 +49,19 @@ inline constexpr std::array<Layer, 3> kDiffuseLayers{Layer::direct, Layer::caust
 
 /// True if one of the requested channels needs the halves of samples.
 bool wants_sample_halves(const std::vector<std::string>& channels);
+
+/// Adds the channels PREFIX + R, G, B with colour(pixel) of each pixel.
+template <class Colour>
+void add_colour(const std::string& prefix, Image& image, const Colour& colour) {
+  std::array<float*, 3> to{};
+  for (std::size_t c = 0; c < 3; ++c) to[c] = image.add(prefix + "RGB"[c]).values.data();
+  parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const Rgb value = colour(p);
+      for (std::size_t c = 0; c < 3; ++c) to[c][p] = value[int(c)];
+    }
+  });
+}
 
 struct LayerImage;
 

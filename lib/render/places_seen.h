@@ -16,7 +16,6 @@ struct SeenPlace {
   Vec3 normal, geometric;  ///< on the side that is seen; zero vectors: there is no place
 
   bool exists() const { return normal != Vec3{}; }
-  bool sees(Vec3 wi) const { return dot(wi, geometric) > 0 && dot(wi, normal) > 0; }
 };
 
 struct SeenPlaces {

@@ -243,18 +243,17 @@ struct Pair {
 /// Places records where the picture needs them. Distances decide the places, so no light is gathered.
 RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   const PlacementOptions options;
-  RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
+  RecordStore store;
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& counts) {
-                              IrradianceRecord record;
-                              record.position = seen.surface.position;
-                              record.normal = seen.normal;
-                              record.object = seen.surface.object;
-                              record.radius_unclamped = gather.distance(seen.surface, seen.normal, counts);
-                              limit_radius(record, seen.footprint, options);
-                              gather.look_around(seen.surface, record);
-                              return record;
-                            },
-                            [](std::size_t) {}};
+    IrradianceRecord record;
+    record.position = seen.surface.position;
+    record.normal = seen.normal;
+    record.object = seen.surface.object;
+    record.radius_unclamped = gather.distance(seen.surface, seen.normal, counts);
+    limit_radius(record, seen.footprint, options);
+    gather.look_around(seen.surface, record);
+    return record;
+  }};
   const double pixels = double(picture.view.width()) * picture.view.height();
   const int step = std::max(1, int(std::ceil(std::sqrt(pixels / kLooks))));
   const auto view = [&](const Look& look) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lib/core/parallel.h"
+#include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
 #include "lib/render/shading.h"
 
@@ -45,13 +46,7 @@ Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
   for (int mirrors = 0;; ++mirrors) {
     Hit hit;
     tracer.intersect(ray, hit);
-    if (hit.surface == kNone) {
-      shown.id = mirrors > 0 ? mixed(shown.id, kNone) : kNone;
-      shown.depth = 0;
-      shown.normal = {};
-      shown.albedo = Rgb(1.0f);
-      return shown;
-    }
+    if (hit.surface == kNone) { return {.id = mirrors > 0 ? mixed(shown.id, kNone) : kNone}; }
     SurfacePoint point = tracer.surface_point(hit);
     way += hit.t;
     const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(way));
@@ -72,14 +67,12 @@ Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
 
 void add_seen_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                        Image& image) {
-  if (std::find(channels.begin(), channels.end(), "seen") == channels.end()) return;
+  if (!asked(channels, "seen")) return;
   constexpr std::array<const char*, 7> kNames{"seen.Z",        "seen.N.X",      "seen.N.Y",     "seen.N.Z",
                                               "seen.albedo.R", "seen.albedo.G", "seen.albedo.B"};
-  for (const char* name : kNames) image.add(name);
-  image.add_ids("seen.id");
   std::array<float*, kNames.size()> to{};
-  for (std::size_t i = 0; i < kNames.size(); ++i) to[i] = image.find(kNames[i])->values.data();
-  std::uint32_t* const ids = image.find("seen.id")->ids.data();
+  for (std::size_t i = 0; i < kNames.size(); ++i) to[i] = image.add(kNames[i]).values.data();
+  std::uint32_t* const ids = image.add_ids("seen.id").ids.data();
   const auto width = std::size_t(view.width());
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/core/parallel.h"
+#include "lib/render/pixels_around.h"
 
 namespace tempolux {
 namespace {
@@ -21,20 +22,12 @@ struct Excess {
   double light() const { return channel_mean(radiance); }
 };
 
-double radiance_of(const Layers& pixel) {
-  double sum = 0;
-  for (const Rgb& radiance : pixel.value) sum += channel_mean(Rgbd(radiance));
-  return sum;
-}
-
 /// Calls body(pixel) for the pixels around (x, y), without (x, y) itself, that take part.
 template <class Body>
 void for_each_near(const SampledPixels& samples, int x, int y, const Body& body) {
-  for (int j = std::max(0, y - kNear); j <= std::min(samples.height - 1, y + kNear); ++j)
-    for (int i = std::max(0, x - kNear); i <= std::min(samples.width - 1, x + kNear); ++i) {
-      const std::size_t pixel = std::size_t(j) * std::size_t(samples.width) + std::size_t(i);
-      if ((i != x || j != y) && samples.takes_part(pixel)) body(pixel);
-    }
+  for_each_around(samples.width, samples.height, x, y, kNear, [&](std::size_t pixel, int, int) {
+    if (samples.takes_part(pixel)) body(pixel);
+  });
 }
 
 /// The error that each pixel may have, from the median of the radiance around it: the outliers themselves do not raise

@@ -53,9 +53,6 @@ IDEAS = (
     # ---- records
     Idea("gradients", "records are extrapolated by their gradients", "cache",
          (("lib/gather/place_records.cpp", "  for (Vec3& g : record.translational) g *= float(kept);\n", "  record.translational = record.rotational = {};\n"),)),
-    Idea("narrow angle", "records count within 10 degrees at the preset's error bound, not 20", "cache",
-         (("lib/irradcache/records.cpp", "return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 1 - kWideCosine);",
-           "return 1 - std::clamp(100 * error_bound, 0.00375f, 1 - kWideCosine);"),)),
     Idea("looks at edges", "four more places in pixels at edges and behind glass get records", "cache",
          (("lib/gather/place_records.cpp", "for (std::uint32_t k = 0; k < 4; ++k) {\n    const auto look", "for (std::uint32_t k = 4; k < 4; ++k) {\n    const auto look"),)),
     Idea("clearance", "records know how far they see along their surface, so that none answers across a wall", "cache",

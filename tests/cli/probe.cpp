@@ -63,16 +63,16 @@ int main(int argc, char** argv) {
       if (!second.empty()) other.emplace(second);
       fail_as(work);
       tool.stats().phase("write", true);
-      file.stream() << tool.history_line(frame);
+      file.write(tool.history_line(frame));
       const std::string block(1 << 16, 'x');
       for (std::uint64_t written = 0; written < bytes; written += block.size()) {
         if (pause_us) usleep(pause_us);
         file.write(block.data(), block.size());
         tool.progress(double(written) / double(bytes));
       }
-      file.stream() << "\nend\n";
+      file.write("\nend\n");
       if (other) {
-        other->stream() << "other end\n";
+        other->write("other end\n");
         other->commit();
       }
       file.commit();

@@ -17,9 +17,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <ostream>
 #include <set>
-#include <streambuf>
 
 #include "formats/error.h"
 #include "formats/hash.h"
@@ -136,17 +134,16 @@ Ledger& ledger() {
 
 }  // namespace
 
-struct Output::State : std::streambuf {
+struct Output::State {
   std::string path, target, temporary_path;
   int file = -1;
   std::optional<Temporary> temporary;  ///< empty: the output is written in place
   std::vector<char> buffer;
   std::size_t ledger_line = 0;
   std::uint64_t bytes_written = 0;
-  std::ostream stream{this};
 
-  explicit State(std::string name) : path(std::move(name)) { stream.exceptions(std::ios::badbit); }
-  ~State() override {
+  explicit State(std::string name) : path(std::move(name)) {}
+  ~State() {
     if (file > STDERR_FILENO) close(file);
     note(Ledger::Line::Stage::dropped);
   }
@@ -242,16 +239,6 @@ struct Output::State : std::streambuf {
     buffer.insert(buffer.end(), data, data + size);
   }
 
-  std::streamsize xsputn(const char* data, std::streamsize size) override {
-    put(data, std::size_t(size));
-    return size;
-  }
-  int_type overflow(int_type c) override {
-    const char byte = traits_type::to_char_type(c);
-    if (!traits_type::eq_int_type(c, traits_type::eof())) put(&byte, 1);
-    return traits_type::not_eof(c);
-  }
-
   void commit(bool sync) {
     finish_file(sync);
     if (temporary) rename_into_place(sync);
@@ -307,7 +294,6 @@ Output& Output::operator=(Output&&) noexcept = default;
 const std::string& Output::path() const { return state_->path; }
 const std::string& Output::temporary_path() const { return state_->temporary_path; }
 bool Output::is_stdout() const { return state_->path == "-"; }
-std::ostream& Output::stream() { return state_->stream; }
 void Output::flush() { state_->flush_buffer(); }
 
 void Output::write(const void* data, std::size_t size) {

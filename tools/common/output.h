@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <iosfwd>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tempolux::tools {
@@ -35,10 +35,10 @@ class Output {
 
   /// Writes bytes through a buffer of 1 MiB; throws ResourceError with the reason.
   void write(const void* data, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
   /// write() as a function, for the writers in formats/; valid as long as the output stays in its place.
   std::function<void(const void* data, std::size_t size)> sink();
   std::uint64_t written() const;  ///< bytes passed to write() so far
-  std::ostream& stream();         ///< the same buffer as a std::ostream; errors throw as above
 
   /// Makes all bytes so far readable at temporary_path(). Throws as write().
   void flush();

@@ -206,13 +206,13 @@ int Tool::State::run(const std::function<int()>& body, const Tool& tool) {
   const std::vector<std::string> targets = committed_outputs();
   if (dep_output) {
     if (targets.empty()) throw InputError("--depfile: this run wrote no file that could depend on others");
-    dep_output->stream() << depfile_text(targets);
+    dep_output->write(depfile_text(targets));
     dep_output->commit();
   }
   if (stats_output) {
     std::string command = tool.history_line();
     command.pop_back();
-    stats_output->stream() << stats.json(name, command, common.threads, code);
+    stats_output->write(stats.json(name, command, common.threads, code));
     stats_output->commit();
   }
   if (common.verbose > 0 && !common.quiet && !stats.summary().empty()) print_line(stats.summary());

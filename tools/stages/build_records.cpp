@@ -81,6 +81,25 @@ GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer
   return std::move(divided.whole);
 }
 
+/// Points as gather rays read them.
+struct PointsRead {
+  PointLookup lookup;
+  std::vector<LampPhoton> beside_lamps;
+  std::optional<BrightPoints> bright;  ///< if light is to be sampled explicitly; `gather` then names them
+
+  PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const GatherPoints& points,
+             std::vector<float> high_shares, GatherOptions& gather)
+      : lookup(points.points, points.spacing, point_clearance(tracer)),
+        beside_lamps(note_lamps_beside(tracer, lights, lookup)) {
+    if (beside_lamps.empty() && std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
+    bright.emplace(tracer, lights, lookup, std::move(high_shares),
+                   BrightOptions{.seed = gather.seed, .beside_lamps = beside_lamps});
+    tool.stats().count("bright_points", double(bright->spot_count()));
+    tool.stats().count("bright_sites", double(bright->site_count()));
+    gather.bright = &*bright;
+  }
+};
+
 /// Dynamic maps of a frame (its own comes first) as densities over the static scene.
 std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing,
                                         const SceneFrame& frame) {
@@ -115,18 +134,9 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
     Output keep(options.keep_points);
     write_points(tool, points, first, keep);
   }
-  PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
-  const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
-  std::optional<BrightPoints> bright;
-  if (!beside_lamps.empty() || std::ranges::any_of(high_shares, [](float share) { return share > 0; })) {
-    bright.emplace(tracer, lights, lookup, std::move(high_shares),
-                   BrightOptions{.seed = options.gather.seed, .beside_lamps = beside_lamps});
-    tool.stats().count("bright_points", double(bright->spot_count()));
-    tool.stats().count("bright_sites", double(bright->site_count()));
-    options.gather.bright = &*bright;
-  }
-  const FinalGather gather(tracer, lights, lookup, options.gather);
-  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
+  const PointsRead read(tool, tracer, lights, points, std::move(high_shares), options.gather);
+  const FinalGather gather(tracer, lights, read.lookup, options.gather);
+  RecordStore store;
 
   tool.stats().phase("records", true);
   const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state),
@@ -157,25 +167,18 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const std::string name = frame_name(options.update, number);
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
-  RecordStore fixed({.least_cosine = 0});
+  RecordStore fixed({.least_cosine = float(file.header.least_cosine)});
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
-  PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
-  const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
-  std::optional<BrightPoints> bright;
   GatherOptions gathering = options.gather;
-  if (!beside_lamps.empty()) {
-    bright.emplace(tracer, lights, lookup, std::vector<float>{},
-                   BrightOptions{.seed = gathering.seed, .beside_lamps = beside_lamps});
-    gathering.bright = &*bright;
-  }
-  const FinalGather gather(tracer, lights, lookup, gathering);
+  const PointsRead read(tool, tracer, lights, points, {}, gathering);
+  const FinalGather gather(tracer, lights, read.lookup, gathering);
 
   tool.stats().phase("records", true);
   const RecordCameras cameras = cameras_of(tool, input, options, frames, frame, [&](int f) { return input.at(f); });
-  const GatherCounts counts =
-      update_for_cameras({gather, tracer, lookup, maps, {}, options.gather.seed}, cameras, options.placement, cache);
+  const GatherCounts counts = update_for_cameras({gather, tracer, read.lookup, maps, {}, options.gather.seed}, cameras,
+                                                 options.placement, cache);
 
   tool.stats().phase("write");
   std::vector<IrradianceRecord> all = cache.standing;

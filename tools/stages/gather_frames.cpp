@@ -153,7 +153,7 @@ void gather_frame(Tool& tool, SceneInput& input, TemporalGatherOptions options, 
   tool.stats().phase("records", true);
   TemporalCounts counts;
   if (chain.before) gather.advance(chain.kept, counts);
-  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
+  RecordStore store;
   gather.place(seen, options.width, options.height, chain.kept, store, counts,
                [&](double done) { tool.progress(done); });
   tool.stats().phase("write");

@@ -191,7 +191,6 @@ std::string add_records(Tool& tool, const std::string& name, const formats::Irra
     throw InputError(name +
                      ": holds records that stand beside those of a frame (--update); give one without these columns");
   check_identity(tool, name, file.header.identity, frame);
-  store.narrow(float(file.header.least_cosine));
   store.add(from_file(file.records, shift_of(file.header.origin, frame)));
   return file.header.history;
 }

@@ -49,7 +49,6 @@ void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer)
   stats.set("samples_per_pixel", rendered.samples_per_pixel);
   stats.set("mean_radiance", rendered.mean_radiance);
   stats.set("spread", rendered.spread);
-  if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
 /// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
@@ -160,8 +159,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   add_seen_channels(scene, view, options.channels, image);
   add_influence_channels(scene, view, light.get().localised, options.channels, image);
   tool.stats().phase("write");
-  const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
-                                                                              : ExrWriteOptions::Compression::zip};
+  const ExrWriteOptions exr{options.half_float, options.compression == "zip"};
   const FrameDescription description{
       identity_of(frame),        light.history() + tool.history_line(number),   frame.frame,
       input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account_of(rendered, audited),

@@ -17,9 +17,7 @@ struct WarpFramesOptions {
   std::vector<std::string> channels{"Z", "N", "id"};
   WarpOptions warp{.slow_deg_per_s = -1};
 
-  ExrWriteOptions exr() const {
-    return {false, compression == "none" ? ExrWriteOptions::Compression::none : ExrWriteOptions::Compression::zip};
-  }
+  ExrWriteOptions exr() const { return {false, compression == "zip"}; }
 };
 
 /// Warps the keys to the frames of the scene.

@@ -114,8 +114,8 @@ IrradianceRecord record(Vec3 position, float irradiance) {
 
 TEST(Influence, FieldIsRelativeToTheStaticIrradiance) {
   const std::vector<IrradianceRecord> records{record(kMiddle, 5), record({0.2f, 0, 0.2f}, 5)};
-  const std::vector<float> influences{0.5f, 0};
-  const InfluenceField relative(records, influences, {});
+  const std::vector<RecordChange> changes{{.influence = 0.5f}, {}};
+  const InfluenceField relative(records, changes, {});
   EXPECT_NEAR(relative.at(kMiddle, kUp), 0.1f, 1e-6f);
   EXPECT_EQ(relative.at({0.2f, 0, 0.2f}, kUp), 0);
   EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));  // no record is valid there
@@ -146,8 +146,8 @@ TEST(Influence, BesideADarkRecordTheMeanDecides) {
   // .0594 / 1 and .1188 / 2. Halfway between them the means are .0891 and 1, and their quotient is above the
   // threshold.
   const std::vector<IrradianceRecord> records{record(kMiddle, 0), record(kMiddle, 2), record({20, 0, 20}, 298)};
-  const std::vector<float> influences{0.0594f, 0.1188f, 0};
-  const InfluenceField field(records, influences, {});
+  const std::vector<RecordChange> changes{{.influence = 0.0594f}, {.influence = 0.1188f}, {}};
+  const InfluenceField field(records, changes, {});
   EXPECT_NEAR(field.at(kMiddle, kUp), 0.0891f, 1e-6f);
   EXPECT_FLOAT_EQ(field.gathered_share(kMiddle, kUp), field.thresholds().gathered_share(field.at(kMiddle, kUp)));
 }

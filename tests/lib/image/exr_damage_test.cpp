@@ -33,9 +33,8 @@ void expect_good_message(const std::string& message, const std::string& file) {
   EXPECT_LT(message.size(), file.size() + 1200);
 }
 
-class ExrDamage : public testing::TestWithParam<ExrWriteOptions::Compression> {};
-INSTANTIATE_TEST_SUITE_P(Compressions, ExrDamage,
-                         testing::Values(ExrWriteOptions::Compression::none, ExrWriteOptions::Compression::zip));
+class ExrDamage : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Compressions, ExrDamage, testing::Bool());
 
 TEST_P(ExrDamage, EveryTruncationIsAnError) {
   const Folder folder;

@@ -29,7 +29,7 @@ Image image_of(int width, int height) {
 
 std::string written(const Image& image) {
   const Folder folder;
-  save_exr(folder / "a.exr", image, {false, ExrWriteOptions::Compression::none});
+  save_exr(folder / "a.exr", image, {.zip = false});
   return bytes_of(folder / "a.exr");
 }
 

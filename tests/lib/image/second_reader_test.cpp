@@ -42,7 +42,7 @@ Image example() {
 TEST(FramesPage, TheWorkedExampleIsWhatWeWriteAndWhatThePageSays) {
   const Image image = example();
   const Folder folder;
-  save_exr(folder / "a.exr", image, {false, ExrWriteOptions::Compression::none});
+  save_exr(folder / "a.exr", image, {.zip = false});
   EXPECT_EQ(bytes_of(folder / "a.exr"), bytes_of("lib/image/example.exr"));
   const std::string page = bytes_of("../formats/frames/frames.md");
   std::string printed = output_of(kReader + "lib/image/example.exr 1 0"), indented;
@@ -65,9 +65,7 @@ TEST(FramesPage, TheSecondReaderFindsTheSameSamples) {
   }
   auto& ids = image.add_ids("id.object").ids;
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = std::uint32_t(i / 50);
-  using Compression = ExrWriteOptions::Compression;
-  for (const auto& options : {ExrWriteOptions{false, Compression::none}, ExrWriteOptions{false, Compression::zip},
-                              ExrWriteOptions{true, Compression::zip}}) {
+  for (const auto& options : {ExrWriteOptions{.zip = false}, ExrWriteOptions{}, ExrWriteOptions{.half = true}}) {
     save_exr(folder / "a.exr", image, options);
     for (auto [x, y] : {std::pair{0, 0}, std::pair{36, 15}, std::pair{5, 16}, std::pair{36, 34}}) {
       std::string expected;

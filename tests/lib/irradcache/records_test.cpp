@@ -174,48 +174,15 @@ TEST(RecordStore, WeightIsAHat) {
   EXPECT_EQ(store.interpolate({}, {0.7f, 0.7f, 0}).count, 0);
 }
 
-/// The angle is 50 degrees times the error bound, within 5 to 20 degrees; 1 - cos = angle^2 / 2.
-TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
-  EXPECT_NEAR(least_cosine_of(0.2f), std::cos(0.2 * 50 * kPi / 180), 3e-4);
-  EXPECT_FLOAT_EQ(least_cosine_of(0.2f), 0.985f);
-  EXPECT_FLOAT_EQ(least_cosine_of(0.4f), 0.94f);
-  EXPECT_FLOAT_EQ(least_cosine_of(2), 0.94f);
-  EXPECT_FLOAT_EQ(least_cosine_of(1e-3f), 0.99625f);
-}
-
-/// A normal that differs by 16 degrees lies outside the store's 10 degrees but inside 20. covers() then uses the
-/// weight for 20 degrees with the radius limited to least_reach. interpolate() uses the weight for 20 degrees with
-/// the record's own radius.
-TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
-  RecordStore store({.least_cosine = 0.985f});
-  store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
-  const float c = 0.96f, turn = 1 - std::sqrt(0.04f / 0.06f);
-  const Vec3 beside{0.05f, 0, 0}, normal{0, c, std::sqrt(1 - c * c)};
-  EXPECT_FALSE(store.covers(beside, normal, 0.01f));
-  EXPECT_FALSE(store.covers(beside, normal, 0.01f, 0.04f));
-  EXPECT_TRUE(store.covers(beside, normal, 0.99f * 0.75f * turn, 0.2f));
-  EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.75f * turn, 0.2f));
-  EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.9f * turn, 10.0f));  // never more than its own radius
-  EXPECT_NEAR(store.interpolate(beside, normal).weight, 0.9f * turn, 1e-4f);
-}
-
-/// The narrowest of the requested angles applies. If no record lies within it, wider angles are used.
-TEST(RecordStore, CanBeNarrowed) {
-  RecordStore store({.least_cosine = 0});
+/// Records count only where the cosine between normals is above least_cosine.
+TEST(RecordStore, CountsWithinItsAngle) {
+  RecordStore store({.least_cosine = 0.9f});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
   const auto count_at = [&](float cosine) {
     return store.interpolate({}, {std::sqrt(1 - cosine * cosine), cosine, 0}).count;
   };
-  EXPECT_EQ(count_at(0.1f), 1);
-  store.narrow(0.9f);
-  store.narrow(0.5f);
-  EXPECT_EQ(store.least_cosine(), 0.9f);
   EXPECT_EQ(count_at(0.89f), 0);
   EXPECT_EQ(count_at(0.91f), 1);
-  store.narrow(0.985f);
-  store.add(record_at({}, {0, 0.96f, 0.28f}, 0.5f, Rgb(1.0f)));
-  EXPECT_EQ(count_at(0.999f), 1);
-  EXPECT_EQ(count_at(0.95f), 1);  // the first; the second is 0.91 off
 }
 
 TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {

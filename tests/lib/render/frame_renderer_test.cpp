@@ -99,7 +99,7 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   }
   const double rmse = std::sqrt(difference2 / 2 / double(3 * one.mean.pixels.size()));
   // 2304 pixels with heavy tails: the ratio of two such estimates scatters by 10 % or so.
-  EXPECT_NEAR(one.own_rmse / rmse, 1, 0.3);
+  EXPECT_NEAR(one.noise.image.linear / rmse, 1, 0.3);
 }
 
 /// The number of a pixel's samples depends on the pixels around it and on the picture's mean, with and without a mask:

@@ -56,7 +56,7 @@ TEST(EnvironmentFile, NotANumberInfinityAndTooMuchAreRefusedByPixel) {
     // save_exr refuses such values, so the bytes of a recognisable one are exchanged.
     Image image = picture(4, 2, 1);
     image.find("R")->values[6] = 1234.5f;
-    save_exr(folder / "a.exr", image, {false, ExrWriteOptions::Compression::none});
+    save_exr(folder / "a.exr", image, {.zip = false});
     std::string bytes = bytes_of(folder / "a.exr");
     const std::size_t at = bytes.find(raw(1234.5f));
     EXPECT_NE(at, std::string::npos);
