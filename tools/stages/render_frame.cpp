@@ -10,9 +10,8 @@
 #include "lib/material/smooth_material.h"
 #include "lib/render/audit.h"
 #include "lib/render/coverage_channel.h"
+#include "lib/render/hidden_light.h"
 #include "lib/render/influence_channels.h"
-#include "lib/render/pilot_photons.h"
-#include "lib/render/see_photons.h"
 #include "lib/render/seen_channels.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
@@ -57,21 +56,18 @@ void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer)
 /// measure the light.
 void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionTable& table, const CameraView& view,
                            const KnownLight* known, const RenderedFrame& rendered) {
-  constexpr std::uint64_t kPaths = 1 << 15;
   const SceneFrame& frame = scene.frame();
+  if (!may_hide_light(frame) || (known && known->has_caustic())) return;
   const auto shines =
       std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
-  const std::uint32_t smooth = shines == frame.lights.end() ? kNone : first_smooth_material(frame);
-  if (smooth == kNone || (known && known->has_caustic())) return;
   char share[48] = "";
   if (known) {
-    const formats::PhotonBlock photons = pilot_photons(
-        scene.tracer, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), "caustic", kPaths, 0);
-    const SeenPhotons missing = see_photons(scene, view, photons).caustic;
-    if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
-    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing.mean / rendered.mean_radiance);
+    const double missing = hidden_share(scene, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), view,
+                                        rendered.mean_radiance);
+    if (!(missing > 0)) return;
+    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing);
   }
-  const std::string &material = frame.materials[smooth].name, &light = shines->light.name;
+  const std::string &material = frame.materials[first_smooth_material(frame)].name, &light = shines->light.name;
   tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
             (light.empty() ? "" : ", as that of light \"" + light + "\"") +
