@@ -77,17 +77,21 @@ void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionT
 /// Measures the bias of the frame's layers. Photons estimate the light of lamps, because few camera paths meet a bright
 /// spot close to a lamp. Camera paths estimate the light of sun and sky, because few photons of sun and sky arrive in
 /// view. If the scene has a sun and a mirror or smooth glass, photons estimate all light, because no camera path meets
-/// a sun via a smooth surface.
+/// a sun via a smooth surface. Paths have nothing to audit in a frame by paths: `unbiased` is then set, and nothing is
+/// measured.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const RenderScene& scene,
                               const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
-                              const RenderedFrame& rendered) {
+                              const RenderedFrame& rendered, bool& unbiased) {
   if (!(options.audit > 0)) return {};
+  const Lights& lights = scene.lights;
+  const bool hidden = lights.has_suns() && first_smooth_material(scene.frame()) != kNone,
+             paths = lights.has_distant() && !hidden, photons = hidden || lights.has_placed();
+  unbiased = paths && !photons && options.traces_paths();
+  if (unbiased) return {};
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   const Tracer& tracer = scene.tracer;
-  const bool hidden = scene.lights.has_suns() && first_smooth_material(tracer.frame()) != kNone,
-             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
   const AuditEffort effort = audit_effort(options.audit, rendered.rays, photons, paths,
                                           mix64(frame_options.seed + std::uint64_t(tracer.frame().frame)));
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
@@ -147,8 +151,15 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
 
   if (number == tool.common().frames.front())
     warn_of_missing_light(tool, scene, input.emission(frame.frame), view, frame_options.known, rendered);
+  bool unbiased = false;
   const std::vector<AuditEntry> audited =
-      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
+      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered, unbiased);
+  std::map<std::string, double> account = account_of(rendered, audited);
+  if (unbiased) {
+    account["audit.unbiased"] = 1;
+    tool.stats().set("audit.unbiased", 1);
+    tool.say("audit: no bias, as camera paths find all light");
+  }
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
@@ -160,7 +171,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
                                                                               : ExrWriteOptions::Compression::zip};
   const FrameDescription description{
       identity_of(frame),        light.history() + tool.history_line(number),   frame.frame,
-      input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account_of(rendered, audited),
+      input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account,
       input.scene().object_names};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
