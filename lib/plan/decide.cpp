@@ -13,6 +13,7 @@
 #include "lib/render/choose_light.h"
 #include "lib/render/choose_preview.h"
 #include "lib/render/choose_split.h"
+#include "lib/render/hidden_light.h"
 #include "lib/render/places_seen.h"
 #include "lib/render/seen_spheres.h"
 
@@ -84,6 +85,7 @@ class FramePilot {
       return look;
     };
     RoughOptions options{kinds_, wish_.pixel_error, wish_.photons, spheres_, 0, places};
+    options.without_extent = without_extent_ ? &*without_extent_ : nullptr;
     options.enough = [&](const RoughFrame& rough) { return enough(look_of(rough)); };
     return look_of(rough_frame({tracer_, lights_, lights_.has_suns()}, aimed_lights, view_, options));
   }
@@ -109,6 +111,7 @@ class FramePilot {
       EmissionTable table = table_;
       table.aim = spheres_ = spheres_seen(tracer_, table.sphere_radius, view_);
       aimed_.emplace(frame_, table);
+      if (may_hide_light(frame_)) without_extent_.emplace(frame_, table, Lights::Which::punctual);
     }
     return *aimed_;
   }
@@ -120,7 +123,7 @@ class FramePilot {
   CameraView view_;
   Tracer tracer_;
   Lights lights_;
-  std::optional<Lights> aimed_;
+  std::optional<Lights> aimed_, without_extent_;
   std::vector<AimSphere> spheres_;
 };
 

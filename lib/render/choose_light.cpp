@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "lib/gather/irradiance_points.h"
 #include "lib/render/pixel_noise.h"
@@ -37,7 +38,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
     way.pixel_error = error_for_variance(variance / rough.wanted_of);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += rough.map_error;
-  else way.error += left_of(rough.missed_caustic, samples);
+  else way.lacks = rough.hidden, way.error += left_of(rough.missed_caustic, samples);
   if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
   const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);
   way.error += lost * lost;
@@ -51,6 +52,10 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   return way;
 }
 
+void sort(std::vector<Way>& ways) {
+  std::ranges::stable_sort(ways, {}, [](const Way& way) { return std::pair(way.lacks > 0, way.score()); });
+}
+
 }  // namespace
 
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics) {
@@ -59,7 +64,7 @@ std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool
     for (const bool map : {false, true})
       if ((!map || caustics) && (method == IndirectMethod::paths || rough.places > 0))
         ways.push_back(way_of(rough, order, method, map));
-  std::ranges::stable_sort(ways, {}, &Way::score);
+  sort(ways);
   return ways;
 }
 
@@ -78,8 +83,9 @@ std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
       same->rays = std::max(same->rays, way.rays);
       same->pixel_error = std::min(same->pixel_error, way.pixel_error);
       same->measured &= way.measured;
+      same->lacks = std::max(same->lacks, way.lacks);
     }
-  std::ranges::stable_sort(all, {}, &Way::score);
+  sort(all);
   return all;
 }
 
@@ -92,6 +98,11 @@ std::string because(const std::vector<Way>& ways) {
                   way.map ? " beside caustics of photons" : "", way.measured ? "" : "at least ",
                   least > 0 ? way.score() / least : 1.0);
     words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
+  }
+  if (ways.back().lacks > 0) {
+    std::snprintf(text, sizeof text,
+                  "; without caustics of photons a frame lacks %.2g %% of its light: ", 100 * ways.back().lacks);
+    words += text + std::string("what point, spot and sun lights send by mirrors and smooth glass");
   }
   return words;
 }

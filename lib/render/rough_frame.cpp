@@ -13,7 +13,9 @@
 #include "lib/gather/irradiance_points.h"
 #include "lib/gather/place_records.h"
 #include "lib/irradcache/points.h"
+#include "lib/render/audit.h"
 #include "lib/render/choose_photons.h"
+#include "lib/render/hidden_light.h"
 #include "lib/render/known_light.h"
 #include "lib/render/pilot_photons.h"
 #include "lib/render/pixel_noise.h"
@@ -34,6 +36,8 @@ constexpr int kRays = 62;                  ///< gather rays of a rough record
 /// these pixels form a lattice.
 constexpr double kLooks = 320 * 180;
 constexpr double kSure = 3;  ///< standard errors
+/// Effective places that hold a variance, (sum v)^2 / sum v^2: fewer do not show where the variance is. As for audits.
+constexpr double kFewest = 32;
 constexpr double kMapError2 =
     1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
 
@@ -123,23 +127,44 @@ struct Levels {
 
 using PartOfLight = std::function<double(const Sample&)>;
 
-/// For each part of the picture, the variance of a sample of some of the light, divided by the square of the allowed
-/// error. A sample counts at most as much as makes a pixel of `times` samples white.
-std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
-  std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    double first = 0, square = 0;
-    for (const Sample& sample : samples[i]) {
-      const double value = std::min(light(sample), times * levels.white);
-      first += value, square += value * value;
-    }
-    const std::size_t part = levels.part[i];
-    if (levels.allowed[part] > 0)
-      sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]);
-    ++count[part];
+/// Variance of a sample at a place. A sample counts at most `most`.
+double variance_at(const std::array<Sample, kSamples>& samples, double most, const PartOfLight& light) {
+  double first = 0, square = 0;
+  for (const Sample& sample : samples) {
+    const double value = std::min(light(sample), most);
+    first += value, square += value * value;
   }
-  for (std::size_t part = 0; part < sum.size(); ++part) sum[part] /= std::max(1.0, count[part]);
-  return sum;
+  return sample_variance(kSamples, first, square);
+}
+
+/// For each part of the picture, the variance of a sample of `other` and `scattered` light, divided by the square of
+/// the allowed error. A sample counts at most as much as makes a pixel of `times` samples white. If few places hold
+/// most of the variance that scattered light adds, chance decided in which parts paths met this light: each part then
+/// gets the same share.
+std::vector<double> variances(const Samples& samples, const Levels& levels, double times,
+                              const PartOfLight& scattered) {
+  std::vector<double> other(kColumns * kRows, 0.0), added(other), count(other);
+  double all = 0, squares = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t part = levels.part[i];
+    ++count[part];
+    const double allowed2 = levels.allowed[part] * levels.allowed[part], most = times * levels.white;
+    if (!(allowed2 > 0)) continue;
+    const double without = variance_at(samples[i], most, [](const Sample&s) { return s.other; }) / allowed2,
+                 with =
+                     variance_at(samples[i], most, [&](const Sample&s) { return s.other + scattered(s); }) / allowed2;
+    other[part] += without;
+    added[part] += with - without;
+    all += with - without;
+    squares += (with - without) * (with - without);
+  }
+  const bool by_chance = all * all < kFewest * squares;
+  for (std::size_t part = 0; part < other.size(); ++part) {
+    const double places = std::max(1.0, count[part]);
+    other[part] = by_chance ? other[part] / places + std::max(0.0, all) / double(samples.size())
+                            : (other[part] + added[part]) / places;
+  }
+  return other;
 }
 
 /// The variance that n adaptive samples per pixel divide by n. A frame takes samples in proportion to the root of
@@ -151,7 +176,7 @@ double adaptive(const std::vector<double>& variances) {
 }
 
 SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
-  const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
+  const auto of = [&](const PartOfLight& scattered) { return adaptive(variances(samples, levels, times, scattered)); };
   const auto lost = [&](double Sample::*layer) {
     double above = 0;
     for (std::array<Sample, kSamples> some : samples) {
@@ -161,10 +186,10 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
     return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
   };
   return {.work = work,
-          .all = of([](const Sample& s) { return s.sum(); }),
-          .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
-          .other = of([](const Sample& s) { return s.other + s.caustic; }),
-          .other_without_caustic = of([](const Sample& s) { return s.other; }),
+          .all = of([](const Sample& s) { return s.caustic + s.indirect; }),
+          .without_caustic = of([](const Sample& s) { return s.indirect; }),
+          .other = of([](const Sample& s) { return s.caustic; }),
+          .other_without_caustic = of([](const Sample&) { return 0.0; }),
           .lost_caustic = lost(&Sample::caustic),
           .lost_indirect = lost(&Sample::indirect)};
 }
@@ -172,8 +197,7 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
 /// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
 void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
   constexpr double kWholeSample = 4;  // shadow rays, as in pixel_noise.cpp
-  for (const double variance :
-       variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
+  for (const double variance : variances(samples, levels, kFirst, [](const Sample& s) { return s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
     rough.samples += wanted / (kColumns * kRows);
     rough.wanted += variance / wanted / (kColumns * kRows);
@@ -316,9 +340,10 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
 }
 
 /// Light that photons show and that paths miss with certainty. Paths that find light of radiance c only once in n
-/// samples have at least the variance n c^2 (docs/methods/caustics.md).
+/// samples have at least the variance n c^2 (docs/methods/caustics.md). If paths find none of the light, a single
+/// photon proves that they miss some, and the best estimate is what the photons show.
 MissedLight missed_light(const SeenPhotons& photons, double found, double samples, double allowed2) {
-  const double missed = std::max(0.0, photons.mean - found), error = kSure * photons.mean_error;
+  const double missed = std::max(0.0, photons.mean - found), error = found > 0 ? kSure * photons.mean_error : 0;
   const double sure = std::max(0.0, missed * missed - error * error);
   if (!(sure > 0)) return {};
   return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
@@ -336,6 +361,8 @@ void compare(const Picture& picture, const PhotonView& photons, const Samples& p
       missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
   rough.missed = missed_light(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
   rough.map_error = kMapError2 * caustics.square / allowed2;
+  if (picture.options.without_extent && caustics.mean > kAuditLimit * level)
+    rough.hidden = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
 }
 
 /// Sets lower bounds for gathering and records. Work: a camera ray, and one ray onward from each Lambert lobe. Error:

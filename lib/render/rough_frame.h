@@ -67,6 +67,7 @@ struct RoughFrame {
   double records = 0, record_ray = 0, record_error = 0;
   MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
   double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
+  double hidden = 0;                   ///< share of the picture that surely no path finds (hidden_share)
   double photons_per_path = 0;
   std::uint64_t paths_of_light = 0;  ///< light paths of the photon map; more if few of them leave photons
 };
@@ -81,6 +82,7 @@ struct RoughOptions {
   /// True if the measurement answers the question. Called before gathering and before records are measured; empty:
   /// false.
   std::function<bool(const RoughFrame&)> enough = {};
+  const Lights* without_extent = nullptr;  ///< the lights of hidden_share(); null: none hides light
 };
 
 /// Takes four samples at each place, by paths and by the points of 32768 light paths, and gathers records at 64

@@ -61,6 +61,27 @@ frame-render "$matte" --size 64x36 --spp 4 --channels RGBA --audit 1 --stats aud
 for name in noise.codes noise.direct.codes audit.indirect audit.indirect_error audit.direct; do
   grep -q "\"$name\"" audit.json || bad "stats without $name"
 done
+# Paths would audit paths: a frame by paths under a sky is not audited and says so. Lamps are audited, by photons.
+"${PYTHON:-python3}" - <<'END' || bad 'ground.glb'
+import os, sys
+sys.path.insert(0, os.path.join(os.environ["HERE"], "..", "stress"))
+from scenes import Scene, box_mesh
+for name in ("ground", "lit"):
+    scene = Scene()
+    scene.quad((-2, 0, 2), (2, 0, 2), (2, 0, -2), (-2, 0, -2), scene.material(0.6))
+    scene.mesh(*box_mesh((-1, 0, -1), (1, 1, 1)), scene.material(0.6))
+    if name == "lit":
+        scene.quad((-1, 3, -1), (1, 3, -1), (1, 3, 1), (-1, 3, 1), scene.material(0, 5))
+    scene.camera((0, 3, 5), (0, 0.5, 0), fov=0.7)
+    scene.save(f"{name}.glb")
+END
+for scene in ground lit; do
+  frame-render $scene.glb --environment 1,1,1 --size 48x27 --spp 4 --channels RGBA --audit 1 --stats $scene.json -o $scene.exr -q || bad "audit of $scene"
+  tempolux-info --account $scene.exr > $scene.said
+done
+grep -qx 'no bias, as camera paths find all light' ground.said && grep -q '"audit.unbiased": 1' ground.json || bad 'a frame by paths does not say that it has no bias'
+grep -q '"name": "audit"' ground.json && bad 'paths were audited by paths'
+grep -q '"audit.direct"' lit.json && ! grep -q 'no bias' lit.said || bad 'a frame with a lamp is not audited'
 expect 0 '--seen-error 0.01: .* codes are left' frame-render "$matte" --size 16x9 --spp 2 --seen-error .01 -o made.exr
 tiny="--size 16x9 --rays 8" point="--point-count 200" frame="--size 16x9 --spp 2 --pixel-error 0"
 for kinds in direct indirect caustic caustic,indirect; do

@@ -65,13 +65,16 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
 
 FramesAccount account_of_frames(const std::vector<std::string>& files) {
   std::array<Sum, kLayers.size()> sums;
+  std::size_t unbiased = 0;
   for (const std::string& file : files) {
     ExrReadOptions attributes;  // and one channel: an EXR image without any is invalid
     attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
     const Image image = load_exr(file, attributes);
     for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l], file, sums[l]);
+    unbiased += number(image, "audit.unbiased") != nullptr;
   }
   FramesAccount account;
+  if (unbiased == files.size()) account.line = "no bias, as camera paths find all light";
   for (std::size_t l = 0; l < kLayers.size(); ++l) {
     const Sum& sum = sums[l];
     if (sum.frames == 0) continue;

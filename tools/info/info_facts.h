@@ -68,7 +68,7 @@ void export_points(const std::string& path, const std::string& format, Output& o
 
 /// The bias that several frames report of their light (docs/methods/account.md), combined.
 struct FramesAccount {
-  std::string line;                   ///< a sentence; empty if no frame reports its bias
+  std::string line;                   ///< a sentence; empty if no frame was audited
   std::vector<std::string> warnings;  ///< layers with a bias of more than 2 % of the picture and three standard errors
 };
 /// From the attributes of EXR files. The audits of frames are independent, so the error of their mean is sqrt(sum of

@@ -10,9 +10,8 @@
 #include "lib/material/smooth_material.h"
 #include "lib/render/audit.h"
 #include "lib/render/coverage_channel.h"
+#include "lib/render/hidden_light.h"
 #include "lib/render/influence_channels.h"
-#include "lib/render/pilot_photons.h"
-#include "lib/render/see_photons.h"
 #include "lib/render/seen_channels.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
@@ -56,21 +55,18 @@ void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer)
 /// measure the light.
 void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionTable& table, const CameraView& view,
                            const KnownLight* known, const RenderedFrame& rendered) {
-  constexpr std::uint64_t kPaths = 1 << 15;
   const SceneFrame& frame = scene.frame();
+  if (!may_hide_light(frame) || (known && known->has_caustic())) return;
   const auto shines =
       std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
-  const std::uint32_t smooth = shines == frame.lights.end() ? kNone : first_smooth_material(frame);
-  if (smooth == kNone || (known && known->has_caustic())) return;
   char share[48] = "";
   if (known) {
-    const formats::PhotonBlock photons = pilot_photons(
-        scene.tracer, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), "caustic", kPaths, 0);
-    const SeenPhotons missing = see_photons(scene, view, photons).caustic;
-    if (!(missing.mean - kAuditErrors * missing.mean_error > kAuditLimit * rendered.mean_radiance)) return;
-    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing.mean / rendered.mean_radiance);
+    const double missing = hidden_share(scene, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), view,
+                                        rendered.mean_radiance);
+    if (!(missing > 0)) return;
+    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing);
   }
-  const std::string &material = frame.materials[smooth].name, &light = shines->light.name;
+  const std::string &material = frame.materials[first_smooth_material(frame)].name, &light = shines->light.name;
   tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
             (light.empty() ? "" : ", as that of light \"" + light + "\"") +
@@ -80,17 +76,21 @@ void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionT
 /// Measures the bias of the frame's layers. Photons estimate the light of lamps, because few camera paths meet a bright
 /// spot close to a lamp. Camera paths estimate the light of sun and sky, because few photons of sun and sky arrive in
 /// view. If the scene has a sun and a mirror or smooth glass, photons estimate all light, because no camera path meets
-/// a sun via a smooth surface.
+/// a sun via a smooth surface. Paths have nothing to audit in a frame by paths: `unbiased` is then set, and nothing is
+/// measured.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const RenderScene& scene,
                               const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
-                              const RenderedFrame& rendered) {
+                              const RenderedFrame& rendered, bool& unbiased) {
   if (!(options.audit > 0)) return {};
+  const Lights& lights = scene.lights;
+  const bool hidden = lights.has_suns() && first_smooth_material(scene.frame()) != kNone,
+             paths = lights.has_distant() && !hidden, photons = hidden || lights.has_placed();
+  unbiased = paths && !photons && options.traces_paths();
+  if (unbiased) return {};
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   const Tracer& tracer = scene.tracer;
-  const bool hidden = scene.lights.has_suns() && first_smooth_material(tracer.frame()) != kNone,
-             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
   const AuditEffort effort = audit_effort(options.audit, rendered.rays, photons, paths,
                                           mix64(frame_options.seed + std::uint64_t(tracer.frame().frame)));
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
@@ -150,8 +150,15 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
 
   if (number == tool.common().frames.front())
     warn_of_missing_light(tool, scene, input.emission(frame.frame), view, frame_options.known, rendered);
+  bool unbiased = false;
   const std::vector<AuditEntry> audited =
-      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
+      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered, unbiased);
+  std::map<std::string, double> account = account_of(rendered, audited);
+  if (unbiased) {
+    account["audit.unbiased"] = 1;
+    tool.stats().set("audit.unbiased", 1);
+    tool.say("audit: no bias, as camera paths find all light");
+  }
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
@@ -162,7 +169,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   const ExrWriteOptions exr{options.half_float, options.compression == "zip"};
   const FrameDescription description{
       identity_of(frame),        light.history() + tool.history_line(number),   frame.frame,
-      input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account_of(rendered, audited),
+      input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account,
       input.scene().object_names};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
