@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "formats/error.h"
+#include "lib/gather/reachable_area.h"
 #include "lib/gather/whole_photons.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/moving_objects.h"
 #include "lib/scene/static_scene.h"
+#include "lib/transport/learn_sky.h"
 
 namespace tempolux {
 namespace {
@@ -30,6 +32,20 @@ std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights,
   return shares;
 }
 
+/// The lights for direct light at points, guided by what these points see of the environment.
+Lights guided_lights(const Tracer& tracer, const Lights& lights, std::span<const IrradiancePoint> points) {
+  if (!lights.has_environment()) return lights;
+  const float offset = Reach(tracer).offset();
+  std::vector<SkyPlace> places;
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kSkyPlaces + 1) {
+    SkyPlace& place = places.emplace_back();
+    place.surface.position = points[i].position;
+    place.surface.offset = offset;
+    place.surface.normal = place.surface.normal_geometric = place.geometric = place.shading = points[i].normal;
+  }
+  return lights.guided(learn_sky(tracer, lights, places));
+}
+
 }  // namespace
 
 Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
@@ -47,7 +63,8 @@ GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, co
   PlacedPoints placed = place_points(frame, options);
   GatherPoints result{std::move(placed.points), placed.spacing, caustic ? "direct,caustic,indirect" : "direct,indirect",
                       map.header.history, map.header.emitted_count};
-  estimate_points(tracer, lights, map, shift_of(map.header.origin, frame), options, result.points);
+  estimate_points(tracer, guided_lights(tracer, lights, result.points), map, shift_of(map.header.origin, frame),
+                  options, result.points);
   return result;
 }
 
@@ -59,7 +76,7 @@ DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& trace
 }
 
 PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& static_tracer,
-                                const Lights& lights, const PointOptions& options, GatherPoints& points) {
+                                const Lights& unguided, const PointOptions& options, GatherPoints& points) {
   const SceneFrame& frame = whole.frame();
   const MovingObjects moving(frame);
   const PlacedPoints placed = place_points(frame, options);
@@ -75,6 +92,8 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
     points.points[i].position = placed.points[i].position;
     points.points[i].normal = placed.points[i].normal;
   }
+  // Static points that no mover shadows keep their light samples, so the guide must be that of the static scene.
+  const Lights lights = guided_lights(static_tracer, unguided, points.points);
   const Vec3d static_shift = shift_of(light.fixed.header.origin, frame),
               dynamic_shift = shift_of(light.moved.header.origin, frame);
   const PointUpdateCounts counts = update_points(

@@ -8,6 +8,7 @@
 #include "lib/core/random.h"
 #include "lib/light/lights.h"
 #include "lib/light/punctual.h"
+#include "lib/light/sky_guide.h"
 
 namespace tempolux {
 namespace {
@@ -18,11 +19,22 @@ double sun_weight(const PlacedLight& placed, Vec3 normal) {
   return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
 }
 
+/// Density [1/sr] of a direction of the environment that is drawn by radiance or from a grid.
+double mixed_pdf(double by_radiance, const SkyGuide::Grid& grid, Vec3 direction) {
+  return Lights::kUnguided * by_radiance + (1 - Lights::kUnguided) * grid.pdf_solid_angle(direction);
+}
+
 double share_of_distant(double distant, double others) {
   return others > 0 ? std::clamp(distant / (distant + others), 0.2, 0.8) : 1;
 }
 
 }  // namespace
+
+Lights Lights::guided(std::shared_ptr<const SkyGuide> guide) const {
+  Lights lights = *this;
+  lights.guide_ = std::move(guide);
+  return lights;
+}
 
 /// Sum of the weights of the environment and of all directional lights.
 double Lights::sum_distant(Vec3 normal) const {
@@ -44,7 +56,8 @@ bool Lights::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, dou
                             LightSample& s) const {
   const double left = u * total;
   if (left < environment_weight_ || total <= environment_weight_)
-    return sample_environment(point, u_float, left / environment_weight_, share * environment_weight_ / total, s);
+    return sample_environment(point, normal, u_float, left / environment_weight_, share * environment_weight_ / total,
+                              s);
   return sample_sun(point, normal, (left - environment_weight_) / (total - environment_weight_),
                     share * (1 - environment_weight_ / total), s);
 }
@@ -73,12 +86,22 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, L
 
 /// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
 /// up u.
-bool Lights::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
+bool Lights::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
+                                LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
   EnvironmentLight::Sample found;
   const double u1 = std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                u2 = std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53);
-  if (!environment_->sample(u1, u2, found)) return false;
+  const SkyGuide::Grid* const grid = guide_ ? guide_->at(point, normal) : nullptr;
+  if (!grid) {
+    if (!environment_->sample(u1, u2, found)) return false;
+  } else {
+    if (u1 >= kUnguided) found.direction = grid->sample((u1 - kUnguided) / (1 - kUnguided), u2);
+    else if (!environment_->sample(u1 / kUnguided, u2, found)) return false;
+    const EnvironmentLight::Place place = environment_->place_of(found.direction);
+    found.radiance = environment_->radiance_at(place);
+    found.pdf_solid_angle = mixed_pdf(environment_->pdf_solid_angle(place, found.direction), *grid, found.direction);
+  }
   const double pdf = found.pdf_solid_angle * probability;
   s.wi = found.direction;
   s.position = point + s.wi * distance_beyond();
@@ -176,7 +199,10 @@ float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::P
   if (!(environment_weight_ > 0)) return 0;
   double total = 0;
   const double share = distant_share(point, normal, from, total);
-  const float pdf = float(environment_->pdf_solid_angle(place, direction) * share * environment_weight_ / total);
+  const SkyGuide::Grid* const grid = guide_ ? guide_->at(point, normal) : nullptr;
+  const double by_radiance = environment_->pdf_solid_angle(place, direction),
+               directed = grid ? mixed_pdf(by_radiance, *grid, direction) : by_radiance;
+  const float pdf = float(directed * share * environment_weight_ / total);
   return pdf < INFINITY ? pdf : 0;
 }
 

@@ -22,6 +22,8 @@
 
 namespace tempolux {
 
+class SkyGuide;
+
 /// One slot of the emission table: an emissive triangle (both sides with twice the flux if its material is double
 /// sided), a punctual light, or the environment. Slots and probabilities stay the same over a segment: a lamp that is
 /// dimmed or moved keeps its slot, and only the flux of its photons changes.
@@ -93,6 +95,12 @@ class Lights {
   /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
   /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
+
+  /// The same lights with a guide: where the guide has a grid, sample() draws a direction of the environment from the
+  /// grid with probability 1 - kUnguided, else by radiance. Densities are those of the mixture, so means do not change,
+  /// and a guide that misleads costs at most 1 / kUnguided times the variance. Photons are emitted as without.
+  Lights guided(std::shared_ptr<const SkyGuide> guide) const;
+  static constexpr double kUnguided = 0.25;
 
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }
@@ -177,7 +185,7 @@ class Lights {
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                       LightSample& s) const;
-  bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;
+  bool sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal, From from) const {
@@ -220,6 +228,7 @@ class Lights {
   std::vector<std::uint32_t> tree_slot_;   ///< and back
   std::vector<std::uint32_t> suns_;        ///< indices of the directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment_;
+  std::shared_ptr<const SkyGuide> guide_;  ///< nullptr: none
   double environment_weight_ = 0;  ///< irradiance from the environment, averaged over all normals; 0: none shines
   Aim aim_;                        ///< of photons from directional lights and environment
   LightTree tree_{{}};

@@ -9,6 +9,7 @@
 #include "lib/core/sobol.h"
 #include "lib/material/seen_side.h"
 #include "lib/render/known_light.h"
+#include "lib/transport/learn_sky.h"
 
 namespace tempolux {
 namespace {
@@ -68,6 +69,16 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
     }
   });
   return seen;
+}
+
+Lights guided_lights(const RenderScene& scene, const CameraView& view) {
+  if (!scene.lights.has_environment()) return scene.lights;
+  const SeenPlaces seen = places_seen(scene, view, int(kSkyPlaces / 2), 0);
+  std::vector<SkyPlace> places;
+  for (const std::vector<SeenPlace>* some : {&seen.places, &seen.next_places})
+    for (const SeenPlace& place : *some)
+      if (place.exists()) places.push_back({place.surface, place.geometric, place.normal});
+  return scene.lights.guided(learn_sky(scene.tracer, scene.lights, places));
 }
 
 }  // namespace tempolux

@@ -31,4 +31,8 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
 /// Follows `looks` camera rays, stratified over the picture. Same places for any number of threads.
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed);
 
+/// The scene's lights, guided by what the places that the camera sees, and those that they see, see of the environment
+/// (SkyGuide).
+Lights guided_lights(const RenderScene& scene, const CameraView& view);
+
 }  // namespace tempolux

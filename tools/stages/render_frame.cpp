@@ -12,6 +12,7 @@
 #include "lib/render/coverage_channel.h"
 #include "lib/render/hidden_light.h"
 #include "lib/render/influence_channels.h"
+#include "lib/render/places_seen.h"
 #include "lib/render/seen_channels.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
@@ -139,9 +140,10 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   }
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
-  const Lights lights(frame, input.emission(frame.frame));
+  Lights lights(frame, input.emission(frame.frame));
   const bool yardstick = options.integrator == "path";
   const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
+  if (!yardstick && lights.has_environment()) lights = guided_lights(scene, view);
   const IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
   tool.stats().phase("render", true);

@@ -1,0 +1,152 @@
+// lib/light/sky_guide.cpp -- a tree of places with a grid of directions in each leaf.
+#include "lib/light/sky_guide.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/pi.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kCells = SkyGuide::kRows * SkyGuide::kColumns;
+
+/// Cell of a direction: rows by height, which makes all cells equal.
+std::size_t cell_of(Vec3 d) {
+  const double turn = std::atan2(double(d.z), double(d.x)) / (2 * kPiD) + 0.5;
+  const int row = std::clamp(int((1 - double(d.y)) / 2 * SkyGuide::kRows), 0, SkyGuide::kRows - 1),
+            column = std::clamp(int(turn * SkyGuide::kColumns), 0, SkyGuide::kColumns - 1);
+  return std::size_t(row * SkyGuide::kColumns + column);
+}
+
+/// 0 to 5: the axis and sign that a normal is closest to.
+std::size_t side_of(Vec3 n) {
+  const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  if (x >= y && x >= z) return n.x < 0;
+  return y >= z ? 2 + (n.y < 0) : 4 + (n.z < 0);
+}
+
+/// The first entry above u, and u stretched to [0, 1) over it.
+std::size_t find(std::span<const float> ends, double& u) {
+  const auto after =
+      std::upper_bound(ends.begin(), ends.end() - 1, u, [](double x, float end) { return x < double(end); });
+  const auto i = std::size_t(after - ends.begin());
+  const double below = i > 0 ? double(ends[i - 1]) : 0, width = double(ends[i]) - below;
+  u = width > 0 ? std::clamp((u - below) / width, 0.0, 1 - 0x1p-53) : 0.5;
+  return i;
+}
+
+}  // namespace
+
+Vec3 SkyGuide::Grid::sample(double u1, double u2) const {
+  const std::size_t row = find(row_end_, u1),
+                    column = find(std::span(column_end_).subspan(row * kColumns, kColumns), u2);
+  const double y = 1 - 2 * (double(row) + u1) / kRows, phi = 2 * kPiD * ((double(column) + u2) / kColumns - 0.5),
+               across = std::sqrt(std::max(0.0, 1 - y * y));
+  return {float(across * std::cos(phi)), float(y), float(across * std::sin(phi))};
+}
+
+double SkyGuide::Grid::pdf_solid_angle(Vec3 direction) const { return double(density_[cell_of(direction)]); }
+
+/// Builds the tree over the places of one side.
+struct SkyGuide::Builder {
+  SkyGuide& guide;
+  std::span<const Place> places;
+  int rays;
+
+  std::uint32_t build(std::span<std::uint32_t> of, std::span<Hit> hits) const;
+  std::uint32_t leaf(std::size_t places_in, std::span<const Hit> hits) const;
+};
+
+SkyGuide::Grid::Grid(std::span<const Hit> hits) {
+  std::vector<double> weights(kCells, 0.0);
+  double sum = 0;
+  for (const Hit& hit : hits) {
+    const std::size_t cell = cell_of(hit.direction);
+    const int row = int(cell) / kColumns, column = int(cell) % kColumns;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        const int r = std::clamp(row + i, 0, kRows - 1), c = (column + j + kColumns) % kColumns;
+        weights[std::size_t(r * kColumns + c)] += double(hit.weight) * (i == 0 ? 2 : 1) * (j == 0 ? 2 : 1);
+      }
+    sum += 16 * double(hit.weight);
+  }
+  double below = 0;
+  for (int r = 0; r < kRows; ++r) {
+    double row = 0, so_far = 0;
+    for (int c = 0; c < kColumns; ++c) row += weights[std::size_t(r * kColumns + c)];
+    for (int c = 0; c < kColumns; ++c) {
+      const auto cell = std::size_t(r * kColumns + c);
+      so_far += weights[cell];
+      column_end_[cell] = row > 0 ? float(so_far / row) : 1;
+    }
+    below += row;
+    row_end_[std::size_t(r)] = float(below / sum);
+  }
+  // The density is that of the rounded shares.
+  for (int r = 0; r < kRows; ++r)
+    for (int c = 0; c < kColumns; ++c) {
+      const auto row = std::size_t(r), cell = std::size_t(r * kColumns + c);
+      const double of_row = double(row_end_[row]) - (r > 0 ? double(row_end_[row - 1]) : 0),
+                   of_cell = double(column_end_[cell]) - (c > 0 ? double(column_end_[cell - 1]) : 0);
+      density_[cell] = float(of_row * of_cell * kCells / (4 * kPiD));
+    }
+}
+
+std::uint32_t SkyGuide::Builder::leaf(std::size_t places_in, std::span<const Hit> hits) const {
+  const double sent = double(places_in) * rays;
+  const bool useful = hits.size() >= kLeastHits && double(hits.size()) <= kMostSeen * sent;
+  guide.nodes_.push_back({-1, 0, useful ? std::uint32_t(guide.grids_.size()) : kNoGrid, 0});
+  if (useful) guide.grids_.emplace_back(hits);
+  return std::uint32_t(guide.nodes_.size() - 1);
+}
+
+/// Adds the node of these places and their hits; returns its number.
+std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hit> hits) const {
+  if (hits.size() < 2 * kLeastHits) return leaf(of.size(), hits);
+  const auto position = [&](const Hit& hit) { return places[hit.place].position; };
+  Vec3 low = position(hits[0]), high = low;
+  for (const Hit& hit : hits) {
+    low = min(low, position(hit));
+    high = max(high, position(hit));
+  }
+  const Vec3 size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  std::vector<float> at;
+  for (const Hit& hit : hits) at.push_back(position(hit)[axis]);
+  std::ranges::nth_element(at, at.begin() + std::ptrdiff_t(at.size() / 2));
+  const float split = at[at.size() / 2];
+  // Stable, so that sums of weights do not depend on how a library sorts.
+  const auto upper_hits =
+      std::stable_partition(hits.begin(), hits.end(), [&](const Hit& hit) { return position(hit)[axis] < split; });
+  const auto below = std::size_t(upper_hits - hits.begin());
+  if (below < kLeastHits / 2) return leaf(of.size(), hits);  // many places at one coordinate
+  const auto upper_places =
+      std::stable_partition(of.begin(), of.end(), [&](std::uint32_t i) { return places[i].position[axis] < split; });
+  const auto places_below = std::size_t(upper_places - of.begin());
+  const auto number = guide.nodes_.size();
+  guide.nodes_.emplace_back();
+  const std::uint32_t left = build(of.first(places_below), hits.first(below)),
+                      right = build(of.subspan(places_below), hits.subspan(below));
+  guide.nodes_[number] = {axis, split, left, right};
+  return std::uint32_t(number);
+}
+
+SkyGuide::SkyGuide(std::span<const Place> places, std::vector<Hit> hits, int rays) {
+  std::array<std::vector<std::uint32_t>, 6> places_of;
+  std::array<std::vector<Hit>, 6> hits_of;
+  for (std::size_t i = 0; i < places.size(); ++i) places_of[side_of(places[i].normal)].push_back(std::uint32_t(i));
+  for (const Hit& hit : hits) hits_of[side_of(places[hit.place].normal)].push_back(hit);
+  const Builder builder{*this, places, rays};
+  for (std::size_t side = 0; side < 6; ++side) root_[side] = builder.build(places_of[side], hits_of[side]);
+}
+
+const SkyGuide::Grid* SkyGuide::at(Vec3 position, Vec3 normal) const {
+  if (grids_.empty() || normal == Vec3{}) return nullptr;
+  std::uint32_t node = root_[side_of(normal)];
+  while (nodes_[node].axis >= 0)
+    node = position[nodes_[node].axis] < nodes_[node].split ? nodes_[node].left : nodes_[node].right;
+  return nodes_[node].left == kNoGrid ? nullptr : &grids_[nodes_[node].left];
+}
+
+}  // namespace tempolux

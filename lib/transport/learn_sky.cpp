@@ -1,0 +1,49 @@
+#include "lib/transport/learn_sky.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "lib/core/frame.h"
+#include "lib/core/parallel.h"
+#include "lib/core/random.h"
+#include "lib/core/sampling.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::uint32_t kRays = 4;
+constexpr std::size_t kChunk = 64;  ///< places
+constexpr std::uint64_t kSeed = 0x736b79;
+
+void add_hits(const Tracer& tracer, const Lights& lights, const SkyPlace& from, std::uint32_t number,
+              std::vector<SkyGuide::Hit>& hits) {
+  const Frame axes(from.shading);
+  const PathRandom random(kSeed, number);
+  for (std::uint32_t i = 0; i < kRays; ++i) {
+    const Vec3 travel = axes.to_world(sample_hemisphere_cos(random.get2(i, Purpose::scatter)));
+    if (!(dot(travel, from.geometric) > 0) || tracer.occluded(spawn_ray(from.surface, travel))) continue;
+    const float weight = max_component(lights.environment(travel));
+    if (weight > 0) hits.push_back({number, travel, weight});
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
+                                          std::span<const SkyPlace> places) {
+  if (!lights.has_environment()) return nullptr;
+  std::vector<std::vector<SkyGuide::Hit>> found((places.size() + kChunk - 1) / kChunk);
+  parallel_chunks(places.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      add_hits(tracer, lights, places[i], std::uint32_t(i), found[first / kChunk]);
+  });
+  std::vector<SkyGuide::Place> senders;
+  for (const SkyPlace& place : places) senders.push_back({place.surface.position, place.shading});
+  std::vector<SkyGuide::Hit> hits;
+  for (const auto& some : found) hits.insert(hits.end(), some.begin(), some.end());
+  auto guide = std::make_shared<const SkyGuide>(senders, std::move(hits), int(kRays));
+  return guide->empty() ? nullptr : guide;
+}
+
+}  // namespace tempolux
