@@ -36,8 +36,6 @@ constexpr int kRays = 62;                  ///< gather rays of a rough record
 /// these pixels form a lattice.
 constexpr double kLooks = 320 * 180;
 constexpr double kSure = 3;  ///< standard errors
-/// Effective places that hold a variance, (sum v)^2 / sum v^2: fewer do not show where the variance is. As for audits.
-constexpr double kFewest = 32;
 constexpr double kMapError2 =
     1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
 
@@ -127,44 +125,23 @@ struct Levels {
 
 using PartOfLight = std::function<double(const Sample&)>;
 
-/// Variance of a sample at a place. A sample counts at most `most`.
-double variance_at(const std::array<Sample, kSamples>& samples, double most, const PartOfLight& light) {
-  double first = 0, square = 0;
-  for (const Sample& sample : samples) {
-    const double value = std::min(light(sample), most);
-    first += value, square += value * value;
-  }
-  return sample_variance(kSamples, first, square);
-}
-
-/// For each part of the picture, the variance of a sample of `other` and `scattered` light, divided by the square of
-/// the allowed error. A sample counts at most as much as makes a pixel of `times` samples white. If few places hold
-/// most of the variance that scattered light adds, chance decided in which parts paths met this light: each part then
-/// gets the same share.
-std::vector<double> variances(const Samples& samples, const Levels& levels, double times,
-                              const PartOfLight& scattered) {
-  std::vector<double> other(kColumns * kRows, 0.0), added(other), count(other);
-  double all = 0, squares = 0;
+/// For each part of the picture, the variance of a sample of some of the light, divided by the square of the allowed
+/// error. A sample counts at most as much as makes a pixel of `times` samples white.
+std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
+  std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    double first = 0, square = 0;
+    for (const Sample& sample : samples[i]) {
+      const double value = std::min(light(sample), times * levels.white);
+      first += value, square += value * value;
+    }
     const std::size_t part = levels.part[i];
+    if (levels.allowed[part] > 0)
+      sum[part] += sample_variance(kSamples, first, square) / (levels.allowed[part] * levels.allowed[part]);
     ++count[part];
-    const double allowed2 = levels.allowed[part] * levels.allowed[part], most = times * levels.white;
-    if (!(allowed2 > 0)) continue;
-    const double without = variance_at(samples[i], most, [](const Sample&s) { return s.other; }) / allowed2,
-                 with =
-                     variance_at(samples[i], most, [&](const Sample&s) { return s.other + scattered(s); }) / allowed2;
-    other[part] += without;
-    added[part] += with - without;
-    all += with - without;
-    squares += (with - without) * (with - without);
   }
-  const bool by_chance = all * all < kFewest * squares;
-  for (std::size_t part = 0; part < other.size(); ++part) {
-    const double places = std::max(1.0, count[part]);
-    other[part] = by_chance ? other[part] / places + std::max(0.0, all) / double(samples.size())
-                            : (other[part] + added[part]) / places;
-  }
-  return other;
+  for (std::size_t part = 0; part < sum.size(); ++part) sum[part] /= std::max(1.0, count[part]);
+  return sum;
 }
 
 /// The variance that n adaptive samples per pixel divide by n. A frame takes samples in proportion to the root of
@@ -176,7 +153,7 @@ double adaptive(const std::vector<double>& variances) {
 }
 
 SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
-  const auto of = [&](const PartOfLight& scattered) { return adaptive(variances(samples, levels, times, scattered)); };
+  const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
   const auto lost = [&](double Sample::*layer) {
     double above = 0;
     for (std::array<Sample, kSamples> some : samples) {
@@ -186,10 +163,10 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
     return above > 0 ? above / (kSamples * double(samples.size()) * levels.picture) : 0;
   };
   return {.work = work,
-          .all = of([](const Sample& s) { return s.caustic + s.indirect; }),
-          .without_caustic = of([](const Sample& s) { return s.indirect; }),
-          .other = of([](const Sample& s) { return s.caustic; }),
-          .other_without_caustic = of([](const Sample&) { return 0.0; }),
+          .all = of([](const Sample& s) { return s.sum(); }),
+          .without_caustic = of([](const Sample& s) { return s.other + s.indirect; }),
+          .other = of([](const Sample& s) { return s.other + s.caustic; }),
+          .other_without_caustic = of([](const Sample& s) { return s.other; }),
           .lost_caustic = lost(&Sample::caustic),
           .lost_indirect = lost(&Sample::indirect)};
 }
@@ -197,7 +174,8 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
 /// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
 void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
   constexpr double kWholeSample = 4;  // shadow rays, as in pixel_noise.cpp
-  for (const double variance : variances(samples, levels, kFirst, [](const Sample& s) { return s.caustic; })) {
+  for (const double variance :
+       variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
     rough.samples += wanted / (kColumns * kRows);
     rough.wanted += variance / wanted / (kColumns * kRows);

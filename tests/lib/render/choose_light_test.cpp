@@ -141,6 +141,21 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
 }
 
+/// A way that surely lacks light comes after all others, however low its score, and the reason says how much it lacks.
+/// One frame of a segment suffices.
+TEST(WaysToLight, ThatSurelyLackLightComeLast) {
+  RoughFrame rough = example();
+  rough.path = {10, 1, 1, 1, 1};
+  ASSERT_FALSE(ways_to_light(rough, kOrder, true).front().map);
+  EXPECT_EQ(because(ways_to_light(rough, kOrder, true)).find("lacks"), std::string::npos);
+  rough.hidden = 0.049;
+  const std::vector<Way> ways = ways_to_light(rough, kOrder, true);
+  for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_EQ(ways[i].map, i < 3);
+  EXPECT_LT(ways[3].score(), ways[0].score());
+  EXPECT_NE(because(ways).find("lacks 4.9 % of its light"), std::string::npos) << because(ways);
+  EXPECT_TRUE(joined({ways_to_light(example(), kOrder, true), ways}).front().map);
+}
+
 /// If only photons find a part of the light, paths miss it and records win, although the light that paths found does
 /// not require records.
 TEST(WaysToLight, RecordsFindWhatPathsMiss) {

@@ -73,6 +73,19 @@ TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
   EXPECT_EQ(ways.front().method, IndirectMethod::paths);
 }
 
+/// The mirror is 6 cm wide and lies where it sends the lamp's light to the middle of the picture: it covers .0036 x .87
+/// / 5.3 = .0006 sr, one or two of 32768 photons. Their noise is most of their mean, but paths find none of this light,
+/// so even a single photon proves that paths lack some.
+TEST(SeePhotons, AFewPhotonsProveLightThatPathsDoNotFind) {
+  test::HandMadeScene scene;
+  scene.add_point_light({2, 2, 2}, Rgb(1.0f));
+  scene.add_quad({1.97f, 0, 0.887f}, {2.03f, 0, 0.887f}, {2.03f, 0, 0.827f}, {1.97f, 0, 0.827f}, mirror(0));
+  const auto [photons, indirect, rough, ways] = pilots_of(scene);
+  EXPECT_GT(photons.mean, 0);
+  EXPECT_LT(photons.mean, 3 * photons.mean_error);
+  EXPECT_GT(rough.missed_caustic.square, 0.2 * photons.square / (rough.radiance * rough.radiance));
+}
+
 /// A shining ceiling over a glossy floor: paths from the wall meet the ceiling after the floor. They find the same
 /// light as photons.
 TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
