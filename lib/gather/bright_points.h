@@ -54,7 +54,8 @@ struct BrightLight {
 /// (lamp_light.h). Let d = |z - y| be the distance from a place z on a lamp to y. If d is below kBesideLamp spacings,
 /// the share w with R = d is explicit, which is above 0 from l = 4 d on. If the point that represents y is marked, or
 /// no point represents y, gather rays sample direct light at y and contribute 1 - w of it. Sites are photons from the
-/// lamps, so they are as dense as the light, however small its spot. Thread-safe.
+/// lamps, so they are as dense as the light, however small its spot. Glossy lobes are treated likewise, with l times
+/// their width in place of l (lobe_width). Thread-safe.
 class BrightPoints {
  public:
   /// high_shares: h_p in [0, 1] by point of `points`. Points whose indirect light is not that of their surroundings
