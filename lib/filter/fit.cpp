@@ -112,9 +112,8 @@ class StripFit {
       const Float8 off = own_guide_[c] - load8(guide_[c] + offset);
       difference = multiply_add(off, off, difference);
     }
-    const Float8 z =
-        1 -
-        difference / (kValueErrors * kValueErrors * (own_variance_ + load8(guide_variance_ + offset)) + kTinyVariance);
+    const Float8 z = 1 - difference / (kValueErrors * kValueErrors * (own_variance_ + load8(guide_variance_ + offset)) +
+                                       kTinyVariance);
     return where(z > 0, z * z);
   }
 
@@ -185,7 +184,7 @@ class StripFit {
   BothHalves& out_;
   int y_ = 0;
   std::size_t x0_ = 0, count_ = 0;
-  std::array<std::ptrdiff_t, kTaps> offsets_;           ///< by place in the window, in floats of a plane
+  std::array<std::ptrdiff_t, kTaps> offsets_;  ///< by place in the window, in floats of a plane
   std::array<const float*, 3> guide_{};
   const float* guide_variance_ = nullptr;
   Float8 own_variance_{};
