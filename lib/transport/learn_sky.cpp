@@ -8,6 +8,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "lib/transport/media.h"
 
 namespace tempolux {
 namespace {
@@ -22,8 +23,9 @@ void add_hits(const Tracer& tracer, const Lights& lights, const SkyPlace& from, 
   const PathRandom random(kSeed, number);
   for (std::uint32_t i = 0; i < kRays; ++i) {
     const Vec3 travel = axes.to_world(sample_hemisphere_cos(random.get2(i, Purpose::scatter)));
-    if (!(dot(travel, from.geometric) > 0) || tracer.occluded(spawn_ray(from.surface, travel))) continue;
-    const float weight = max_component(lights.environment(travel));
+    if (!(dot(travel, from.geometric) > 0)) continue;
+    const Rgb passed = transmittance(tracer, spawn_ray(from.surface, travel), {random, i, way_shadow});
+    const float weight = max_component(passed * lights.environment(travel));
     if (weight > 0) hits.push_back({number, travel, weight});
   }
 }

@@ -56,7 +56,7 @@ TEST(SampleDirect, MeanIsTheIrradianceOfALamp) {
     if (!sample_direct(lamp.lights, {place, kUp, kUp}, random.get1(0, Purpose::light_choice),
                        random.get2(0, Purpose::light_point), direct))
       continue;
-    sum += double(direct.irradiance.g * transmittance(lamp.tracer, direct.shadow, {random, 0, way_shadow}));
+    sum += double(direct.irradiance.g * transmittance(lamp.tracer, direct.shadow, {random, 0, way_shadow}).g);
   }
   EXPECT_NEAR(sum / kSamples / Lamp::irradiance(), 1, 0.024);
 }
@@ -83,7 +83,7 @@ TEST(SampleDirect, NormalsCoatAndShadow) {
   HandMadeScene covered = Lamp::lamp();
   covered.add_quad({-2, 0.5f, -2}, {-2, 0.5f, 2}, {2, 0.5f, 2}, {2, 0.5f, -2}, matte(Rgb(0.0f)));
   const Lamp shadowed(std::move(covered));
-  EXPECT_EQ(transmittance(shadowed.tracer, plain.shadow, {PathRandom(1, 1), 0, way_shadow}), 0);
+  EXPECT_EQ(transmittance(shadowed.tracer, plain.shadow, {PathRandom(1, 1), 0, way_shadow}).g, 0);
 }
 
 /// Half of the estimate by directions drawn by the cosine, which meet the lamp, and half by light samples, each weighed

@@ -63,7 +63,7 @@ Mean irradiance(const Tracer& tracer, const Lights& lights, std::uint32_t n) {
     if (!sample_direct(lights, {place, kUp, kUp}, random.get1(0, Purpose::light_choice),
                        random.get2(0, Purpose::light_point), direct))
       continue;
-    const double e = double(direct.irradiance.g * transmittance(tracer, direct.shadow, {random, 0, way_shadow}));
+    const double e = double(direct.irradiance.g * transmittance(tracer, direct.shadow, {random, 0, way_shadow}).g);
     sum += e;
     squares += e * e;
   }
