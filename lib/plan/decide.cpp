@@ -87,7 +87,8 @@ class FramePilot {
     RoughOptions options{kinds_, wish_.pixel_error, wish_.photons, spheres_, 0, places};
     options.without_extent = without_extent_ ? &*without_extent_ : nullptr;
     options.enough = [&](const RoughFrame& rough) { return enough(look_of(rough)); };
-    return look_of(rough_frame({tracer_, lights_, lights_.has_suns()}, aimed_lights, view_, options));
+    const Lights guided = guided_lights({tracer_, lights_, lights_.has_suns()}, view_);
+    return look_of(rough_frame({tracer_, guided, lights_.has_suns()}, aimed_lights, view_, options));
   }
 
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
