@@ -35,7 +35,7 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
       break;
     }
     flux *= passed / p;
-    ray.t_min = hit.t + place.offset / std::abs(dot(place.normal_geometric, ray.direction));
+    pass_surface(place, hit.t, ray);
   }
   const SurfaceMaterial material(tracer.frame(), place);
   const Vec3 wi = -emission.travel;
@@ -51,8 +51,8 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   float share = cosine / geometric;
   if (bsdf.has_specular()) share *= bsdf.arrival_weight(cosine);
   if (const Media* const media = tracer.frame().media.get()) [[unlikely]] {
-    ray.t_max = hit.t;
-    share *= media_transmittance(*media, ray, {random, 0, way_shadow});
+    const Ray way{ray.origin, ray.direction, 0, hit.t};
+    share *= media_transmittance(*media, way, {random, 0, way_shadow});
   }
   return LampPhoton{place, normal, bsdf, flux * share, distance, point ? point->point : kNone};
 }

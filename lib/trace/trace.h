@@ -83,6 +83,11 @@ inline Ray spawn_ray(const SurfacePoint& point, Vec3 direction) {
   const float side = std::copysign(point.offset, dot(direction, point.normal_geometric));
   return {point.position + point.normal_geometric * side, direction, 0, INFINITY};
 }
+/// Moves the start of a ray behind the surface that the ray meets at `t` in `point`. Origin and direction stay, so that
+/// alpha decides as before.
+inline void pass_surface(const SurfacePoint& point, float t, Ray& ray) {
+  ray.t_min = t + point.offset / std::abs(dot(point.normal_geometric, ray.direction));
+}
 /// A ray from `point` that ends just before `target`; target_offset is the target's own offset, or 0. The direction is
 /// not normalised: t runs from 0 to 1.
 Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset);

@@ -29,13 +29,12 @@ namespace {
 Rgb passed_surfaces(const Tracer& tracer, Ray ray) {
   if (!tracer.has_panes()) return Rgb(tracer.occluded(ray) ? 0.0f : 1.0f);
   Rgb passed(1.0f);
-  // The ray keeps origin and direction, so that alpha decides as for an occluded ray.
   for (Hit hit; tracer.intersect(ray, hit);) {
     if (!may_be_pane(tracer.frame().materials[tracer.frame().surfaces[hit.surface].material])) return Rgb(0.0f);
     const SurfacePoint point = tracer.surface_point(hit);
     passed *= passed_straight(tracer.frame(), point, ray.direction);
     if (is_black(passed)) break;
-    ray.t_min = hit.t + point.offset / std::abs(dot(point.normal_geometric, ray.direction));
+    pass_surface(point, hit.t, ray);
   }
   return passed;
 }
