@@ -38,10 +38,8 @@ Lights guided_lights(const Tracer& tracer, const Lights& lights, std::span<const
   const float offset = Reach(tracer).offset();
   std::vector<SkyPlace> places;
   for (std::size_t i = 0; i < points.size(); i += points.size() / kSkyPlaces + 1) {
-    SkyPlace& place = places.emplace_back();
-    place.surface.position = points[i].position;
-    place.surface.offset = offset;
-    place.surface.normal = place.surface.normal_geometric = place.geometric = place.shading = points[i].normal;
+    const Vec3 normal = points[i].normal;
+    places.push_back({surface_of(points[i], offset), normal, normal});
   }
   return lights.guided(learn_sky(tracer, lights, places));
 }

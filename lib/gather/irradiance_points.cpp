@@ -205,10 +205,7 @@ struct DirectLight {
   void for_samples(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random,
                    const Each& each) const {
     if (lights.empty()) return;
-    SurfacePoint from;
-    from.position = point.position;
-    from.normal = from.normal_geometric = point.normal;
-    from.offset = offset;
+    const SurfacePoint from = surface_of(point, offset);
     const Receiver at{from, point.normal, scattering.normal, scattering.coat ? &*scattering.coat : nullptr};
     for (std::uint32_t s = 0; s < std::uint32_t(samples); ++s) {
       const float u = (float(s) + random.get1(0, Purpose::light_choice, s)) / float(samples);

@@ -19,8 +19,9 @@ namespace tempolux {
 
 struct PointOptions {
   std::uint64_t seed = 0;
-  /// Number of points on the front sides of all static surfaces together (all surfaces if none is static); the back
-  /// sides get as many. Movers get as many per area, and every surface gets at least one.
+  /// Number of points on the front sides of the static surfaces, summed over these surfaces; if no surface is static,
+  /// summed over all surfaces. The back sides get the same number. Movers get the same number per area, and every
+  /// surface gets at least one point.
   std::uint32_t count = 20000;
   /// Spheres around what cameras see, in scene space: points lie in these only. Empty: on all surfaces.
   std::vector<AimSphere> seen = {};
@@ -56,6 +57,15 @@ struct PlacedSite {
 std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects,
                                     const AimSphere& around, double area, std::uint64_t seed,
                                     const std::function<bool(Vec3)>& wanted);
+
+/// The place of a point as a start of rays that begin `offset` m above the surface; the shading normal is the point's.
+inline SurfacePoint surface_of(const IrradiancePoint& point, float offset) {
+  SurfacePoint surface{};
+  surface.position = point.position;
+  surface.normal = surface.normal_geometric = point.normal;
+  surface.offset = offset;
+  return surface;
+}
 
 /// Estimates the irradiance of all points. Direct light: by light sampling with stratified shadow rays, the shading
 /// normal at the point, and times Bsdf::arrival_weight under a coat. Caustic and indirect light: by the density of the

@@ -38,7 +38,8 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
     way.pixel_error = error_for_variance(variance / rough.wanted_of);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += rough.map_error;
-  else way.lacks = rough.hidden, way.error += left_of(rough.missed_caustic, samples);
+  else way.error += left_of(rough.missed_caustic, samples);
+  way.lacks = map ? 0 : rough.hidden;
   if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
   const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);
   way.error += lost * lost;

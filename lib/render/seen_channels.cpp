@@ -46,7 +46,7 @@ Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
   for (int mirrors = 0;; ++mirrors) {
     Hit hit;
     tracer.intersect(ray, hit);
-    if (hit.surface == kNone) { return {.id = mirrors > 0 ? mixed(shown.id, kNone) : kNone}; }
+    if (hit.surface == kNone) return {.id = mirrors > 0 ? mixed(shown.id, kNone) : kNone};
     SurfacePoint point = tracer.surface_point(hit);
     way += hit.t;
     const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(way));

@@ -55,6 +55,22 @@ struct Ceiling {
   }
 };
 
+/// All that gathering light of the ceiling needs.
+struct Gathering {
+  const SceneFrame& frame;
+  Tracer tracer{frame};
+  Lights lights{frame, build_emission_table({&frame, 1})};
+  PointLookup lookup;
+  std::vector<LampPhoton> photons = note_lamps_beside(tracer, lights, lookup);
+  BrightPoints bright{tracer, lights, lookup, {}, {.beside_lamps = photons}};
+
+  explicit Gathering(Ceiling& ceiling)
+      : frame(ceiling.scene.frame()), lookup(ceiling.points, kSpacing, point_clearance(tracer)) {}
+  FinalGather gather(std::uint64_t seed) const {
+    return FinalGather(tracer, lights, lookup, {.seed = seed, .rays = 500, .bright = &bright});
+  }
+};
+
 /// The flux of those directions, of the lamp's 4 pi W, between straight up and the angle at which the distance is 2 s:
 /// 2 pi (1 - d / 2 s). 2^15 Sobol points resolve a share of the sphere to 1e-3.
 TEST(LampLight, PhotonsBesideALamp) {
@@ -92,18 +108,13 @@ TEST(LampLight, FloorUnderALampBesideACeiling) {
   for (const double d : {0.01, 0.03, 0.1, 0.3})
     for (const double x : {0.0, 0.8}) {
       Ceiling ceiling(d);
-      const SceneFrame& frame = ceiling.scene.frame();
-      const Tracer tracer(frame);
-      const Lights lights(frame, build_emission_table({&frame, 1}));
-      PointLookup lookup(ceiling.points, kSpacing, point_clearance(tracer));
-      const std::vector<LampPhoton> photons = note_lamps_beside(tracer, lights, lookup);
-      const BrightPoints bright(tracer, lights, lookup, {}, {.beside_lamps = photons});
+      const Gathering made(ceiling);
       constexpr int kGathers = 60;
       double sum = 0, squares = 0;
       const double exact = ceiling.exact(x);
       for (int g = 0; g < kGathers; ++g) {
         GatherCounts counts;
-        const FinalGather gather(tracer, lights, lookup, {.seed = std::uint64_t(g), .rays = 500, .bright = &bright});
+        const FinalGather gather = made.gather(std::uint64_t(g));
         const double e =
             double(gather.gather(place_at({float(x), 0, 0}, {0, 1, 0}), {0, 1, 0}, counts).irradiance.g) / exact;
         sum += e / kGathers;
@@ -125,12 +136,7 @@ TEST(LampLight, SpotReflectedByGloss) {
     metal.metallic = 1;
     metal.roughness = roughness;
     ceiling.scene.add_quad({-1.5f, 0, 1.5f}, {1.5f, 0, 1.5f}, {1.5f, 0, -1.5f}, {-1.5f, 0, -1.5f}, metal);
-    const SceneFrame& frame = ceiling.scene.frame();
-    const Tracer tracer(frame);
-    const Lights lights(frame, build_emission_table({&frame, 1}));
-    PointLookup lookup(ceiling.points, kSpacing, point_clearance(tracer));
-    const std::vector<LampPhoton> photons = note_lamps_beside(tracer, lights, lookup);
-    const BrightPoints bright(tracer, lights, lookup, {}, {.beside_lamps = photons});
+    const Gathering made(ceiling);
     const Vec3 place{0.3f, 0.5f, 0}, spot{0, 1, 0};
     constexpr int n = 300, kGathers = 200;
     const Bsdf floor(metal);
@@ -146,7 +152,7 @@ TEST(LampLight, SpotReflectedByGloss) {
       }
     for (int g = 0; g < kGathers; ++g) {
       GatherCounts counts;
-      const FinalGather gather(tracer, lights, lookup, {.seed = std::uint64_t(g), .rays = 500, .bright = &bright});
+      const FinalGather gather = made.gather(std::uint64_t(g));
       const double e = double(gather.gather(place_at(place, {0, -1, 0}), {0, -1, 0}, counts).irradiance.g) / exact;
       sum += e / kGathers;
       squares += (e - 1) * (e - 1) / kGathers;

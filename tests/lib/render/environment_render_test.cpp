@@ -6,12 +6,14 @@
 #include "lib/photon/photon_trace.h"
 #include "lib/render/path_tracer.h"
 #include "tests/support/closed_box.h"
+#include "tests/support/layers.h"
 
 namespace tempolux {
 namespace {
 
 using test::HandMadeScene;
 using test::matte;
+using test::total;
 
 const Environment& uniform(float radiance) {
   static std::vector<std::unique_ptr<Environment>> kept;
@@ -41,12 +43,6 @@ struct Lit {
                           nullptr, counts);
   }
 };
-
-double total(const Layers& layers) {
-  double sum = 0;
-  for (const Rgb& value : layers.value) sum += double(value.g);
-  return sum;
-}
 
 HandMadeScene plane(const Material& material) {
   HandMadeScene scene;

@@ -5,7 +5,9 @@
 
 #include "lib/material/bsdf.h"
 #include "lib/render/path_tracer.h"
+#include "tests/support/layers.h"
 #include "tests/support/materials.h"
+#include "tests/support/mean.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -14,19 +16,13 @@ namespace {
 using test::glass;
 using test::HandMadeScene;
 using test::matte;
+using test::Mean;
+using test::total;
 
 /// A screen at z = -3 that glows with radiance 1 towards +z.
 void add_screen(HandMadeScene& scene) {
   scene.add_quad({-40, -40, -3}, {40, -40, -3}, {40, 40, -3}, {-40, 40, -3}, matte(Rgb(0.0f), Rgb(1.0f)));
 }
-
-struct Mean {
-  double sum = 0, square = 0;
-  int count = 0;
-  void add(double x) { sum += x, square += x * x, ++count; }
-  double mean() const { return sum / count; }
-  double sigma() const { return std::sqrt(std::max(0.0, square / count - mean() * mean()) / count); }
-};
 
 /// Mean radiance (green) along one ray.
 Mean look(HandMadeScene& scene, Vec3 from, Vec3 towards, int samples) {
@@ -38,9 +34,7 @@ Mean look(HandMadeScene& scene, Vec3 from, Vec3 towards, int samples) {
   for (int i = 0; i < samples; ++i) {
     const Layers seen = trace_eye_path({tracer, lights}, {from, normalize(towards), 0, INFINITY},
                                        PixelRandom(5, 0, std::uint32_t(i)), nullptr, counts);
-    double sum = 0;
-    for (const Rgb& value : seen.value) sum += double(value.g);
-    mean.add(sum);
+    mean.add(total(seen));
   }
   return mean;
 }

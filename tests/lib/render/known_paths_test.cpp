@@ -12,7 +12,9 @@
 #include "tests/support/chain.h"
 #include "tests/support/closed_box.h"
 #include "tests/support/frames.h"
+#include "tests/support/layers.h"
 #include "tests/support/materials.h"
+#include "tests/support/mean.h"
 
 namespace tempolux {
 namespace {
@@ -20,21 +22,9 @@ namespace {
 using test::Chain;
 using test::HandMadeScene;
 using test::matte;
+using test::Mean;
 using test::Shape;
-
-struct Mean {
-  double sum = 0, square = 0;
-  int count = 0;
-  void add(double x) { sum += x, square += x * x, ++count; }
-  double mean() const { return sum / count; }
-  double sigma() const { return std::sqrt(std::max(0.0, square / count - mean() * mean()) / count); }
-};
-
-double total(const Layers& layers) {
-  double sum = 0;
-  for (const Rgb& value : layers.value) sum += double(value.g);
-  return sum;
-}
+using test::total;
 
 /// Camera paths from just above uniform places on all surfaces, straight down.
 template <class Take>

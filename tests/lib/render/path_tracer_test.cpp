@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "tests/support/closed_box.h"
+#include "tests/support/layers.h"
+#include "tests/support/mean.h"
 #include "tests/support/sphere.h"
 
 namespace tempolux {
@@ -13,25 +15,9 @@ namespace {
 
 using test::HandMadeScene;
 using test::matte;
+using test::Mean;
 using test::Shape;
-
-struct Estimate {
-  double sum = 0, sum2 = 0;
-  int count = 0;
-  void add(double x) {
-    sum += x;
-    sum2 += x * x;
-    ++count;
-  }
-  double mean() const { return sum / count; }
-  double sigma() const { return std::sqrt(std::max(0.0, sum2 / count - mean() * mean()) / count); }
-};
-
-double total(const Layers& layers, int channel) {
-  double sum = 0;
-  for (const Rgb& value : layers.value) sum += double(value[channel]);
-  return sum;
-}
+using test::total;
 
 class ClosedBoxTest : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
@@ -45,7 +31,7 @@ TEST_P(ClosedBoxTest, MeanIndirectIrradianceIsTheGeometricSeries) {
   const Lights lights(frame, box.table);
   const test::AreaSampler area(frame);
   RayCounts counts;
-  Estimate green;
+  Mean green;
   const int paths = rho > 0.95f ? 20000 : 40000;
   for (int i = 0; i < paths; ++i) {
     const PathRandom random(11, std::uint64_t(i));
@@ -76,7 +62,7 @@ TEST(PathTracer, FurnaceIsUniform) {
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
   RayCounts counts;
-  Estimate mean[3];
+  Mean mean[3];
   for (int i = 0; i < 60000; ++i) {
     const Vec3 travel = test::sample_sphere(PathRandom(1, std::uint64_t(i)).get2(0, Purpose::test));
     const Layers seen = trace_eye_path({tracer, lights}, {{0.3f, -0.2f, 0.1f}, travel, 0, INFINITY},
