@@ -7,8 +7,8 @@
 namespace tempolux {
 
 /// Reads the JSON document of a file; members keep the order of the file. Throws InputError "FILE: WHAT; REMEDY" if the
-/// file cannot be read, is larger than 256 MiB, is no JSON, is nested deeper than 32 levels, or has a number that a
-/// double cannot hold.
+/// file cannot be read, is larger than 256 MiB, is not valid JSON, is nested deeper than 32 levels, or has a number
+/// outside the range of a double.
 nlohmann::ordered_json read_json(const std::string& path);
 
 }  // namespace tempolux

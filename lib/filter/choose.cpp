@@ -30,8 +30,8 @@ float light_of(const PicturePlanes& picture, std::size_t pixel) {
   return light;
 }
 
-/// Sums over the pixels of the window around each pixel; with `kinds` (0 or 1, by pixel) over those of the pixel's
-/// kind. Rows are summed along x first, and the last seven of them stay in the cache.
+/// Sums over the pixels of the window around each pixel; with `kinds` (0 or 1, by pixel) only over pixels of the
+/// pixel's own kind. Rows are summed along x first, and the last seven of them stay in the cache.
 Plane box_sums(const Plane& values, int width, int height, const std::uint8_t* kinds = nullptr) {
   constexpr std::size_t kLines = 2 * kAround + 1, kRows = 32;  // rows of a chunk
   Plane out = Plane::unset(width, height);

@@ -20,8 +20,8 @@ struct Halves {
 /// (a + b) / 2; each is halved first, because a + b may overflow.
 inline float mean_of(float a, float b) { return a / 2 + b / 2; }
 
-/// The weighted neighbourhood of a pixel: two box filters of 7 x 7 pixels, one after the other, over pixels of its
-/// kind. So close pixels weigh more.
+/// Weighted means around a pixel. A box filter of 7 x 7 pixels is applied twice, so close pixels weigh more than far
+/// ones. Only pixels of the same kind count; a pixel is either inside a surface or at an edge.
 class Neighbourhood {
  public:
   /// `kinds`, by pixel: 1 inside surfaces, 0 at edges.

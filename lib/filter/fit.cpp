@@ -62,7 +62,7 @@ class StripFit {
   static constexpr std::size_t kTaps = std::size_t(2 * kRadius + 1) * (2 * kRadius + 1);
   using Taps = std::array<Float8, kTaps>;
 
-  /// The first of the eight pixels; those of the window are at `offsets_` from there, because all planes have one size.
+  /// The first of the eight pixels. The pixels of the window are at `offsets_` from there, as all planes have one size.
   const float* middle(const Plane& plane) const { return plane.row(y_) + x0_; }
 
   /// Computes the weights of half h.

@@ -46,7 +46,7 @@ struct IncomingRadiance::Further {
   /// The ray follows events S, so lights that it meets are caustic light of its starting point, which no point has
   /// stored.
   bool sees_lamps = false;
-  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface did, or there was an event S
+  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: scattered by a surface, or reflected since
   /// Width of the lobe that sent the ray, if the bright points were sampled explicitly for this lobe at the ray's start
   /// (BrightPoints::lobe_width): the ray's hit then contributes the remaining share alone. 0: not sampled.
   float sampled_lobe = 0;
@@ -355,7 +355,8 @@ Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const 
   return direct.irradiance * (transmittance(tracer_, direct.shadow, {random, 1, way_shadow}) * share);
 }
 
-/// Irradiance at a hit where direct light is not that of the point.
+/// Irradiance at a hit beside the edge of a shadow. Indirect and caustic light are those of the point; direct light
+/// changes within the point's area, so the hit samples direct light itself.
 Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, float sampled_lobe,
                                   const PathRandom& random, GatherCounts& counts) const {
   const IrradiancePoint& point = points_.point(light);

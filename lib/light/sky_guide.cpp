@@ -1,4 +1,4 @@
-// lib/light/sky_guide.cpp -- a tree of places with a grid of directions in each leaf.
+// lib/light/sky_guide.cpp -- builds and samples a tree over places; each leaf has a density of sky directions.
 #include "lib/light/sky_guide.h"
 
 #include <algorithm>

@@ -31,8 +31,8 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
 /// Follows `looks` camera rays, stratified over the picture. Same places for any number of threads.
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed);
 
-/// The scene's lights, guided by what the places that the camera sees, and those that they see, see of the environment
-/// (SkyGuide).
+/// The scene's lights with a SkyGuide. The guide learns from places that the camera sees, and from places that these
+/// places see by one cosine-distributed ray.
 Lights guided_lights(const RenderScene& scene, const CameraView& view);
 
 }  // namespace tempolux

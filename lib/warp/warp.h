@@ -51,7 +51,8 @@ struct WarpOptions {
   double specular_share = 0.02;
   double seen_probability = 0.75;  ///< probability above which an error counts as seen (docs/methods/vision.md)
   /// A pixel composed of several surfaces is accepted if the keys' colours agree to this share of the pixel's light.
-  /// The whole pixels of keys do not show the light within a pixel of an edge, such as a contact shadow.
+  /// The colours come from pixels of keys that show one surface alone. Such pixels are at least a pixel away from the
+  /// edge, so they may miss what lies at the edge itself, such as a contact shadow.
   double edge_share = 0.05;
   double slow_deg_per_s = 1.41;  ///< moving pixels slower than this are masked; see slow_speed.h
   double most_magnified = 4;     ///< largest area in target pixels of a key's pixel
