@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
                      "--low")
       ->required();
   tool.output_option(options.high, "the high part: light of bright cells above their limit", "--high")->required();
-  tool.number_option("--energy", options.energy, 0, tools::kNoLimit,
+  tool.number_option("--energy", options.limit, 0, tools::kNoLimit,
                      "a cell keeps at most this multiple of the mean irradiance in the low part");
   tool.auto_option(
           "--cell", options.cell, 0, tools::kNoLimit,

@@ -22,8 +22,8 @@ double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
 
 constexpr double kWhite = 255;
 
-/// Squared error in codes for each squared linear error e^2 at an exposed value: the mean over both signs of e. It is
-/// the square of the curve's slope for small errors, and e^2 times it is at most 255^2.
+/// Squared error in codes over the squared linear error e^2 (`square`) at an exposed value, mean over both signs of e.
+/// For small errors the ratio is the squared slope of the display curve. The ratio times e^2 is at most 255^2.
 double codes_for_square(double value, double square) {
   if (!(square > 0)) return 0;
   const double e = std::sqrt(square), code = srgb_code(value);

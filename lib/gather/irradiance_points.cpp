@@ -59,8 +59,9 @@ Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
   return {std::move(pieces), std::move(areas)};
 }
 
-/// The point at the share u.x of a side of the ground, whose areas are running sums. The normal is 0 if the triangle
-/// has no area.
+/// A uniform random point on one side of the ground (`back`: the side that the triangles' normals point away from).
+/// `ground.areas` holds running sums: u.x chooses the piece by area and the first barycentric coordinate, u.y the
+/// second. The normal is 0 if the triangle has no area.
 IrradiancePoint point_on(const Surface& surface, Ground& ground, Vec2 u, bool back) {
   const std::vector<TrianglePiece>& pieces = ground.pieces;
   const std::span<const double> cumulative = std::span<double>(ground.areas);

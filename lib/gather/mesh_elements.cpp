@@ -195,11 +195,11 @@ void put_right(const std::vector<Sample>& samples, const std::vector<formats::Me
 }
 
 /// Share of a band that is kept: signal / (signal + noise) [Wiener]. A band is the difference of the light after the
-/// Gaussians of deviations s and 2 s. `energy`: the mean square of the band. `variance`: the variance v of the light
-/// after the Gaussian s. White noise after the Gaussians s and t has the covariance q / (2 pi (s^2 + t^2)), so the
+/// Gaussians of deviations s and 2 s. `mean_square`: that of the band. `variance`: the variance v of the light after
+/// the Gaussian s. White noise after the Gaussians s and t has the covariance q / (2 pi (s^2 + t^2)), so the
 /// variance of the band is v (1 + 1/4 - 2 x 2/5) = .45 v.
-double kept_share(double energy, double variance) {
-  return energy > 0 ? std::max(0.0, 1 - 0.45 * variance / energy) : 0;
+double kept_share(double mean_square, double variance) {
+  return mean_square > 0 ? std::max(0.0, 1 - 0.45 * variance / mean_square) : 0;
 }
 
 /// True if the first surface above the place shows its back: the place is inside a solid, where no light arrives.
@@ -409,11 +409,11 @@ void smooth_by_scales(const Tracer& tracer, const MeshFlux& flux, double width, 
     const double a = luminance(fine.light[i] - middle.light[i]), b = luminance(middle.light[i] - coarse.light[i]);
     samples[i].flux = Rgbd(a * a, b * b, 0) * double(samples[i].area);
   }
-  const Smoothed energy = gaussian_of(samples, 4 * width);  // mean squares of the two bands around each place
+  const Smoothed squares = gaussian_of(samples, 4 * width);  // mean squares of the two bands around each place
   std::vector<Rgbd> light(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double a = kept_share(energy.light[i].r, fine.variance[i]),
-                 b = std::max(a, kept_share(energy.light[i].g, middle.variance[i]));
+    const double a = kept_share(squares.light[i].r, fine.variance[i]),
+                 b = std::max(a, kept_share(squares.light[i].g, middle.variance[i]));
     // a convex sum, so that no light becomes negative by rounding
     light[i] = coarse.light[i] * (1 - b) + middle.light[i] * (b - a) + fine.light[i] * a;
     samples[i].flux = flux.mean[i];

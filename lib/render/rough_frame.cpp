@@ -32,8 +32,8 @@ constexpr int kColumns = 16, kRows = 9;    ///< parts of the picture; each part 
 constexpr std::uint64_t kPaths = 1 << 15;  ///< light paths
 constexpr std::uint32_t kPoints = 500;     ///< irradiance points per side
 constexpr int kRays = 62;                  ///< gather rays of a rough record
-/// Number of pixels at which the need for records is tested; the test takes a tenth of a second. In a larger picture
-/// these pixels form a lattice.
+/// Largest number of pixels at which the need for records is tested. The test takes a tenth of a second. In a picture
+/// with more pixels, the tested pixels form a lattice.
 constexpr double kLooks = 320 * 180;
 constexpr double kSure = 3;  ///< standard errors
 constexpr double kMapError2 =

@@ -79,8 +79,8 @@ struct RoughOptions {
   std::span<const AimSphere> seen = {};  ///< spheres in which points lie; empty: everywhere
   std::uint64_t seed = 0;
   int places = 2048;  ///< number of measured places of the picture
-  /// True if the measurement answers the question. Called before gathering and before records are measured; empty:
-  /// false.
+  /// Called before gathering and before records are measured, with the frame so far. True: the frame is returned as
+  /// it is, without the rest. Empty: everything is measured.
   std::function<bool(const RoughFrame&)> enough = {};
   const Lights* without_extent = nullptr;  ///< the lights of hidden_share(); null: none hides light
 };

@@ -21,15 +21,15 @@ struct LightChanges {
   /// point's light changed. It is a separate array, since few cells read it.
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
-  bool anything = false, materials = false;
+  bool anything = false, materials = false;  ///< true if anything, or a material, has changed
   bool divided = false;  ///< true if there are bright points, or were in the frame before
 };
+/// Compares the points, the moving surfaces and the materials of `scene` with those that `kept` was gathered from.
 LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept);
 
 /// True if the point is a bright point. The light that rays bring from a bright point depends on the rays' length, too.
 bool is_bright(const TemporalScene& scene, std::uint32_t point);
-/// Marks the cells that are scaled, or traced again along their old ray. False if nothing has changed in the light of
-/// the cells.
+/// Writes a Mark for each cell of a record. False if all cells are unmarked.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,
                 SampleUnits units, std::vector<std::uint8_t>& marks);
 /// True if the record lies in a box of `changes`, grown by `reach` [m] to each side: something has moved close by.

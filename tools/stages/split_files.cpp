@@ -103,7 +103,7 @@ void split_photons(Tool& tool, const std::string& path, const SplitOptions& opti
   FluxCells cells(*edge, 0);
   file.read("cells", [&](const formats::PhotonBlock& block) { add_flux(block, cells); });
   refuse_part(options.input, file.header().part);
-  cells.close(options.energy);
+  cells.close(options.limit);
   formats::PhotonWriter low(outputs.low.sink(), part_header(tool, file.header(), "low"));
   formats::PhotonWriter high(outputs.high.sink(), part_header(tool, file.header(), "high"));
   file.read("divide", [&](const formats::PhotonBlock& block) {
@@ -128,7 +128,7 @@ void split_points(Tool& tool, const std::string& path, const SplitOptions& optio
   const double edge = options.cell.value_or(4 * spacing);
   FluxCells cells(edge, spacing * spacing);
   add_flux(file.records, spacing * spacing, cells);
-  cells.close(options.energy);
+  cells.close(options.limit);
   tool.stats().phase("divide");
   const DividedPoints parts = divide(file.records, cells);
   const auto write = [&](Output& output, const char* part, const std::vector<formats::IrradiancePointRecord>& points) {

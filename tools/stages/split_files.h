@@ -12,7 +12,7 @@ namespace tempolux::tools {
 struct SplitOptions {
   std::string input, low, high;
   std::optional<double> cell;  ///< edge, m; empty: automatic
-  double energy = kBrightLimit;
+  double limit = kBrightLimit;  ///< a cell keeps at most this multiple of the mean irradiance in the low part
 };
 
 /// Reads the input, whose first bytes determine its type, and writes the low and the high part. Throws InputError for
