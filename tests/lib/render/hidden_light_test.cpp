@@ -1,0 +1,72 @@
+// Light that no camera path finds: a point lamp and its mirror image.
+#include "lib/render/hidden_light.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/frames.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kReflectance = 0.5;
+
+Material mirror() {
+  Material m = test::matte(Rgb(1.0f));
+  m.metallic = 1;
+  m.roughness = 0;
+  return m;
+}
+
+/// A matte floor at z = 0, of which from_above() sees 2 x 1.125 m from z = 1. 20 m of mirror hang at z = 2, and a lamp
+/// of 1 W/sr at z = 1.5 has its image at z = 2.5.
+struct UnderAMirror {
+  test::HandMadeScene scene;
+  explicit UnderAMirror(const Material& ceiling, float intensity = 1) {
+    scene.add_quad({-10, -10, 0}, {10, -10, 0}, {10, 10, 0}, {-10, 10, 0}, test::matte(Rgb(float(kReflectance))));
+    scene.add_quad({-10, 10, 2}, {10, 10, 2}, {10, -10, 2}, {-10, -10, 2}, ceiling);
+    scene.add_point_light({0, 0, 1.5f}, Rgb(intensity));
+  }
+  double share(double picture) {
+    const SceneFrame& frame = scene.frame();
+    const Tracer tracer(frame);
+    const EmissionTable table = build_emission_table({&frame, 1});
+    const Lights all(frame, table), without_extent(frame, table, Lights::Which::punctual);
+    return hidden_share({tracer, all}, without_extent, test::from_above(), picture);
+  }
+  /// Mean radiance of the picture by a lamp at height h: rho / pi I h / d^3, over the 64 x 36 pixels.
+  static double by_lamp_at(double h) {
+    double sum = 0;
+    for (int i = 0; i < 64; ++i)
+      for (int j = 0; j < 36; ++j) {
+        const double x = (i - 31.5) / 32, y = (j - 17.5) / 32;
+        sum += kReflectance / M_PI * h / std::pow(x * x + y * y + h * h, 1.5);
+      }
+    return sum / (64 * 36);
+  }
+};
+
+TEST(HiddenLight, NeedsALampWithoutExtentAndAMirror) {
+  EXPECT_TRUE(may_hide_light(UnderAMirror(mirror()).scene.frame()));
+  EXPECT_FALSE(may_hide_light(UnderAMirror(mirror(), 0).scene.frame()));
+  EXPECT_FALSE(may_hide_light(UnderAMirror(test::matte(Rgb(1.0f))).scene.frame()));
+}
+
+/// The image's light over that of the lamp and its image. Of 32768 light paths one in 70 reaches the picture by way of
+/// the mirror: 5 % of noise if the paths were independent, three of them are allowed. Photons on the floor outside of
+/// the picture or a share of the lamp's own light would be off by more than half.
+TEST(HiddenLight, ShareOfAMirrorImage) {
+  UnderAMirror room(mirror());
+  const double image = UnderAMirror::by_lamp_at(2.5), whole = image + UnderAMirror::by_lamp_at(1.5);
+  EXPECT_NEAR(room.share(whole) / (image / whole), 1, 0.15);
+}
+
+/// All light is missed in a black picture. A share below the limit of the audit is no share.
+TEST(HiddenLight, BlackAndBrightPictures) {
+  UnderAMirror room(mirror());
+  EXPECT_EQ(room.share(0), 1);
+  EXPECT_EQ(room.share(1e3), 0);
+}
+
+}  // namespace
+}  // namespace tempolux
