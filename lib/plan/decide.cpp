@@ -80,7 +80,7 @@ class FramePilot {
     const auto look_of = [&](const RoughFrame& rough) {
       Look look;
       look.paths = rough.paths_of_light;
-      look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays, wish_.filter != 0},
+      look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.filter != 0},
                                 kinds_.find("caustic") != std::string::npos);
       return look;
     };
@@ -180,11 +180,11 @@ void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decision
   const std::vector<Way> ways = joined_ways(looks);
   std::string words = because(ways);
   if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
-  // Where the camera sees no Lambert lobe, the only way is paths.
+  // Where the camera sees no Lambert lobe, the only way is paths. Records that are asked for have a ray each then.
   const Way way =
       best_of(ways, wish, media)
           .value_or(Way{named<IndirectMethod>(kIndirectMethods, wish.indirect).value_or(IndirectMethod::gather), false,
-                        wish.rays, 0, 0});
+                        1, 0, 0});
   d.indirect = way.method;
   d.caustic_map = way.map;
   d.record_rays = way.rays;
@@ -346,8 +346,8 @@ std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool m
   for (const std::string& word : {wish.indirect, wish.moving, wish.split, wish.common})
     hasher.add(std::string_view(word));
   hasher.add(double(wish.method == FrameMethod::preview));
-  for (const double number : {double(wish.width), double(wish.height), double(wish.photons), double(wish.rays),
-                              wish.pixel_error, double(media)})
+  for (const double number :
+       {double(wish.width), double(wish.height), double(wish.photons), wish.pixel_error, double(media)})
     hasher.add(number);
   return hasher.hex();
 }

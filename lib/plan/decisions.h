@@ -47,7 +47,6 @@ struct Wish {
   std::string split = "auto";     ///< or on, off
   int width = 640, height = 360;  ///< of the frames, pixels
   std::uint64_t photons = 0;      ///< light paths per photon map; 0: from the preset
-  int rays = 0;                   ///< most gather rays per record; 0: from the preset
   double pixel_error = 0;         ///< 0: from the preset
   std::string points, records,
       pixels;  ///< options of irradcache-build points and records, and of frame-render; "": from the preset

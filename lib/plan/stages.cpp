@@ -9,21 +9,19 @@ namespace {
 struct Preset {
   std::uint64_t photons;
   const char* points;
-  int rays;             ///< most rays per record
   const char* records;  ///< further words
   double pixel_error;
   int first_samples;  ///< of a pixel
 };
-constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2};
+constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", "--error-bound 0.3", 0.05, 2};
 constexpr std::uint64_t kPreviewPhotons = 25'000;  ///< per frame, as in the paper
-constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4};
+constexpr Preset kFinal{700'000, "", "", 0.016, 4};
 
 }  // namespace
 
 Wish with_preset(Wish wish) {
   const Preset& preset = wish.quality == Quality::draft ? kDraft : kFinal;
   if (wish.photons == 0) wish.photons = wish.method == FrameMethod::preview ? kPreviewPhotons : preset.photons;
-  if (wish.rays == 0) wish.rays = preset.rays;
   if (wish.pixel_error == 0) wish.pixel_error = preset.pixel_error;
   if (wish.threshold < 0) wish.threshold = wish.seen();
   if (wish.points.empty()) wish.points = preset.points;

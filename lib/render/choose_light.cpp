@@ -12,7 +12,8 @@ namespace tempolux {
 namespace {
 
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
-constexpr double kFewestRays = 64;  ///< per record: distances along fewer rays do not determine a record's radius
+/// Rays of a record: distances along fewer do not determine its radius; irradcache-build --rays takes no more.
+constexpr double kFewestRays = 64, kMostRays = 1 << 20;
 constexpr double kLeastError = 1e-12;
 /// Squared error of a raw frame over that of the filtered frame, for ways without records: geometric mean of seven
 /// scenes (docs/pixels.md).
@@ -46,7 +47,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (records) {
     const double ray = rough.records * rough.record_ray;
     const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
-    way.rays = int(std::lround(std::clamp(best, std::min(kFewestRays, double(order.rays)), double(order.rays))));
+    way.rays = int(std::lround(std::clamp(best, kFewestRays, kMostRays)));
     way.work += ray * way.rays;
     way.error += rough.record_error / way.rays;
   }

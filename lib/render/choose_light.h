@@ -20,7 +20,6 @@ inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"}
 struct Order {
   double pixels = 0;                ///< number of pixels of the picture
   std::uint64_t photons = 700'000;  ///< light paths of the photon map
-  int rays = 500;                   ///< most gather rays per record
   bool filtered = true;             ///< lib/filter reduces the noise of samples
 };
 

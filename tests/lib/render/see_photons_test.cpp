@@ -41,7 +41,7 @@ Pilots pilots_of(test::HandMadeScene& scene) {
                   {.kinds = "caustic,indirect", .pixel_error = 0.016, .photons = 100'000, .seen = {}, .seed = 0});
   const formats::PhotonBlock photons = pilot_photons(tracer, lights, "caustic,indirect", 32768, 0);
   const SeenLight seen = see_photons({tracer, lights}, view, photons);
-  return {seen.caustic, seen.indirect, rough, ways_to_light(rough, {320 * 180, 100'000, 500}, true)};
+  return {seen.caustic, seen.indirect, rough, ways_to_light(rough, {320 * 180, 100'000}, true)};
 }
 
 /// The same with a floor in front of the wall.
