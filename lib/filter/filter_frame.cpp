@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -224,9 +225,16 @@ Image filter_alone(Image image, const FilterOptions& options) {
   constexpr int kWide = 640, kHigh = 360;
   FilterOptions of_tile = options;
   of_tile.dark = dark_of(picture_of(sum_layers(image), image));
-  Image out{image.width, image.height, {}, {}, {}, {}};
+  // The next tiles read the frame's own light up to reach() rows above them. Filtered rows wait here until then.
+  const int waiting_rows = std::min(image.height, kHigh + reach());
+  std::map<std::string, std::vector<float>> waiting;
+  int first_waiting = 0;
+  const auto row_of = [&](std::vector<float>& values, int y) {
+    return values.data() + std::size_t(y) * std::size_t(image.width);
+  };
   RemainingError remaining_error;
-  for (int top = 0; top < image.height; top += kHigh)
+  for (int top = 0; top < image.height; top += kHigh) {
+    const int bottom = std::min(image.height, top + kHigh);
     for (int left = 0; left < image.width; left += kWide) {
       const int x0 = std::max(0, left - reach()), y0 = std::max(0, top - reach());
       const int x1 = std::min(image.width, left + kWide + reach()), y1 = std::min(image.height, top + kHigh + reach());
@@ -235,27 +243,27 @@ Image filter_alone(Image image, const FilterOptions& options) {
       const FlowFrame flow;
       FrameFilter filter(light, flow, 0, 0, of_tile);
       filter.filter(tile);
-      const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
-        to.resize(image.pixel_count());
-        for (int y = top; y < std::min(image.height, top + kHigh); ++y)
+      const auto copy = [&](const std::vector<float>& from, std::vector<float>& to, int rows) {
+        to.resize(std::size_t(rows) * std::size_t(image.width));
+        for (int y = top; y < bottom; ++y)
           std::copy_n(from.data() + std::size_t(y - y0) * std::size_t(tile.width) + std::size_t(left - x0),
-                      std::min(kWide, image.width - left),
-                      to.data() + std::size_t(y) * std::size_t(image.width) + std::size_t(left));
+                      std::min(kWide, image.width - left), row_of(to, y % rows) + left);
       };
-      for (const Channel& channel : tile.channels) {
-        if (channel.values.empty() || !(is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA")))
-          continue;
-        Channel* to = float_channel(out, channel.name);
-        copy(channel.values, to ? to->values : out.add(channel.name).values);
-      }
+      for (const Channel& channel : tile.channels)
+        if (!channel.values.empty() && (is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA")))
+          copy(channel.values, waiting[channel.name], waiting_rows);
       const RemainingError of_this = filter.remaining_error();
       for (std::size_t c = 0; c < 3 && !of_this.whole[c].empty(); ++c) {
-        copy(of_this.whole[c], remaining_error.whole[c]);
-        copy(of_this.noise[c], remaining_error.noise[c]);
-        copy(of_this.known[c], remaining_error.known[c]);
+        copy(of_this.whole[c], remaining_error.whole[c], image.height);
+        copy(of_this.noise[c], remaining_error.noise[c], image.height);
+        copy(of_this.known[c], remaining_error.known[c], image.height);
       }
     }
-  for (Channel& channel : out.channels) float_channel(image, channel.name)->values = std::move(channel.values);
+    for (const int end = bottom < image.height ? bottom - reach() : bottom; first_waiting < end; ++first_waiting)
+      for (auto& [name, values] : waiting)
+        std::copy_n(row_of(values, first_waiting % waiting_rows), image.width,
+                    row_of(float_channel(image, name)->values, first_waiting));
+  }
   leave_numbers(image);
   write_remaining_noise(remaining_error, image);
   return image;
