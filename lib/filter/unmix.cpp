@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kRadius = 6;              ///< pixels
 constexpr std::size_t kMostLayers = 3;  ///< of a group
+/// Weight of a first estimate without a fit, as of a pixel in which one ray sees the surface. The estimate holds the
+/// light of other surfaces, too, and is only for parts so small that nothing else tells their light.
+constexpr double kFirstEstimate = 1.0 / (Coverage::kRays * Coverage::kRays);
 
 class Unmixing {
  public:
@@ -42,7 +45,7 @@ class Unmixing {
         const Sums& s = sums_[l][c];
         const double mean = count_ > 0 ? s.plain / count_ : double(mixed(l, c, x, y));
         const double fitted = own ? double(fitted_.weight.at(x, y)) / frames_ : 0;  // in pixels
-        const double plain = fitted > 0 ? 0 : 1;
+        const double plain = fitted > 0 ? 0 : kFirstEstimate;
         const double unmixed =
             (s.product + plain * mean + fitted * double(fitted_.layers[l][c].at(x, y))) / (s.square + plain + fitted);
         (own ? fitted_.layers : other_)[l][c].at(x, y) = float(std::max(unmixed, std::min(mean, 0.0)));

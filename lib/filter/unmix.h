@@ -21,7 +21,8 @@ inline constexpr float kFewestPixels = 10;
 ///     v minimises  sum over q of (radiance(q) - K(q) - s(q) albedo(q) v)^2 / albedo(q)^2
 /// for each layer and channel. One more term keeps v close to a first estimate: in the first case the fit at p,
 /// which counts as weight / `frames` pixels (`frames`: frames in the window); without a fit and in the second case the
-/// mean of radiance / albedo over the pixels q, which counts as one pixel. v is negative only if this mean is.
+/// mean of radiance / albedo over the pixels q, which counts as a pixel with s = 1/16. v is negative only if this mean
+/// is.
 ///
 /// half: 0 or 1, the half of the samples. Returns a plane by layer and channel; empty planes if no pixel sees such
 /// surfaces.

@@ -13,6 +13,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4, kOther = 9;
+constexpr std::size_t kSearch = 8;                         // rays of each pixel that search for what no centre sees
 constexpr std::uint64_t kPattern = 0x636f766572616765ull;  // one pattern of rays for all pixels and frames
 
 /// What a ray meets first.
@@ -33,15 +34,30 @@ struct Seen {
 class PixelCoverage {
  public:
   PixelCoverage(const RenderScene& scene, const CameraView& view)
-      : scene_(scene), view_(view), width_(std::size_t(view.width())), centres_(width_ * std::size_t(view.height())) {
+      : scene_(scene),
+        view_(view),
+        width_(std::size_t(view.width())),
+        centres_(width_ * std::size_t(view.height())),
+        mixed_(centres_.size()) {
     for (std::size_t r = 0; r < kRays; ++r) spread_[r] = sobol_owen_2d(std::uint32_t(r), kPattern);
     parallel_chunks(centres_.size(), 1024, [&](std::size_t first, std::size_t last) {
       std::array<Vec2, kTogether> places;
       for (std::size_t p = first; p < last; p += kTogether) {
         const std::size_t count = std::min(kTogether, last - p);
-        for (std::size_t i = 0; i < count; ++i)
-          places[i] = {float((p + i) % width_) + 0.5f, float((p + i) / width_) + 0.5f};
-        look(std::span(places).first(count), &centres_[p]);
+        const auto follow_at = [&](Vec2 place) {
+          for (std::size_t i = 0; i < count; ++i)
+            places[i] = {float((p + i) % width_) + place.x, float((p + i) / width_) + place.y};
+          return follow(std::span(places).first(count));
+        };
+        const Packet middle = follow_at({0.5f, 0.5f});
+        for (std::size_t i = 0; i < count; ++i) centres_[p + i] = seen(middle, i);
+        for (std::size_t r = 0; r < kSearch; ++r) {
+          const Packet beside = follow_at(spread_[r]);
+          for (std::size_t i = 0; i < count; ++i)
+            mixed_[p + i] |= !(beside.hits[i].surface == middle.hits[i].surface &&
+                               beside.hits[i].triangle == middle.hits[i].triangle) &&
+                             !centres_[p + i].same_as(seen(beside, i));
+        }
       }
     });
   }
@@ -52,11 +68,12 @@ class PixelCoverage {
   Counts at(int x, int y) const {
     if (!is_edge(x, y)) return {};
     std::array<Vec2, kRays> places;
-    std::array<Seen, kRays> rays;
     for (std::size_t r = 0; r < kRays; ++r) places[r] = {float(x) + spread_[r].x, float(y) + spread_[r].y};
-    for (std::size_t r = 0; r < kRays; r += kTogether) look(std::span(places).subspan(r, kTogether), &rays[r]);
     std::array<std::uint32_t, kAround + 1> count{};
-    for (std::size_t r = 0; r < kRays; ++r) ++count[nearest(x, y, spread_[r], rays[r])];
+    for (std::size_t r = 0; r < kRays; r += kTogether) {
+      const Packet packet = follow(std::span(places).subspan(r, kTogether));
+      for (std::size_t i = 0; i < kTogether; ++i) ++count[nearest(x, y, spread_[r + i], seen(packet, i))];
+    }
     std::uint32_t packed = 0, bit = 0;
     for (std::size_t n = 0; n < kAround; ++n) {
       if (n == kCentre) continue;
@@ -70,18 +87,25 @@ class PixelCoverage {
   static constexpr std::size_t kTogether = 8;  // a packet
   static_assert(kRays % kTogether == 0);
 
-  /// Follows rays through raster positions `places`, at most kTogether.
-  void look(std::span<const Vec2> places, Seen* seen) const {
+  struct Packet {
     std::array<Ray, kTogether> rays;
     std::array<Hit, kTogether> hits;
-    for (std::size_t i = 0; i < places.size(); ++i) rays[i] = view_.ray(places[i].x, places[i].y);
-    scene_.tracer.intersect(std::span(rays).first(places.size()), std::span(hits).first(places.size()));
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (hits[i].surface == kNone) continue;
-      const SurfacePoint point = scene_.tracer.surface_point(hits[i]);
-      seen[i] = {point.object, point.material, point.position,
-                 dot(point.normal, rays[i].direction) > 0 ? -point.normal : point.normal, view_.pixel_size(hits[i].t)};
-    }
+  };
+
+  /// Follows rays through raster positions `places`, at most kTogether.
+  Packet follow(std::span<const Vec2> places) const {
+    Packet packet;
+    for (std::size_t i = 0; i < places.size(); ++i) packet.rays[i] = view_.ray(places[i].x, places[i].y);
+    scene_.tracer.intersect(std::span(packet.rays).first(places.size()), std::span(packet.hits).first(places.size()));
+    return packet;
+  }
+
+  Seen seen(const Packet& packet, std::size_t i) const {
+    const Hit& hit = packet.hits[i];
+    if (hit.surface == kNone) return {};
+    const SurfacePoint point = scene_.tracer.surface_point(hit);
+    return {point.object, point.material, point.position,
+            dot(point.normal, packet.rays[i].direction) > 0 ? -point.normal : point.normal, view_.pixel_size(hit.t)};
   }
 
   /// What the centre of pixel number `around` of the nine about (x, y) sees; nullptr outside the picture.
@@ -94,6 +118,7 @@ class PixelCoverage {
   }
 
   bool is_edge(int x, int y) const {
+    if (mixed_[std::size_t(y) * width_ + std::size_t(x)]) return true;
     const Seen& own = *centre(x, y, kCentre);
     for (std::size_t n = 0; n < kAround; ++n)
       if (const Seen* other = centre(x, y, n); other && !(own.same_as(*other) && other->same_as(own))) return true;
@@ -124,6 +149,7 @@ class PixelCoverage {
   std::size_t width_;
   std::array<Vec2, kRays> spread_;
   std::vector<Seen> centres_;
+  std::vector<std::uint8_t> mixed_;  ///< by pixel; 1: a ray beside the centre meets another surface than the centre
 };
 
 }  // namespace

@@ -20,9 +20,9 @@ namespace tempolux {
 /// are 0, the pixel sees one surface.
 ///
 /// Two hits are on one surface if they have the same object and material, their normals agree within
-/// PixelSurfaces::kSameNormal, and each one's plane passes within a pixel of the other point. Costs one ray per pixel,
-/// and 16 more where the pixel's centre and a neighbour's see two surfaces. Nothing is shaded. The rays do not depend
-/// on seed or frame.
+/// PixelSurfaces::kSameNormal, and each one's plane passes within a pixel of the other point. Costs one ray per pixel
+/// and eight more that search for what no centre sees, such as wires; and 16 where these rays and the neighbours'
+/// centres see two surfaces. Nothing is shaded. The rays do not depend on seed or frame.
 void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
                           Image& image);
 

@@ -221,6 +221,27 @@ TEST(Filter, EdgesArePutTogetherByCoverage) {
     }
 }
 
+/// A dark wire covers half of each pixel in column 20 of a bright wall; its centre is seen there, or none. The samples
+/// found .3 to .7 of it. The wire keeps its contrast.
+TEST(Filter, AWireKeepsItsContrast) {
+  for (const bool centre : {true, false}) {
+    Image frame = wall(40, 64);
+    const auto share = [](int x, int y) { return x != 20 ? 0.0f : y % 2 == 0 ? 0.7f : 0.3f; };
+    grey(frame, "albedo", [&](int x, int) { return centre && x == 20 ? 0.05f : 0.6f; });
+    grey(frame, "direct", [&](int x, int y) { return 0.6f + share(x, y) * (0.05f - 0.6f); });
+    set_noise(frame, "direct", [&](int x, int y) { return x == 20 ? 0.55f * (share(x, y) - 0.5f) : 0.0f; });
+    std::vector<std::uint32_t>& around = frame.add_ids("coverage").ids;
+    std::vector<std::uint32_t>& other = frame.add_ids("coverage.other").ids;
+    for (int y = 0; y < 64; ++y) {
+      const auto p = std::size_t(y * 40 + 20);
+      if (centre) frame.find("id.object")->ids[p] = 1, around[p] = 8u << 12;
+      else other[p] = 8;
+    }
+    const Image out = filtered({frame});
+    for (int y = 16; y < 48; ++y) EXPECT_NEAR(at(out, "direct.G", 20, y), 0.325f, 0.05f * 0.275f) << y;
+  }
+}
+
 /// In a frame with albedo and without any variance, pixels at edges keep their values, because the surfaces that they
 /// see are not known.
 TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
