@@ -34,21 +34,19 @@ void check_frame(const WindowLight& frame, const WindowLight& other) {
 /// The candidates of one group, by layer.
 class Candidates {
  public:
-  Candidates(const LightGroup& group, const Coverage& coverage, int scales)
-      : group_(group), coverage_(coverage), scales_(scales), of_layer_(group.layers.size()) {}
+  Candidates(const LightGroup& group, const Coverage& coverage)
+      : group_(group), coverage_(coverage), of_layer_(group.layers.size()) {}
 
   /// Adds candidates from light that was collected from `frames` frames; the group's raw light is from one.
   void add(const BothHalves& collected, int frames) {
     const Plane variance = smoothed(group_.surfaces, group_.variance);
-    std::optional<BothHalves> fitted;
     const Surfaces& on = group_.surfaces;
-    if (scales_ > 0) fitted = fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance);
-    if (scales_ > 1) fitted = fit(on, *fitted, &*fitted, kLarge, variance);
+    BothHalves fitted = fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance);
+    fitted = fit(on, fitted, &fitted, kLarge, variance);
     std::array<std::vector<ColourPlane>, 2> other;
-    for (std::size_t h = 0; h < 2 && fitted; ++h)
-      other[h] = unmix(group_, h, collected[h], coverage_, frames, (*fitted)[h]);
+    for (std::size_t h = 0; h < 2; ++h) other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted[h]);
     if (frames > 1) add_candidate(collected, other);
-    if (fitted) add_candidate(*fitted, other);
+    add_candidate(fitted, other);
   }
   const std::vector<Halves>& of(std::size_t layer) const { return of_layer_[layer]; }
 
@@ -71,7 +69,6 @@ class Candidates {
 
   const LightGroup& group_;
   const Coverage& coverage_;
-  int scales_;
   std::vector<std::vector<Halves>> of_layer_;
 };
 
@@ -112,7 +109,7 @@ WindowLight::WindowLight(const Image& image, bool alone) : width(image.width), h
 struct FrameFilter::State {
   const WindowLight& middle;
   const FlowFrame& flow;
-  FilterOptions options;
+  std::optional<float> dark;
   std::size_t before, after, added = 0;
   std::array<std::optional<Collector>, 2>
       collectors;  ///< for the matte layers, by half; light of mirrors has no flow of its own
@@ -121,7 +118,7 @@ struct FrameFilter::State {
   void filter_group(std::size_t g, const Coverage& coverage, const PictureLight& picture, Image& image) {
     const LightGroup& group = *middle.light.group(g);
     const Surfaces& on = group.surfaces;
-    Candidates candidates(group, coverage, options.scales);
+    Candidates candidates(group, coverage);
     candidates.add(group.raw, 1);
     if (g == 0 && collectors[0]) candidates.add({collectors[0]->take(), collectors[1]->take()}, int(1 + added));
     std::vector<std::uint8_t> kinds(image.pixel_count());
@@ -151,7 +148,7 @@ struct FrameFilter::State {
     const LayerSums raw = sum_layers(image);
     const Coverage coverage(image);
     const PicturePlanes planes = picture_of(raw, image);
-    const PictureLight picture(planes, image.width, image.height, options.dark ? *options.dark : dark_of(planes));
+    const PictureLight picture(planes, image.width, image.height, dark ? *dark : dark_of(planes));
     for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
       if (middle.light.group(g)) filter_group(g, coverage, picture, image);
     renew_picture(raw, sum_layers(image), image);
@@ -159,9 +156,8 @@ struct FrameFilter::State {
 };
 
 FrameFilter::FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
-                         const FilterOptions& options)
-    : state_(new State{middle, flow, options, before, after, 0, {}, {}}) {
-  if (options.scales < 0 || options.scales > kMostScales) throw std::invalid_argument("FrameFilter: scales");
+                         std::optional<float> dark)
+    : state_(new State{middle, flow, dark, before, after, 0, {}, {}}) {
   if (before + after > 0 && middle.guides)
     for (std::size_t h = 0; h < 2; ++h)
       state_->collectors[h].emplace(WindowFrame{&*middle.light.group(0), &*middle.guides, &flow}, h);
@@ -221,10 +217,9 @@ Image cut_out(const Image& image, int left, int top, int width, int height) {
 
 }  // namespace
 
-Image filter_alone(Image image, const FilterOptions& options) {
+Image filter_alone(Image image) {
   constexpr int kWide = 640, kHigh = 360;
-  FilterOptions of_tile = options;
-  of_tile.dark = dark_of(picture_of(sum_layers(image), image));
+  const float dark = dark_of(picture_of(sum_layers(image), image));
   // The next tiles read the frame's own light up to reach() rows above them. Filtered rows wait here until then.
   const int waiting_rows = std::min(image.height, kHigh + reach());
   std::map<std::string, std::vector<float>> waiting;
@@ -241,7 +236,7 @@ Image filter_alone(Image image, const FilterOptions& options) {
       Image tile = cut_out(image, x0, y0, x1 - x0, y1 - y0);
       const WindowLight light(tile, true);
       const FlowFrame flow;
-      FrameFilter filter(light, flow, 0, 0, of_tile);
+      FrameFilter filter(light, flow, 0, 0, dark);
       filter.filter(tile);
       const auto copy = [&](const std::vector<float>& from, std::vector<float>& to, int rows) {
         to.resize(std::size_t(rows) * std::size_t(image.width));
@@ -253,11 +248,9 @@ Image filter_alone(Image image, const FilterOptions& options) {
         if (!channel.values.empty() && (is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA")))
           copy(channel.values, waiting[channel.name], waiting_rows);
       const RemainingError of_this = filter.remaining_error();
-      for (std::size_t c = 0; c < 3 && !of_this.whole[c].empty(); ++c) {
-        copy(of_this.whole[c], remaining_error.whole[c], image.height);
-        copy(of_this.noise[c], remaining_error.noise[c], image.height);
-        copy(of_this.known[c], remaining_error.known[c], image.height);
-      }
+      for (const auto part : {&RemainingError::whole, &RemainingError::noise, &RemainingError::known})
+        for (std::size_t c = 0; c < 3 && !(of_this.*part)[c].empty(); ++c)
+          copy((of_this.*part)[c], (remaining_error.*part)[c], image.height);
     }
     for (const int end = bottom < image.height ? bottom - reach() : bottom; first_waiting < end; ++first_waiting)
       for (auto& [name, values] : waiting)

@@ -16,12 +16,6 @@ namespace tempolux {
 /// Windows of the fits. The large window reads every fifth pixel of what a small one has fitted, so the small windows
 /// do not overlap; together they reach 7 pixels.
 inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge{1, 5, false};
-inline constexpr int kMostScales = 2;
-
-struct FilterOptions {
-  int scales = kMostScales;   ///< 1: small windows only; 0: filter in time only
-  std::optional<float> dark;  ///< dark_of() the whole picture (choose.h); empty: of the given image
-};
 
 /// A frame of a window: its light, and the first fits of its matte light.
 struct WindowLight {
@@ -31,17 +25,17 @@ struct WindowLight {
   WindowLight(const Image& image, bool alone);
 };
 
-/// Filters a frame together with its neighbours in time. At each scale each half of the light is fitted (fit.h), once
-/// with its own light alone and once with the light collected along the flow (collect.h); the other half decides the
-/// weights. Where `image` has coverage, edges are composed from their surfaces (unmix.h, resolve.h). Each candidate is
-/// multiplied by albedo, and choose() mixes the candidates with the raw layer. R G B becomes the sum of the layers plus
-/// any light it held besides them. Other channels and all attributes stay.
+/// Filters a frame together with its neighbours in time. Each half of the light is fitted in small and large windows
+/// (fit.h), once with its own light alone and once with the light collected along the flow (collect.h); the other half
+/// decides the weights. Where `image` has coverage, edges are composed from their surfaces (unmix.h, resolve.h). Each
+/// candidate is multiplied by albedo, and choose() mixes the candidates with the raw layer. R G B becomes the sum of
+/// the layers plus any light it held besides them. Other channels and all attributes stay.
 class FrameFilter {
  public:
   /// `middle` is made from the image; middle and flow must outlive this object. `before` and `after` are the numbers of
-  /// frames on each side of the window.
+  /// frames on each side of the window. `dark`: dark_of() the whole picture (choose.h); empty: of the given image.
   FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
-              const FilterOptions& options);
+              std::optional<float> dark = {});
   ~FrameFilter();
   FrameFilter(const FrameFilter&) = delete;
   FrameFilter& operator=(const FrameFilter&) = delete;
@@ -65,6 +59,6 @@ class FrameFilter {
 
 /// Filters a frame without other frames, tile by tile, which takes little memory besides the image. The result differs
 /// from FrameFilter's only by rounding.
-Image filter_alone(Image image, const FilterOptions& options);
+Image filter_alone(Image image);
 
 }  // namespace tempolux

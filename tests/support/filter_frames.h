@@ -54,14 +54,14 @@ inline void set_noise(Image& image, const std::string& layer, const OfPixel& noi
 }
 
 /// Filters the middle frame, with the flow in the frames' own channels.
-inline Image filtered(const std::vector<Image>& frames, const FilterOptions& options = {}) {
+inline Image filtered(const std::vector<Image>& frames) {
   std::vector<WindowLight> light;
   std::vector<FlowFrame> flow(frames.size());
   for (const Image& frame : frames) light.emplace_back(frame, frames.size() == 1);
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (frames[i].find("forward.u")) flow[i] = FlowFrame(frames[i], frames[i].width, frames[i].height, "flow");
   const std::size_t middle = (frames.size() - 1) / 2;
-  FrameFilter filter(light[middle], flow[middle], middle, frames.size() - 1 - middle, options);
+  FrameFilter filter(light[middle], flow[middle], middle, frames.size() - 1 - middle);
   for (std::size_t i = middle; i > 0; --i) filter.add(light[i - 1], flow[i - 1]);
   for (std::size_t i = middle + 1; i < frames.size(); ++i) filter.add(light[i], flow[i]);
   return filter.finish(frames[middle]);

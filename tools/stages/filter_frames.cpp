@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "formats/error.h"
+#include "lib/filter/filter_frame.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
@@ -46,7 +47,7 @@ class FilterRun {
     tool_.stats().phase("filter", true);
     Image image;
     naming(name, [&] {
-      if (first == last) image = filter_alone(std::move(middle.image), options_.filter);
+      if (first == last) image = filter_alone(std::move(middle.image));
       else image = filter_window(first, at, last, middle);
       if (!options_.channels.empty()) keep_channels(options_.channels, image);
     });
@@ -72,7 +73,7 @@ class FilterRun {
   }
 
   Image filter_window(std::size_t first, std::size_t at, std::size_t last, LoadedFrame& middle) {
-    FrameFilter filter(*middle.light, middle.flow, at - first, last - at, options_.filter);
+    FrameFilter filter(*middle.light, middle.flow, at - first, last - at);
     const auto add = [&](std::size_t i) {
       const LoadedFrame& other = load(i, sequence_);
       tool_.stats().phase("filter", true);

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "lib/filter/filter_frame.h"
 #include "tools/common/tool_main.h"
 
 namespace tempolux::tools {
@@ -14,7 +13,6 @@ struct FilterFramesOptions {
   std::vector<std::string> channels;      ///< groups that the output has; empty: all of the frame
   std::string output, range;              ///< range: frames to filter; "": one of the files
   int position = 0;                       ///< number of the filtered file, from 1; 0: the middle one
-  FilterOptions filter;
 };
 
 /// Filters one of the files, or each frame of the range with the two before and after it. Throws InputError for names

@@ -112,9 +112,7 @@ TEST(Filter, TheFlowIsFollowedTheRightWay) {
       moves(frame, sign * 3, sign * -2);
       frames.push_back(frame);
     }
-    FilterOptions options;
-    options.scales = 0;
-    const Image out = filtered(frames, options);
+    const Image out = filtered(frames);
     double square = 0;
     for (int y = 10; y < 54; ++y)
       for (int x = 10; x < 54; ++x)
@@ -306,7 +304,7 @@ TEST(Filter, TilesAreNotSeen) {
     };
     grey(frame, "direct", [&](int x, int y) { return (half(x, y, 0) + half(x, y, 1)) / 2; });
     set_noise(frame, "direct", [&](int x, int y) { return (half(x, y, 0) - half(x, y, 1)) / 2; });
-    const Image whole = filtered({frame}), tiled = filter_alone(frame, {});
+    const Image whole = filtered({frame}), tiled = filter_alone(frame);
     for (std::size_t p = 0; p < frame.pixel_count(); ++p)
       EXPECT_NEAR(whole.find("direct.G")->values[p], tiled.find("direct.G")->values[p], 1e-5f);
   }

@@ -33,7 +33,7 @@ Image noisy(const std::string& layer, const OfPixel& light, float sigma) {
   return image;
 }
 
-Image filtered(Image image) { return filter_alone(std::move(image), {}); }
+Image filtered(Image image) { return filter_alone(std::move(image)); }
 
 double squared_error(const Image& image, const OfPixel& light) {
   double sum = 0;
