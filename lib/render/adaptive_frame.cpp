@@ -62,6 +62,8 @@ class AdaptiveFrame {
   void put_together();
   void spread();
   void keep_confirmed(std::size_t pixel, const Layers& before);
+  double noise_left() const;
+  double noise_goal() const;
   void reach_seen_error();
   void finish();
   bool shown(std::size_t pixel) const { return options_.mask.empty() || options_.mask[pixel]; }
@@ -184,7 +186,17 @@ void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
     halves->join(claim.layer);
 }
 
-/// Adds passes of samples until the measured noise is below seen_error. After each pass the noise is measured, and the
+/// Noise in codes, or its standard error if that is larger: one outlier among the pixels that are rendered twice can
+/// make the measured noise 0 +- 10.
+double AdaptiveFrame::noise_left() const { return std::max(frame_.noise.image.codes, frame_.noise.image.codes_error); }
+
+/// Noise in codes at which samples stop: seen_error, or more if further samples hardly reduce the noise because records
+/// and photons have most of it. Samples whose own noise is half of seen_error raise the total by at most 15 % then.
+double AdaptiveFrame::noise_goal() const {
+  return std::max(options_.seen_error, std::hypot(frame_.noise.stored_codes, options_.seen_error / 2));
+}
+
+/// Adds passes of samples until noise_left() is below noise_goal(). After each pass the noise is measured, and the
 /// noise that remains decides the size of the next pass. The error falls as the number of samples to the power of -1/2
 /// to -5/6; the exponent -.6 makes the passes approach the goal from above. How much a pass gains is only known after
 /// it, so no pass takes more than four times the samples taken so far.
@@ -193,19 +205,18 @@ void AdaptiveFrame::reach_seen_error() {
   constexpr int kMostIdle = 8;  // passes without a sample: all pixels are at their limit, or show no noise
   put_together();
   double times = 0.25;
-  const double at_first = frame_.noise.image.codes;
-  for (int idle = 0; frame_.noise.known() && frame_.noise.image.codes > options_.seen_error && idle < kMostIdle;) {
+  const double at_first = noise_left();
+  for (int idle = 0; frame_.noise.known() && noise_left() > noise_goal() && idle < kMostIdle;) {
     if (options_.progress)
-      options_.progress(std::clamp(
-          std::log(at_first / frame_.noise.image.codes) / std::log(at_first / options_.seen_error), 0.0, 1.0));
+      options_.progress(
+          std::clamp(std::log(at_first / noise_left()) / std::log(at_first / options_.seen_error), 0.0, 1.0));
     if (take_further(times, {}) > 0) {
       put_together();
       idle = 0;
     } else {
       ++idle;
     }
-    times *=
-        std::clamp(std::pow(frame_.noise.image.codes / options_.seen_error, 1 / kSteepness), kLeastTimes, kMostTimes);
+    times *= std::clamp(std::pow(noise_left() / noise_goal(), 1 / kSteepness), kLeastTimes, kMostTimes);
   }
 }
 

@@ -75,7 +75,7 @@ struct ImageAndLayers {
       layer[l].add(error([l](const Layers& layers) { return Rgbd(layers.value[l]); }));
   }
   FrameNoise noise(double exposure, std::size_t pixels) const {
-    FrameNoise noise{image.noise(), {}, exposure, pixels};
+    FrameNoise noise{image.noise(), 0, {}, exposure, pixels};
     for (std::size_t l = 0; l < kLayerCount; ++l) noise.layer[l] = layer[l].noise();
     return noise;
   }
@@ -113,7 +113,9 @@ std::uint32_t NoiseCheck::slot(int x, int y) const {
 
 FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposure) const {
   ImageAndLayers sums;
-  for (const Triple& of : triples)
+  double stored = 0;
+  for (const Triple& of : triples) {
+    stored += squares(total(of.shown), total(of.shown) + total(of.stored), exposure).codes;
     sums.add([&](const auto& colour) {
       const Rgbd shown = colour(of.shown), sampled = colour(of.sampled);
       Rgbd given(0.0);
@@ -124,7 +126,10 @@ FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposu
       error += squares(shown, shown + colour(of.stored), exposure);
       return error;
     });
-  return sums.noise(exposure, triples.size());
+  }
+  FrameNoise noise = sums.noise(exposure, triples.size());
+  noise.stored_codes = std::sqrt(stored / double(std::max<std::size_t>(1, triples.size())));
+  return noise;
 }
 
 namespace {

@@ -22,6 +22,7 @@ struct Noise {
 
 struct FrameNoise {
   Noise image;
+  double stored_codes = 0;               ///< part of image.codes: noise of records and photons, equal in all samples
   std::array<Noise, kLayerCount> layer;  ///< noise of each layer alone, at the exposure of the whole picture
   double exposure = 0;                   ///< factor that brings the median of the pixels' mean channels to .18
   std::size_t pixels = 0;                ///< number of pixels that were rendered twice

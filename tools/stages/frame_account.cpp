@@ -114,9 +114,15 @@ void report_account(Tool& tool, const RenderedFrame& rendered, const std::vector
   }
   if (!rendered.noise.known()) return;
   tool.say(noise_line(rendered));
-  if (asked.seen_error > 0 && rendered.noise.image.codes > asked.seen_error)
-    tool.warn("--seen-error " + number(asked.seen_error) + ": " + number(rendered.noise.image.codes) +
-              " codes are left, and " + number(100 * rendered.at_limit) + " % of the pixels are at the limit of " +
+  if (!(asked.seen_error > 0 && rendered.noise.image.codes > asked.seen_error)) return;
+  const std::string left =
+      "--seen-error " + number(asked.seen_error) + ": " + number(rendered.noise.image.codes) + " codes are left, ";
+  if (2 * rendered.noise.stored_codes > std::sqrt(3) * asked.seen_error)
+    tool.warn(left + number(rendered.noise.stored_codes) +
+              " of them by records and photons; give these more rays and paths (irradcache-build --rays, photon-trace "
+              "--photons)");
+  else
+    tool.warn(left + "and " + number(100 * rendered.at_limit) + " % of the pixels are at the limit of " +
               std::to_string(asked.adaptive_limit) + " samples; give files of light (--points, --irradcache)");
 }
 

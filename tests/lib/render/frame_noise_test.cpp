@@ -49,6 +49,7 @@ TEST(FrameNoise, IncludesTheNoiseOfRecords) {
       picture, [&](std::size_t pixel) { return picture[pixel]; }, known);
   EXPECT_NEAR(noise.image.linear, 0.02, 1e-6);
   EXPECT_NEAR(noise.layer[std::size_t(Layer::indirect)].linear, 0.02, 1e-6);
+  EXPECT_NEAR(noise.stored_codes, noise.image.codes, 1e-3);
   EXPECT_EQ(noise.layer[std::size_t(Layer::direct)].linear, 0);
 }
 
@@ -125,6 +126,33 @@ TEST(FrameNoise, SeenErrorIsReachedOrNot) {
   const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
   EXPECT_GT(frame.noise.image.codes, 0.2);
   EXPECT_GT(frame.at_limit, 0.5);
+}
+
+/// A record with large noise lights the floor in view. The frame does not reach the requested noise, since all samples
+/// read the record. Samples stop when their own noise is half of what is requested, long before the limit.
+TEST(FrameNoise, SamplesStopWhereRecordsHaveTheNoise) {
+  const Cornell c;
+  const std::optional<SeenPoint> seen = seen_through(c.tracer, c.view, {32, 30, {}});
+  ASSERT_TRUE(seen);
+  IrradianceRecord record;
+  record.position = seen->surface.position;
+  record.normal = seen->normal;
+  record.irradiance = Rgb(2.0f);
+  record.noise = {1.0f, 1, 1};
+  record.radius = record.radius_unclamped = 2;
+  RecordStore store({.least_cosine = 0});
+  ASSERT_TRUE(store.add(record));
+  KnownLight known;
+  known.records = &store;
+  FrameOptions options;
+  options.samples = 4;
+  options.pixel_error = 0.02;
+  options.seen_error = 4;
+  options.known = &known;
+  const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
+  EXPECT_GT(frame.noise.stored_codes, 4);
+  EXPECT_LE(frame.noise.image.codes, std::hypot(frame.noise.stored_codes, 2));
+  EXPECT_LT(frame.at_limit, 0.05);
 }
 
 }  // namespace
