@@ -16,7 +16,7 @@ namespace tempolux {
 /// The hits are halved at their median, along the longest side of their box, while each half has kLeastHits. Each part
 /// has a grid of kRows x kColumns cells of equal solid angle. A cell is drawn by the weight of the hits in and around
 /// it, and a direction inside the cell uniformly. Where more than kMostSeen of the rays meet the environment there is
-/// no grid: such rays deviate by at most 173 % of their mean. A part with fewer than kLeastHits has no grid, either.
+/// no grid: such rays deviate by at most 300 % of their mean. A part with fewer than kLeastHits has no grid, either.
 /// Derivation and measurements: docs/pixels.md.
 class SkyGuide {
  public:
@@ -30,7 +30,7 @@ class SkyGuide {
   };
   static constexpr int kRows = 32, kColumns = 64;
   static constexpr std::size_t kLeastHits = 64;
-  static constexpr double kMostSeen = 0.25;
+  static constexpr double kMostSeen = 0.1;
 
   SkyGuide() = default;
   /// Every place has sent `rays` rays. Hits must be in a fixed order; the guide then depends on nothing else.

@@ -89,8 +89,8 @@ TEST(SkyGuide, HasNoGridWhereMuchIsSeenOrNothing) {
   std::vector<SkyGuide::Place> places(200, {{}, kUp});
   std::vector<SkyGuide::Hit> hits;
   for (std::uint32_t i = 0; i < 200; ++i) hits.push_back({i, kUp, 1});
-  EXPECT_TRUE(SkyGuide(places, hits, 1).empty());
-  EXPECT_FALSE(SkyGuide(places, hits, 4).empty());  // a quarter
+  for (const int rays : {1, 4, 9}) EXPECT_TRUE(SkyGuide(places, hits, rays).empty()) << rays;
+  EXPECT_FALSE(SkyGuide(places, hits, 11).empty());  // less than a tenth
 }
 
 /// Irradiance of the whole sky, which the guide misleads about, and of the window alone.
