@@ -9,9 +9,15 @@
 namespace tempolux {
 namespace {
 
-/// A copy costs 36 bytes and about 100 bytes of search tree per triangle; an instance costs about 1 kB, and a transform
-/// for every ray that enters its box.
-constexpr std::size_t kFewestTriangles = 4096;
+/// A copy costs 36 bytes, about 100 bytes of search tree and .35 us of building it per triangle, in each process. An
+/// instance costs about 1 kB, and a transform for every ray that enters its box: up to 8 % of a frame. So a small
+/// primitive is instanced only if its copies would take a tenth of a second.
+constexpr std::size_t kFewestTriangles = 4096, kFewestOfSmall = 256, kFewestCopied = 1 << 18;
+
+bool is_worth_sharing(std::size_t triangles, std::size_t uses) {
+  return uses >= 2 &&
+         (triangles >= kFewestTriangles || (triangles >= kFewestOfSmall && uses * triangles >= kFewestCopied));
+}
 
 /// The rounding error of a ray in the instance's space is some ulp times the condition number of the transform (the
 /// norm of the matrix times the norm of its inverse: 3 for a rotation). Above this number the surface is copied.
@@ -92,9 +98,8 @@ Sharing::Sharing(const Scene& scene) {
     if (node.mesh >= 0 && !deforms(scene, node))
       uses[std::size_t(node.mesh)] += std::max<std::size_t>(node.instances.size(), 1);
   for (std::size_t m = 0; m < uses.size(); ++m) {
-    if (uses[m] < 2) continue;
     for (const Primitive& primitive : scene.meshes[m].primitives) {
-      if (primitive.triangles.size() < kFewestTriangles || may_emit(scene, primitive.material)) continue;
+      if (!is_worth_sharing(primitive.triangles.size(), uses[m]) || may_emit(scene, primitive.material)) continue;
       // Rays test the copy's alpha.
       if (scene.materials[primitive.material].alpha_mode != Material::Alpha::opaque) continue;
       Box3d& box = box_[&primitive];

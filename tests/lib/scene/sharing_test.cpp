@@ -41,6 +41,12 @@ TEST(Sharing, OfPrimitivesThatAreLargeAndStandTwice) {
   EXPECT_TRUE(instanced(by_instances));
 }
 
+TEST(Sharing, OfSmallPrimitivesWithManyCopies) {
+  EXPECT_TRUE(instanced(standing(256, 1024)));
+  EXPECT_FALSE(instanced(standing(256, 1023)));
+  EXPECT_FALSE(instanced(standing(255, 4096)));
+}
+
 TEST(Sharing, NotOfWhatShinesOrLetsRaysPass) {
   Scene lamp = standing(4096, 2), leaf = standing(4096, 2);
   lamp.materials[0].emission = Rgb(1.0f);
