@@ -18,9 +18,9 @@ std::string node_place(const Scene& scene, std::size_t node);
 
 /// Decides which primitives are instanced instead of copied: rigid, opaque primitives that never emit, occur at least
 /// twice, and have at least 4096 triangles, or at least 256 where all copies together would have 2^18. A single
-/// occurrence is copied nevertheless if rounding in the instance's space would be visible: if the transform's norm times
-/// its inverse's norm is above 30 (one axis 21 times the others), or its distance from the world's origin is above 256
-/// times its size.
+/// occurrence is copied nevertheless if rounding in the instance's space would be visible: if the transform's norm
+/// times its inverse's norm is above 30 (one axis 21 times the others), or its distance from the world's origin is
+/// above 256 times its size.
 class Sharing {
  public:
   explicit Sharing(const Scene& scene);
