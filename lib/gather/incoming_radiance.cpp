@@ -97,10 +97,10 @@ inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) c
 
 /// Calls take(i, met, point) for each ray that meets a surface, in order; point: the point that represents the hit, or
 /// nullptr. Calls take_medium(i, collision, distance) for rays that a medium scatters before, with random numbers of
-/// key(i), and miss(i) for rays that leave the scene. alike: as for Tracer::intersect.
+/// key(i), and miss(i) for rays that leave the scene.
 template <class Take, class Key, class TakeMedium, class Miss>
-void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take,
-                              const Key& key, const TakeMedium& take_medium, const Miss& miss) const {
+void IncomingRadiance::follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take, const Key& key,
+                              const TakeMedium& take_medium, const Miss& miss) const {
   const Media* const media = tracer_.frame().media.get();
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
@@ -108,7 +108,7 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
   std::array<PointLookup::Answer, kAtOnce> answers;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
-    tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count), alike);
+    tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       met[i].bsdf = nullptr;
       const Ray& ray = rays[first + i];
@@ -155,7 +155,7 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
     now_rays.clear();
     for (const Further& f : now) now_rays.push_back(f.ray);
     follow(
-        now_rays, depth == 0, counts,
+        now_rays, counts,
         [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
           const Further& from = now[i];
           if (depth == 0) distance[i] = met.distance;

@@ -75,7 +75,7 @@ class IncomingRadiance {
   void meet(Vec3 wo, float leg, float before, Met& met) const;
   float remaining_share(const Met& met, const PointLookup::Light* point, const Further& from) const;
   template <class Take, class Key, class TakeMedium, class Miss>
-  void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key,
+  void follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take, const Key& key,
               const TakeMedium& take_medium, const Miss& miss) const;
   Rgb scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,

@@ -79,7 +79,7 @@ struct Packet {
 
   /// Finds hits in this tree that are nearer than earlier ones, and shortens the rays to them. everywhere: the tree
   /// fills the scene, so testing its box would cost more than it saves.
-  void intersect(const Tree& tree, bool everywhere, bool alike, Hit* hits) {
+  void intersect(const Tree& tree, bool everywhere, Hit* hits) {
     bool any = false;
     alignas(32) int active[kPacket];
     float limit[kPacket];
@@ -93,7 +93,8 @@ struct Packet {
     if (!any) return;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = alike ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    // Coherent packets visit the tree in an order of their own, which decides between equally near surfaces.
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect8(active, tree.scene, &context, &query);
     for (std::size_t i = 0; i < kPacket; ++i) {
       if (!active[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -127,7 +128,7 @@ bool Tracer::intersect(const Ray& ray, Hit& hit) const {
   return found;
 }
 
-void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike) const {
+void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
   TEMPOLUX_CHECK(rays.size() == hits.size());
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::size_t count = std::min(kPacket, rays.size() - first);
@@ -138,8 +139,8 @@ void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alik
       if (i < count && !use) impl_->refused.fetch_add(1, std::memory_order_relaxed);
     }
     Hit found[kPacket];
-    if (impl_->fixed.exists()) packet.intersect(impl_->fixed, true, alike, found);
-    if (impl_->moving.exists()) packet.intersect(impl_->moving, false, alike, found);
+    if (impl_->fixed.exists()) packet.intersect(impl_->fixed, true, found);
+    if (impl_->moving.exists()) packet.intersect(impl_->moving, false, found);
     std::copy(found, found + count, hits.begin() + std::ptrdiff_t(first));
   }
 }

@@ -55,11 +55,9 @@ class Tracer {
 
   /// Nearest hit in (t_min, t_max). False, with `hit` unchanged, if there is none.
   bool intersect(const Ray& ray, Hit& hit) const;
-  /// The same for many rays: hits[i] belongs to rays[i] (surface kNone: no hit). Takes a third to a half of the time
-  /// if neighbours in the list start close together in similar directions. If they do not, pass alike = false: the
-  /// call is then no slower than single rays. If two surfaces are equally near, it may report another one than
-  /// intersect(); the same list always gives the same hits.
-  void intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike = true) const;
+  /// The same for many rays: hits[i] belongs to rays[i] (surface kNone: no hit), and is what rays[i] alone meets, also
+  /// where two surfaces coincide: such a surface may not look dark to pixels and bright to gather rays.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// True if a surface lies between the ray's ends. Panes are surfaces, too: for light call transmittance().
   bool occluded(const Ray& ray) const;
 

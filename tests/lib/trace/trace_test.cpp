@@ -99,6 +99,35 @@ TEST(Tracer, ManyRaysAtOnceMeetWhatEachMeetsAlone) {
   EXPECT_LE(differing, 2);
 }
 
+/// A ceiling on which the bottom of a roof lies, as people export them. Gather rays in lists and pixels' rays alone
+/// must agree which of the two they see.
+TEST(Tracer, ManyRaysAtOnceMeetWhatEachMeetsAloneWhereSurfacesCoincide) {
+  HandMadeScene scene;
+  scene.add_quad({0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}, matte(Rgb(0.7f)));
+  scene.add_quad({-0.1f, 1, 1.1f}, {1.1f, 1, 1.1f}, {1.1f, 1, -0.1f}, {-0.1f, 1, -0.1f}, matte(Rgb(0.1f)));
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const Vec3 at = random_point(i, 0, 1) + Vec3{0.5f, 0.5f, 0.5f};
+    scene.add({at, at + random_point(i, 1, 0.1f), at + random_point(i, 2, 0.1f)}, {{0, 1, 2}}, matte(Rgb(0.5f)));
+  }
+  const Tracer tracer(scene.frame());
+  std::vector<Ray> rays;
+  for (std::uint32_t i = 0; i < 4096; ++i) {  // from 64 places, in similar directions
+    const Vec3 from{float(i / 64 % 8 + 1) / 9, 0, float(i / 512 + 1) / 9},
+        to{float(i % 8 + 1) / 9, 1, float(i / 8 % 8 + 1) / 9};
+    rays.push_back({from, normalize(to - from)});
+  }
+  std::vector<Hit> hits(rays.size());
+  tracer.intersect(rays, hits);
+  int found = 0, differing = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Hit alone;
+    found += tracer.intersect(rays[i], alone) && alone.surface < 2;
+    differing += hits[i].surface != alone.surface;
+  }
+  EXPECT_GT(found, 1000);
+  EXPECT_LE(differing, 4);
+}
+
 TEST(Tracer, TheStaticSurfaceWinsATie) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)), true);
