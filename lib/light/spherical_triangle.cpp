@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/sampling.h"
-#include "lib/light/linear_density.h"
-
 namespace tempolux {
 namespace {
 
 Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); }
 /// The component of v perpendicular to the unit vector w, normalised.
 Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
-
-constexpr double kLeast = 0.01;  ///< smallest corner value, divided by the largest
 
 }  // namespace
 
@@ -36,21 +31,6 @@ Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, 
   const Vec3d c2 = a * cos_b + toward_c * std::sqrt(1 - cos_b * cos_b);
   const double omc = u.y * (1 - std::min(1.0, dot(c2, b)));
   return b * (1 - omc) + reject(c2, b) * std::sqrt(omc * (2 - omc));
-}
-
-BilinearWarp::BilinearWarp(std::array<double, 4> values) : w_(values) {
-  const double least = std::max(1e-300, kLeast * *std::max_element(w_.begin(), w_.end()));
-  for (double& w : w_) w = std::max(w, least);
-}
-
-Vec2 BilinearWarp::operator()(Vec2 u) const {
-  const double y = sample_linear(w_[0] + w_[1], w_[2] + w_[3], u.y);
-  const double x = sample_linear(lerp(w_[0], w_[2], y), lerp(w_[1], w_[3], y), u.x);
-  return {std::min(float(x), kOneMinusEpsilon), std::min(float(y), kOneMinusEpsilon)};
-}
-
-double BilinearWarp::density(Vec2 u) const {
-  return 4 * lerp(lerp(w_[0], w_[1], u.x), lerp(w_[2], w_[3], u.x), u.y) / (w_[0] + w_[1] + w_[2] + w_[3]);
 }
 
 }  // namespace tempolux

@@ -18,19 +18,4 @@ SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2);
 /// Sampling of Spherical Triangles", SIGGRAPH 1995]
 Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec2 u);
 
-/// Maps the unit square to itself with a density that is bilinear between four corner values. If an integrand is
-/// roughly proportional to these values, all samples contribute about the same. [Hart, Pharr, Mueller, Lopes, McGuire &
-/// Shirley, "Practical Product Sampling by Fitting and Composing Warps", CGF 39(4), 2020]
-class BilinearWarp {
- public:
-  /// Values at u = (0, 0), (1, 0), (0, 1), (1, 1), not negative. Each counts as at least a hundredth of the largest,
-  /// so that the density is never 0.
-  explicit BilinearWarp(std::array<double, 4> values);
-  Vec2 operator()(Vec2 u) const;
-  double density(Vec2 u) const;  ///< density of the mapped points at `u`; its mean over the square is 1
-
- private:
-  std::array<double, 4> w_;
-};
-
 }  // namespace tempolux

@@ -35,23 +35,14 @@ struct View {
   /// True if the triangle is large enough to be sampled by solid angle and the point is not so close to its plane that
   /// directions degenerate.
   bool large() const {
-    // tan(0.02 sr / 2): the solid angle must be at least 0.02 sr, and at most 2 pi - 0.02 sr
-    constexpr float kTangent = 0.01f;
+    // tan(0.001 sr / 2): the solid angle must be at least 0.001 sr, and at most 2 pi - 0.001 sr
+    constexpr float kTangent = 0.0005f;
     return adjacent > 0 ? opposite > kTangent * adjacent : opposite > -kTangent * adjacent;
   }
   /// Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
 
-  /// Corner values of the warp for samples by area: 1 / distance^3. Two powers are the inverse square of the
-  /// distance; one is the triangle's cosine, height / distance.
-  BilinearWarp factors() const {
-    const auto factor = [](double l) { return 1 / (l * l * l); };
-    return BilinearWarp({factor(l0), factor(l1), factor(l2), factor(length((v1 + v2) * 0.5f))});
-  }
 };
-
-/// The inverse of Heitz' map from the square to barycentric coordinates.
-Vec2 find_in_triangle(Vec2 b) { return {b.x + std::min(b.x, b.y), b.y + std::min(b.x, b.y)}; }
 
 /// Barycentric coordinates (b1, b2) where the ray along w meets the triangle's plane, clamped to the triangle.
 Vec2 project(const TriangleLight& t, const View& view, Vec3d w) {
@@ -120,9 +111,6 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
     density = 1 / omega;
     b = project(light, view, sample_spherical_triangle(as_seen(view.v0, view.v1, view.v2), omega, u));
   } else {
-    const BilinearWarp warp = view.factors();
-    u = warp(u);
-    density = warp.density(u);
     b = sample_triangle(u);
   }
   const Vec3 offset = light.edge1 * b.x + light.edge2 * b.y, to = view.v0 + offset;
@@ -141,12 +129,7 @@ double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position) {
   if (!view.visible) return 0;
   if (view.large()) return 1 / view.solid_angle();
   const double d = length(Vec3d(position) - Vec3d(from));
-  const Vec3d at = Vec3d(position) - Vec3d(light.corner), edge1(light.edge1), edge2(light.edge2);
-  const Vec3d across = cross(edge1, edge2);
-  const double twice2 = length2(across);
-  const Vec2 b{float(std::clamp(dot(cross(at, edge2), across) / twice2, 0.0, 1.0)),
-               float(std::clamp(dot(cross(edge1, at), across) / twice2, 0.0, 1.0))};
-  const double pdf = view.factors().density(find_in_triangle(b)) * d * d * d / (light.area * view.height);
+  const double pdf = d * d * d / (light.area * view.height);
   return pdf < INFINITY ? pdf : 0;
 }
 

@@ -313,23 +313,5 @@ TEST(Lights, SurviveExtremeNumbers) {
   }
 }
 
-/// The map takes to each part of the square a share equal to the integral of the bilinear density there. With corner
-/// values 1, 2, 3 and 6, the quarter u.x, u.y < 1/2 has the values 1, 1.5, 2 and 3 at its corners: their mean, 7.5 /
-/// 4, over the density's mean 3, times a fourth.
-TEST(BilinearWarp, FollowsItsDensity) {
-  const BilinearWarp warp({1, 2, 3, 6});
-  int inside = 0;
-  double inverse = 0;
-  constexpr std::uint32_t kCount = 1 << 16;
-  for (std::uint32_t i = 0; i < kCount; ++i) {
-    const Vec2 u = warp(sobol_owen_2d(i, 7));
-    inside += u.x < 0.5f && u.y < 0.5f;
-    inverse += 1 / warp.density(u) / kCount;
-  }
-  EXPECT_NEAR(double(inside) / kCount, 7.5 / 4 / 3 / 4,
-              1e-3);  // Sobol points: some of their number's root on the border
-  EXPECT_NEAR(inverse, 1, 1e-3);
-}
-
 }  // namespace
 }  // namespace tempolux
