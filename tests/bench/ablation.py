@@ -30,7 +30,8 @@ from measure import Bench, machine, percent, quantity, walk_speed
 from references import Reference
 from shipped import YARDSTICK, Side, Unfinished, frames_without_camera
 
-TOOLS = ("scene-plan", "photon-trace", "irradcache-build", "photonmap-split", "frame-render", "tempolux-info")
+TOOLS = ("scene-plan", "photon-trace", "irradcache-build", "photonmap-split", "frame-render", "st-filter",
+         "tempolux-info")
 IN_MEDIAN, IN_CLASS, HARM = 1.15, 2.0, 0.87      # 0.87 = 1 / 1.15
 IN_A_ROW = 3          # ideas between two runs of the whole chain, whose mean CPU time theirs is compared with: machines change their speed within a minute
 WHOLE = "whole"
