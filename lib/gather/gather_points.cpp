@@ -32,7 +32,16 @@ std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights,
   return shares;
 }
 
-/// The lights for direct light at points, guided by what these points see of the environment.
+}  // namespace
+
+Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
+  return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;
+}
+
+bool holds_kind(const std::string& kinds, const std::string& kind) {
+  return ("," + kinds + ",").find("," + kind + ",") != std::string::npos;
+}
+
 Lights guided_lights(const Tracer& tracer, const Lights& lights, std::span<const IrradiancePoint> points) {
   if (!lights.has_environment()) return lights;
   const float offset = Reach(tracer).offset();
@@ -42,16 +51,6 @@ Lights guided_lights(const Tracer& tracer, const Lights& lights, std::span<const
     places.push_back({surface_of(points[i], offset), normal, normal});
   }
   return lights.guided(learn_sky(tracer, lights, places));
-}
-
-}  // namespace
-
-Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
-  return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;
-}
-
-bool holds_kind(const std::string& kinds, const std::string& kind) {
-  return ("," + kinds + ",").find("," + kind + ",") != std::string::npos;
 }
 
 GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct DividedPhotonMap {
 Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame);
 /// True if `kind` is among `kinds`, such as "caustic,indirect".
 bool holds_kind(const std::string& kinds, const std::string& kind);
+
+/// The lights with a SkyGuide that learns from these points, for light samples at the points or where rays end.
+Lights guided_lights(const Tracer& tracer, const Lights& lights, std::span<const IrradiancePoint> points);
 
 /// Points estimated from a whole photon map with all kinds of light.
 GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,

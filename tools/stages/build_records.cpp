@@ -135,7 +135,8 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
     write_points(tool, points, first, keep);
   }
   const PointsRead read(tool, tracer, lights, points, std::move(high_shares), options.gather);
-  const FinalGather gather(tracer, lights, read.lookup, options.gather);
+  const Lights guided = guided_lights(tracer, lights, points.points);
+  const FinalGather gather(tracer, guided, read.lookup, options.gather);
   RecordStore store;
 
   tool.stats().phase("records", true);
@@ -173,7 +174,8 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
   GatherOptions gathering = options.gather;
   const PointsRead read(tool, tracer, lights, points, {}, gathering);
-  const FinalGather gather(tracer, lights, read.lookup, gathering);
+  const Lights guided = guided_lights(tracer, lights, points.points);
+  const FinalGather gather(tracer, guided, read.lookup, gathering);
 
   tool.stats().phase("records", true);
   const RecordCameras cameras = cameras_of(tool, input, options, frames, frame, [&](int f) { return input.at(f); });
