@@ -337,22 +337,33 @@ inline float IncomingRadiance::remaining_share(const Met& met, const PointLookup
   return from.sampled_lobe > 0 && point ? bright_->remaining_share(*point, met.leg * from.sampled_lobe) : 1.0f;
 }
 
-/// Direct irradiance at a hit from one light sample. point: represents the hit, or nullptr. sampled_lobe:
-/// Further::sampled_lobe, for the light of close lamps (BrightPoints::remaining_lamp_share).
+/// Direct irradiance at a hit from one sample of the directional lights, if there are any, and one of all others. If
+/// one sample chose between them, few samples of a room would find its window and its lamps, because a sun counts as
+/// unblocked in the choice. point: represents the hit, or nullptr. sampled_lobe: Further::sampled_lobe, for the light
+/// of close lamps (BrightPoints::remaining_lamp_share).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point,
                                     float sampled_lobe, const PathRandom& random, GatherCounts& counts) const {
-  DirectSample direct;
   const Receiver at{met.hit, side.normal_geometric, side.normal, met.bsdf->has_specular() ? met.bsdf : nullptr};
-  if (lights_.empty() ||
-      !sample_direct(lights_, at, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), direct))
-    return Rgb(0.0f);
-  const float share = sampled_lobe > 0 && !direct.light.distant
-                          ? bright_->remaining_lamp_share(point, met.leg * sampled_lobe,
-                                                          length(direct.light.position - met.hit.position))
-                          : 1.0f;
-  if (!(share > 0)) return Rgb(0.0f);
-  ++counts.shadow_rays;
-  return direct.irradiance * (transmittance(tracer_, direct.shadow, {random, 1, way_shadow}) * share);
+  Rgb sum{0.0f};
+  const auto add = [&](const DirectSample& direct) {
+    const float share = sampled_lobe > 0 && !direct.light.distant
+                            ? bright_->remaining_lamp_share(point, met.leg * sampled_lobe,
+                                                            length(direct.light.position - met.hit.position))
+                            : 1.0f;
+    if (!(share > 0)) return;
+    ++counts.shadow_rays;
+    sum += direct.irradiance * (transmittance(tracer_, direct.shadow, {random, 1, way_shadow}) * share);
+  };
+  if (lights_.empty()) return sum;
+  DirectSample direct;
+  const Vec2 u = random.get2(1, Purpose::light_point);
+  if (!lights_.has_suns()) {
+    if (sample_direct(lights_, at, random.get1(1, Purpose::light_choice), u, direct)) add(direct);
+    return sum;
+  }
+  if (sample_sun(lights_, at, random.get1(1, Purpose::sun), direct)) add(direct);
+  if (sample_other_than_suns(lights_, at, u, direct)) add(direct);
+  return sum;
 }
 
 /// Irradiance at a hit beside the edge of a shadow. Indirect and caustic light are those of the point; direct light

@@ -20,6 +20,7 @@ constexpr double kStudent = 3.25 / 3;
 /// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as one camera
 /// path.
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
+constexpr int kStep = 2;  ///< pixels, across and down, that one pixel stands for in expect()
 constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8;
 
 }  // namespace
@@ -80,8 +81,11 @@ void FrameAudit::add(std::size_t audit, std::size_t pixel, std::size_t layer, do
 /// Each audit is a map with its own seed and all of its paths in one group. Audits are traced in parallel and added in
 /// order.
 void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
+  struct Seen : Splat {
+    double flux = 0;
+  };
   const PhotonSplats camera(tracer, view_);
-  std::array<std::vector<Splat>, kAudits> seen;
+  std::array<std::vector<Seen>, kAudits> seen;
   parallel_chunks(kAudits, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
@@ -96,18 +100,66 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
             const std::array<float, 3> decoded = formats::decode_normal(block.directions[i]);
             wi = Vec3{decoded[0], decoded[1], decoded[2]};
           }
-          if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, wi)) seen[k].push_back(*splat);
+          const std::array<float, 3>& flux = block.photons[i].flux;
+          if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, wi))
+            seen[k].push_back({*splat, channel_mean(Rgbd(Rgb{flux[0], flux[1], flux[2]}))});
         }
       }
     }
   });
+  std::array<double, kLayerCount> flux{}, square{};
   for (std::size_t k = 0; k < kAudits; ++k)
-    for (const Splat& splat : seen[k])
-      add(k, splat.pixel, std::size_t(splat.layer), channel_mean(Rgbd(splat.radiance)));
+    for (const Seen& splat : seen[k]) {
+      const auto layer = std::size_t(splat.layer);
+      add(k, splat.pixel, layer, channel_mean(Rgbd(splat.radiance)));
+      flux[layer] += splat.flux, square[layer] += splat.flux * splat.flux;
+    }
+  for (std::size_t l = 0; l < kLayerCount; ++l) flux[l] = flux[l] > 0 ? square[l] / flux[l] : 0;
+  expect(tracer, camera, flux);
+}
+
+/// Sets Sums::expected. flux: of one photon [W] by layer, mean square over mean. The contribution of a photon to a
+/// pixel is that of a photon at the place that the pixel's middle shows.
+void FrameAudit::expect(const Tracer& tracer, const PhotonSplats& camera, const std::array<double, kLayerCount>& flux) {
+  const int columns = (view_.width() + kStep - 1) / kStep, rows = (view_.height() + kStep - 1) / kStep;
+  std::vector<double> unit(std::size_t(columns) * std::size_t(rows), 0.0);  ///< contribution of a photon of 1 W
+  const auto pixel_of = [&](std::size_t i) {
+    const int x = int(i) % columns * kStep, y = int(i) / columns * kStep;
+    return std::pair(x, y);
+  };
+  parallel_chunks(unit.size(), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto [x, y] = pixel_of(i);
+      const Ray ray = view_.ray(float(x) + 0.5f, float(y) + 0.5f);
+      Hit hit;
+      if (!tracer.intersect(ray, hit)) continue;
+      const SurfacePoint place = tracer.surface_point(hit);
+      const Vec3 normal =
+          dot(place.normal_geometric, ray.direction) < 0 ? place.normal_geometric : -place.normal_geometric;
+      const formats::Photon photon{.position = {place.position.x, place.position.y, place.position.z},
+                                   .flux = {1, 1, 1},
+                                   .normal = formats::encode_normal({normal.x, normal.y, normal.z}),
+                                   .kind = formats::PathKind::indirect};
+      if (const std::optional<Splat> splat = camera.splat(photon, {}, {}))
+        unit[i] = channel_mean(Rgbd(splat->radiance));
+    }
+  });
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const auto [x, y] = pixel_of(i);
+    const std::size_t pixel = std::size_t(y) * std::size_t(view_.width()) + std::size_t(x);
+    if (!mask_.empty() && !mask_[pixel]) continue;
+    const Layers& shown = frame_.mean.pixels[pixel];
+    for_parts_of(pixel, [&](std::size_t part) {
+      for (std::size_t l = 0; l < kLayerCount; ++l)
+        sums_[part].expected[l] +=
+            kStep * kStep * channel_mean(Rgbd(shown.value[l])) * flux[l] * unit[i] / double(kAudits);
+    });
+  }
 }
 
 /// Each audit divides the pixels into as many runs as it has paths, row by row, and draws one pixel from each run.
 void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) {
+  for (Sums& sums : sums_) sums.expected = {};  // photons find only a part of the frame's light
   const std::size_t pixels = object_part_.size(), count = (effort.eye_paths + kAudits - 1) / kAudits;
   struct Found {
     std::size_t pixel = 0;
@@ -150,14 +202,15 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
                    .light = {},
                    .bias = {},
                    .picture = picture_ / n};
-  if (!(sums.fourth[layer] > 0) || sums.square[layer] * sums.square[layer] < kFewest * sums.fourth[layer]) return entry;
+  const bool few = sums.square[layer] * sums.square[layer] < kFewest * sums.fourth[layer];
+  if (!(sums.fourth[layer] > 0) || (few && !(sums.expected[layer] > 0))) return entry;
   double sum = 0, square = 0;
   for (const double audit : sums.light[layer]) sum += audit;
   const double mean = sum / kAudits;
   for (const double audit : sums.light[layer]) square += (audit - mean) * (audit - mean);
   entry.light = {mean / n, std::sqrt(square / kAudits / (kAudits - 1)) / n};
   const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
-  const double error = kStudent * entry.light.error;
+  const double error = std::max(kStudent * entry.light.error, std::sqrt(std::max(0.0, sums.expected[layer])) / n);
   entry.bias = {entry.shown - entry.light.value, std::sqrt(error * error + noise * noise / n)};
   return entry;
 }

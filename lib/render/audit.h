@@ -52,9 +52,15 @@ AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool
 /// lights of the two calls together must be those of the scene.
 ///
 /// The effort is divided into kAudits independent audits with seeds of their own. The standard error is that of their
-/// mean, however paths and starts are stratified within each audit. Nothing is reported if few contributions hold most
-/// of the variance: if (sum of c^2)^2 / sum of c^4 is below 32 for the contributions c of single photons and paths.
-/// This number of effective contributions gives the variance a relative standard error of 18 %.
+/// mean, however paths and starts are stratified within each audit. For paths nothing is reported if few contributions
+/// hold most of the variance: if (sum of c^2)^2 / sum of c^4 is below 32 for the contributions c of single photons and
+/// paths. This number of effective contributions gives the variance a relative standard error of 18 %.
+///
+/// Photons close to the camera are rare and bright. Audits that happened to meet none of them find too little light and
+/// a standard error that is too small. So where photons find all light, the error of a bias is at least the one that
+/// photons would have if the frame were right: each pixel's light L arrives by photons of contribution c, whose number
+/// is Poisson distributed, so the variance of the sum is the sum of L c. Such entries are always reported: to report
+/// only audits that met no bright photon would select those that found too little.
 class FrameAudit {
  public:
   static constexpr std::size_t kAudits = 32;
@@ -80,10 +86,12 @@ class FrameAudit {
     std::array<double, kLayerCount> shown{};
     std::array<std::array<double, kAudits>, kLayerCount> light{};  ///< that each audit found
     std::array<double, kLayerCount> square{}, fourth{};            ///< of single contributions: sums of powers
+    std::array<double, kLayerCount> expected{};                    ///< variance of the light if the frame were right
   };
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;
   void add(std::size_t audit, std::size_t pixel, std::size_t layer, double radiance);
+  void expect(const Tracer& tracer, const PhotonSplats& camera, const std::array<double, kLayerCount>& flux);
   AuditEntry entry(std::size_t part, std::size_t layer) const;
 
   const CameraView& view_;
@@ -99,5 +107,7 @@ class FrameAudit {
 /// three standard errors.
 bool is_biased(const AuditEntry& entry);
 inline constexpr double kAuditLimit = 0.02, kAuditErrors = 3;
+/// A second, independent audit decides whether a biased entry is reported; it has this many times the effort.
+inline constexpr int kAuditAgain = 4;
 
 }  // namespace tempolux

@@ -26,5 +26,8 @@ struct DirectSample {
 /// Draws a light and a point on it (Lights::sample). False if no light can reach the receiver, or the light comes from
 /// behind its geometric or its shading normal.
 bool sample_direct(const Lights& lights, const Receiver& at, float u_choice, Vec2 u, DirectSample& sample);
+/// The same among all but the directional lights, from one stratified pair, and among the directional lights.
+bool sample_other_than_suns(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);
+bool sample_sun(const Lights& lights, const Receiver& at, float u, DirectSample& sample);
 
 }  // namespace tempolux

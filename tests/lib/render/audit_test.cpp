@@ -196,6 +196,29 @@ TEST(FrameAudit, EachLightIsFoundOnce) {
   EXPECT_TRUE(is_biased(dark));
 }
 
+/// A lamp behind the camera lights a wall and a card close to the camera. The card has two fifths of the light and
+/// meets two of 2000 photons. Audits in which no photon met the card know their error, and it must cover what they
+/// miss. The error of the photons that they did meet is ten times smaller.
+TEST(FrameAudit, ErrorCoversRarePhotonsCloseToTheCamera) {
+  HandMadeScene made;
+  made.add_quad({-9, -6, -4}, {9, -6, -4}, {9, 6, -4}, {-9, 6, -4}, matte(Rgb(0.6f)));
+  made.add_quad({-0.1f, -0.1f, -0.3f}, {0.1f, -0.1f, -0.3f}, {0.1f, 0.1f, -0.3f}, {-0.1f, 0.1f, -0.3f},
+                matte(Rgb(0.6f)));
+  made.add_point_light({0, 1, 1}, Rgb(3.0f));
+  const Lit lit(made.frame());
+  const CameraView view = wide_view({});
+  FrameOptions options;
+  options.samples = 16;
+  const RenderedFrame right = render_frame({lit.tracer, lit.lights, false}, view, options);
+  int known = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed)
+    if (const AuditEntry* const entry = find(audit(lit, view, right, 2000, seed), Layer::direct, "picture")) {
+      ++known;
+      EXPECT_FALSE(is_biased(*entry)) << entry->of_layer() << " +- " << entry->of_layer_error();
+    }
+  EXPECT_EQ(known, 100);
+}
+
 /// If known light says that indirect light is 0, the bias is all of the indirect light: paths find it within 4 of their
 /// standard errors, against a picture of 64 samples. Few paths give no standard error.
 TEST(FrameAudit, PathsSayWhatIsMissing) {
