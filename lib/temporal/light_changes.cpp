@@ -25,16 +25,17 @@ bool holds(const Box3& box, Vec3 p) { return min(p, box.lower) == box.lower && m
 }  // namespace
 
 bool is_bright(const TemporalScene& scene, std::uint32_t point) {
-  return point < scene.high_shares.size() && scene.high_shares[point] > 0;
+  return (point < scene.high_shares.size() && scene.high_shares[point] > 0) ||
+         (point < scene.lookup.size() && scene.lookup.light(point).beside_lamp);
 }
 
-LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept) {
+LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept, bool explicitly) {
   TEMPOLUX_CHECK(kept.point_light.size() <= scene.points.size());
   LightChanges changes;
   const SceneFrame& now = scene.tracer.frame();
   changes.boxes = swept_boxes(*scene.before, now);
   changes.materials = now.hashes.materials != scene.before->hashes.materials;
-  changes.divided = !kept.high_hash.empty() || !scene.high_hash.empty();
+  changes.divided = explicitly || !kept.high_hash.empty() || !scene.high_hash.empty();
   changes.anything = changes.materials || !changes.boxes.empty() || kept.high_hash != scene.high_hash;
   changes.points.resize(kept.point_light.size(), unmarked);
   changes.ratios.resize(changes.points.size(), Rgb(1.0f));

@@ -22,12 +22,16 @@ struct LightChanges {
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
   bool anything = false, materials = false;  ///< true if anything, or a material, has changed
-  bool divided = false;  ///< true if there are bright points, or were in the frame before
+  /// True if light is sampled explicitly, or some points were bright in the frame before. Where a lamp was close to a
+  /// surface in the frame before alone, all cells that saw the spot are marked.
+  bool divided = false;
 };
 /// Compares the points, the moving surfaces and the materials of `scene` with those that `kept` was gathered from.
-LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept);
+/// explicitly: records sample light explicitly in this frame (GatherOptions::bright).
+LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept, bool explicitly);
 
-/// True if the point is a bright point. The light that rays bring from a bright point depends on the rays' length, too.
+/// True if the point is a bright point, or marked as close to a lamp (PointLookup::note_lamp). The light that rays
+/// bring from a bright point depends on the rays' length, too.
 bool is_bright(const TemporalScene& scene, std::uint32_t point);
 /// Writes a Mark for each cell of a record. False if all cells are unmarked.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,

@@ -267,7 +267,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
     counts.deforming += gone[i] && !lost_place;
     counts.removed += lost_place;
   }
-  const LightChanges changes = light_changes(scene_, kept);
+  const LightChanges changes = light_changes(scene_, kept, gather_options_.bright != nullptr);
   if (changes.anything) {
     update_all(kept, changes, gone, counts);
     for (std::size_t i = 0; i < before; ++i) {

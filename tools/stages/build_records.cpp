@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "formats/error.h"
-#include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/camera_records.h"
 #include "lib/scene/static_scene.h"
@@ -80,25 +79,6 @@ GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer
   high_shares = std::move(divided.high_shares);
   return std::move(divided.whole);
 }
-
-/// Points as gather rays read them.
-struct PointsRead {
-  PointLookup lookup;
-  std::vector<LampPhoton> beside_lamps;
-  std::optional<BrightPoints> bright;  ///< if light is to be sampled explicitly; `gather` then names them
-
-  PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const GatherPoints& points,
-             std::vector<float> high_shares, GatherOptions& gather)
-      : lookup(points.points, points.spacing, point_clearance(tracer)),
-        beside_lamps(note_lamps_beside(tracer, lights, lookup)) {
-    if (beside_lamps.empty() && std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
-    bright.emplace(tracer, lights, lookup, std::move(high_shares),
-                   BrightOptions{.seed = gather.seed, .beside_lamps = beside_lamps});
-    tool.stats().count("bright_points", double(bright->spot_count()));
-    tool.stats().count("bright_sites", double(bright->site_count()));
-    gather.bright = &*bright;
-  }
-};
 
 /// Dynamic maps of a frame (its own comes first) as densities over the static scene.
 std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing,

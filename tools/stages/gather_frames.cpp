@@ -5,7 +5,6 @@
 
 #include "formats/base_file.h"
 #include "formats/error.h"
-#include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
 #include "lib/temporal/kept_files.h"
@@ -129,25 +128,20 @@ void gather_frame(Tool& tool, SceneInput& input, TemporalGatherOptions options, 
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
-  const PointLookup lookup(points.read.points, points.read.spacing, point_clearance(tracer));
+  GatherOptions rays = options.gather;
+  rays.seed = tool.common().seed_for_frame(number);
+  const PointsRead read(tool, tracer, lights, points.read, points.high_shares, rays);
   const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width,
                         options.height);
   const TemporalScene scene{tracer,
                             lights,
-                            lookup,
+                            read.lookup,
                             points.read.points,
                             points.anchored,
                             chain.before ? &*chain.before : nullptr,
                             points.high_shares,
                             points.high_hash,
                             [&](Vec3 place) { return eye_from(view, place); }};
-  GatherOptions rays = options.gather;
-  rays.seed = tool.common().seed_for_frame(number);
-  std::optional<BrightPoints> bright;
-  if (std::any_of(points.high_shares.begin(), points.high_shares.end(), [](float share) { return share > 0; })) {
-    bright.emplace(tracer, lights, lookup, points.high_shares, BrightOptions{.seed = rays.seed});
-    rays.bright = &*bright;
-  }
   const TemporalGather gather(scene, rays, options.placement, options.temporal, sample_unit(frame));
   const PixelView seen = [&](const Look& look) { return seen_through(tracer, view, look); };
   tool.stats().phase("records", true);

@@ -97,6 +97,18 @@ DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file,
   return divided;
 }
 
+PointsRead::PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const GatherPoints& points,
+                       std::vector<float> high_shares, GatherOptions& gather)
+    : lookup(points.points, points.spacing, point_clearance(tracer)),
+      beside_lamps(note_lamps_beside(tracer, lights, lookup)) {
+  if (beside_lamps.empty() && std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
+  bright.emplace(tracer, lights, lookup, std::move(high_shares),
+                 BrightOptions{.seed = gather.seed, .beside_lamps = beside_lamps});
+  tool.stats().count("bright_points", double(bright->spot_count()));
+  tool.stats().count("bright_sites", double(bright->site_count()));
+  gather.bright = &*bright;
+}
+
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
                                 const std::string& wanted) {
   formats::PhotonMap map = load_map(tool, file);

@@ -10,6 +10,7 @@
 
 #include "formats/irradcache/irradcache.h"
 #include "formats/photons/photons.h"
+#include "lib/gather/bright_points.h"
 #include "lib/gather/gather_points.h"
 #include "lib/gather/place_records.h"
 #include "lib/irradcache/records.h"
@@ -43,6 +44,17 @@ GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& 
 /// Reads the two parts of divided points as read_points; throws InputError if they are not the parts of one file.
 DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, const std::string& high,
                                         const SceneFrame& frame);
+/// Points as gather rays read them, with the light that records sample explicitly: that of lamps close to surfaces, and
+/// of points with a high share (photonmap-split). All arguments but high_shares must outlive this object.
+struct PointsRead {
+  PointLookup lookup;
+  std::vector<LampPhoton> beside_lamps;
+  std::optional<BrightPoints> bright;  ///< if light is to be sampled explicitly; `gather` then names them
+
+  PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const GatherPoints& points,
+             std::vector<float> high_shares, GatherOptions& gather);
+};
+
 /// Writes points that are valid for the frame, or for the given first to last frame; adds counts to stats.
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
                   std::optional<std::array<int, 2>> frames = {});

@@ -8,52 +8,17 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
+#include "tests/support/lamp_ceiling.h"
 #include "tests/support/places.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
 namespace {
 
+using test::Ceiling;
 using test::HandMadeScene;
 using test::matte;
 using test::place_at;
-
-constexpr float kReflectance = 0.5f, kSpacing = 0.5f;
-
-/// A ceiling of 40 m at height 1 m, with a point lamp of 1 W/sr at a distance d below it. Points lie half a metre apart
-/// around the place above the lamp, and none lies directly above the lamp.
-struct Ceiling {
-  HandMadeScene scene;
-  std::vector<IrradiancePoint> points;
-  double d;
-
-  explicit Ceiling(double distance) : d(distance) {
-    scene.add_quad({-20, 1, -20}, {20, 1, -20}, {20, 1, 20}, {-20, 1, 20}, matte(Rgb(kReflectance)));
-    scene.add_point_light({0, float(1 - d), 0}, Rgb(1.0f));
-    for (int i = -6; i < 6; ++i)
-      for (int j = -6; j < 6; ++j) {
-        IrradiancePoint point;
-        point.position = {(float(i) + 0.5f) * kSpacing, 1, (float(j) + 0.5f) * kSpacing};
-        point.normal = {0, -1, 0};
-        const double r2 = double(point.position.x * point.position.x + point.position.z * point.position.z);
-        point.direct = Rgb(float(d / std::pow(r2 + d * d, 1.5)));
-        points.push_back(point);
-      }
-  }
-  /// Irradiance at (x, 0, 0), normal up: the integral over the lamp's directions (phi from the ceiling's normal, psi),
-  /// with a flux of sin phi dphi dpsi each, of reflectance / pi cos cos / l^2.
-  double exact(double x) const {
-    constexpr int n = 400;
-    double sum = 0;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) {
-        const double phi = (i + 0.5) / n * M_PI / 2, psi = (j + 0.5) / n * 2 * M_PI, r = d * std::tan(phi);
-        const double dx = r * std::cos(psi) - x, dz = r * std::sin(psi), l2 = dx * dx + dz * dz + 1;
-        sum += std::sin(phi) * (M_PI / 2 / n) * (2 * M_PI / n) / (l2 * l2);
-      }
-    return double(kReflectance) / M_PI * sum;
-  }
-};
 
 /// All that gathering light of the ceiling needs.
 struct Gathering {
@@ -65,7 +30,7 @@ struct Gathering {
   BrightPoints bright{tracer, lights, lookup, {}, {.beside_lamps = photons}};
 
   explicit Gathering(Ceiling& ceiling)
-      : frame(ceiling.scene.frame()), lookup(ceiling.points, kSpacing, point_clearance(tracer)) {}
+      : frame(ceiling.scene.frame()), lookup(ceiling.points, Ceiling::kSpacing, point_clearance(tracer)) {}
   FinalGather gather(std::uint64_t seed) const {
     return FinalGather(tracer, lights, lookup, {.seed = seed, .rays = 500, .bright = &bright});
   }
@@ -79,15 +44,15 @@ TEST(LampLight, PhotonsBesideALamp) {
     const SceneFrame& frame = ceiling.scene.frame();
     const Tracer tracer(frame);
     const Lights lights(frame, build_emission_table({&frame, 1}));
-    PointLookup lookup(ceiling.points, kSpacing, point_clearance(tracer));
+    PointLookup lookup(ceiling.points, Ceiling::kSpacing, point_clearance(tracer));
     double flux = 0;
     for (const LampPhoton& photon : note_lamps_beside(tracer, lights, lookup)) {
       flux += double(photon.flux.g);
-      EXPECT_LT(photon.lamp_distance, kBesideLamp * kSpacing);
+      EXPECT_LT(photon.lamp_distance, kBesideLamp * Ceiling::kSpacing);
       ASSERT_NE(photon.point, kNone);
       EXPECT_FALSE(lookup.is_uniform(lookup.light(photon.point)));
     }
-    EXPECT_NEAR(flux / (2 * M_PI * (1 - d / (kBesideLamp * kSpacing))), 1, 2e-3) << d;
+    EXPECT_NEAR(flux / (2 * M_PI * (1 - d / (kBesideLamp * Ceiling::kSpacing))), 1, 2e-3) << d;
     const Vec3 far{2.75f, 1, 2.75f};
     EXPECT_FALSE(lookup.find(far, {0, -1, 0})->beside_lamp);
   }
@@ -95,8 +60,8 @@ TEST(LampLight, PhotonsBesideALamp) {
   const SceneFrame& frame = away.scene.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
-  EXPECT_TRUE(
-      photons_beside_lamps(tracer, lights, PointLookup(away.points, kSpacing, point_clearance(tracer))).empty());
+  EXPECT_TRUE(photons_beside_lamps(tracer, lights, PointLookup(away.points, Ceiling::kSpacing, point_clearance(tracer)))
+                  .empty());
 }
 
 /// A floor below the lamp, with 500 rays and 100 explicit samples: the mean of 60 gathers is within 1 % of the
