@@ -41,7 +41,10 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (map) way.error += rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);
   way.lacks = map ? 0 : rough.hidden;
-  if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
+  if (method == IndirectMethod::paths) {
+    way.error += left_of(rough.missed, samples);
+    way.unsure = rough.unsure;
+  }
   const double lost = (map ? 0 : effort.lost_caustic) + (records ? 0 : effort.lost_indirect);
   way.error += lost * lost;
   if (records) {
@@ -55,7 +58,8 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
 }
 
 void sort(std::vector<Way>& ways) {
-  std::ranges::stable_sort(ways, {}, [](const Way& way) { return std::pair(way.lacks > 0, way.score()); });
+  std::ranges::stable_sort(ways, {},
+                           [](const Way& way) { return std::pair(way.lacks > 0 || way.unsure > 0, way.score()); });
 }
 
 }  // namespace
@@ -86,6 +90,7 @@ std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
       same->pixel_error = std::min(same->pixel_error, way.pixel_error);
       same->measured &= way.measured;
       same->lacks = std::max(same->lacks, way.lacks);
+      same->unsure = std::max(same->unsure, way.unsure);
     }
   sort(all);
   return all;
@@ -101,10 +106,15 @@ std::string because(const std::vector<Way>& ways) {
                   least > 0 ? way.score() / least : 1.0);
     words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
   }
-  if (ways.back().lacks > 0) {
-    std::snprintf(text, sizeof text,
-                  "; without caustics of photons a frame lacks %.2g %% of its light: ", 100 * ways.back().lacks);
+  const auto most = [&](double Way::*share) { return std::ranges::max(ways, {}, share).*share; };
+  if (const double lacks = most(&Way::lacks); lacks > 0) {
+    std::snprintf(text, sizeof text, "; without caustics of photons a frame lacks %.2g %% of its light: ", 100 * lacks);
     words += text + std::string("what point, spot and sun lights send by mirrors and smooth glass");
+  }
+  if (const double unsure = most(&Way::unsure); unsure > 0) {
+    std::snprintf(text, sizeof text, "; paths meet %.2g %% of the light too seldom to know how much it is",
+                  100 * unsure);
+    words += text;
   }
   return words;
 }

@@ -33,12 +33,13 @@ struct Way {
   double pixel_error = 1;  ///< factor for the wish's pixel error, so that samples leave the error that all ways share
   bool measured = true;    ///< false: work and error are lower bounds
   double lacks = 0;        ///< share of the picture that the way surely never finds (hidden_share)
+  double unsure = 0;       ///< share of the picture that too few samples meet to tell it from none
   double score() const { return work * error; }
 };
 
-/// All ways, the best one first: of those that lack no light (Way::lacks) the one with the least work x squared error.
-/// Let a pixel take n samples, each of work c and variance V. Let the frame have M records of k rays; a ray costs the
-/// work g, and a record has the squared error e / k. P is the number of pixels. Then
+/// All ways, the best one first: of those that lack no light (Way::lacks, Way::unsure) the one with the least work x
+/// squared error. Let a pixel take n samples, each of work c and variance V. Let the frame have M records of k rays; a
+/// ray costs the work g, and a record has the squared error e / k. P is the number of pixels. Then
 ///
 ///     work = fixed + P c n + M g k,   error = E / G + e / k + B,   n = V / E
 ///

@@ -327,6 +327,23 @@ MissedLight missed_light(const SeenPhotons& photons, double found, double sample
   return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
 }
 
+/// The share of the picture that the samples' indirect light is, if it is above kAuditLimit and so few samples hold it
+/// that it differs from none by less than kSure standard errors; else 0. The samples then meet it in a few of all
+/// pixels, and their variances say nothing of the other pixels. For the error a sample counts at most as much as makes
+/// its pixel white: a lone bright one beside many does not make them doubtful. 0, too, if the samples of all `places`
+/// are fewer than kSure^2 for each part of the picture: so few would not suffice even if each of them met the light.
+double unsure_share(const Samples& samples, const Levels& levels, int places) {
+  if (kSamples * places < kSure * kSure * kColumns * kRows) return 0;
+  double sum = 0, seen = 0, squares = 0;
+  for (const auto& some : samples)
+    for (const Sample& sample : some) {
+      const double value = std::min(sample.indirect, kFirst * levels.white);
+      sum += sample.indirect, seen += value, squares += value * value;
+    }
+  const double share = levels.picture > 0 ? sum / (kSamples * double(samples.size()) * levels.picture) : 0;
+  return share > kAuditLimit && seen < kSure * std::sqrt(squares) ? share : 0;
+}
+
 /// Compares paths with photons: the light that paths miss, and the error that a map of caustic photons would have.
 void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
   const auto [caustics, indirect] = see_photons(picture.scene, picture.view, photons);
@@ -338,6 +355,7 @@ void compare(const Picture& picture, const PhotonView& photons, const Samples& p
   rough.missed_caustic =
       missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), samples, allowed2);
   rough.missed = missed_light(indirect, mean_of(paths, [](const Sample& s) { return s.indirect; }), samples, allowed2);
+  rough.unsure = unsure_share(paths, picture.levels, rough.places);
   rough.map_error = kMapError2 * caustics.square / allowed2;
   if (picture.options.without_extent && caustics.mean > kAuditLimit * level)
     rough.hidden = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);

@@ -68,6 +68,8 @@ struct RoughFrame {
   MissedLight missed, missed_caustic;  ///< of layers indirect and caustic
   double map_error = 0;                ///< squared error of the caustic light that a density of photons estimates
   double hidden = 0;                   ///< share of the picture that surely no path finds (hidden_share)
+  /// Share of the picture that is indirect light which too few samples of paths meet to tell it from none; else 0
+  double unsure = 0;
   double photons_per_path = 0;
   std::uint64_t paths_of_light = 0;  ///< light paths of the photon map; more if few of them leave photons
 };

@@ -156,6 +156,18 @@ TEST(WaysToLight, ThatSurelyLackLightComeLast) {
   EXPECT_TRUE(joined({ways_to_light(example(), kOrder, true), ways}).front().map);
 }
 
+/// Paths that know indirect light from lone samples alone come after ways that read points, however low their score.
+TEST(WaysToLight, PathsThatSeldomMeetTheLightComeLast) {
+  RoughFrame rough = example();
+  const Order small{1e4, 0, 500, false};
+  ASSERT_EQ(ways_to_light(rough, small, true).front().method, IndirectMethod::paths);
+  rough.unsure = 0.3;
+  const std::vector<Way> ways = ways_to_light(rough, small, true);
+  for (std::size_t i = 0; i < ways.size(); ++i) EXPECT_EQ(ways[i].method == IndirectMethod::paths, i >= 4);
+  EXPECT_NE(because(ways).find("paths meet 30 % of the light too seldom"), std::string::npos) << because(ways);
+  EXPECT_NE(joined({ways_to_light(example(), small, true), ways}).front().method, IndirectMethod::paths);
+}
+
 /// If only photons find a part of the light, paths miss it and records win, although the light that paths found does
 /// not require records.
 TEST(WaysToLight, RecordsFindWhatPathsMiss) {

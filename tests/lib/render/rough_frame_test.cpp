@@ -47,6 +47,7 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_EQ(rough.map_error, 0) << "nothing is caustic";
   EXPECT_EQ(rough.missed_caustic.square, 0);
   EXPECT_LT(rough.path.lost_indirect, 0.016) << "less than the wish's error";
+  EXPECT_EQ(rough.unsure, 0);
 }
 
 /// A lamp of 30 cm above a black board shines at the ceiling from 3 cm. Nearly all light of the room comes from the
@@ -63,6 +64,33 @@ TEST(RoughFrame, OneSampleInHundredsMeetsTheLight) {
   const RoughFrame rough = rough_of(scene.frame());
   EXPECT_LT(rough.samples, 60);
   EXPECT_GT(rough.path.lost_indirect, 0.5);
+}
+
+/// A dark room with a hole of 10 cm in its right wall, behind which a lamp on the wall lights a board. A path meets the
+/// hole with a chance of about A / (8 pi) = 1 in 2500, so a few of 8192 samples find all light there is. With a hole
+/// of 1 m hundreds do.
+TEST(RoughFrame, AFewSamplesThatFindAllLightAreNoMeasurement) {
+  for (const float half : {0.05f, 0.5f}) {
+    test::HandMadeScene scene;
+    const Material wall = test::matte(Rgb(0.5f));
+    const float a = 2 - half, b = 2 + half;
+    const auto across = [&](float x, float y0, float y1, float z0, float z1, const Material& material) {
+      scene.add_quad({x, y0, z0}, {x, y0, z1}, {x, y1, z1}, {x, y1, z0}, material);
+    };
+    scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 0, 4}, {0, 0, 4}, wall);
+    scene.add_quad({0, 4, 0}, {4, 4, 0}, {4, 4, 4}, {0, 4, 4}, wall);
+    scene.add_quad({0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, wall);
+    scene.add_quad({0, 0, 4}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}, wall);
+    across(0, 0, 4, 0, 4, wall);
+    across(4, 0, a, 0, 4, wall);
+    across(4, b, 4, 0, 4, wall);
+    across(4, a, b, 0, a, wall);
+    across(4, a, b, b, 4, wall);
+    across(5, 0, 4, 0, 4, wall);
+    across(4.05f, 3, 3.5f, 1.5f, 2.5f, test::matte(Rgb(0.0f), Rgb(50.0f)));
+    const float unsure = float(rough_of(scene.frame()).unsure);
+    EXPECT_EQ(unsure > 0.9f, half < 0.1f) << half << " m: " << unsure;
+  }
 }
 
 /// The measurement ends when the answer is known. Paths are still measured, and the reported work and error of the
