@@ -159,7 +159,7 @@ TEST(WaysToLight, ThatSurelyLackLightComeLast) {
 /// Paths that know indirect light from lone samples alone come after ways that read points, however low their score.
 TEST(WaysToLight, PathsThatSeldomMeetTheLightComeLast) {
   RoughFrame rough = example();
-  const Order small{1e4, 0, 500, false};
+  const Order small{1e4, 0, false};
   ASSERT_EQ(ways_to_light(rough, small, true).front().method, IndirectMethod::paths);
   rough.unsure = 0.3;
   const std::vector<Way> ways = ways_to_light(rough, small, true);
