@@ -41,7 +41,6 @@ struct View {
   }
   /// Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
-
 };
 
 /// Barycentric coordinates (b1, b2) where the ray along w meets the triangle's plane, clamped to the triangle.

@@ -11,7 +11,7 @@ namespace tempolux::tools {
 
 struct SplitOptions {
   std::string input, low, high;
-  std::optional<double> cell;  ///< edge, m; empty: automatic
+  std::optional<double> cell;   ///< edge, m; empty: automatic
   double limit = kBrightLimit;  ///< a cell keeps at most this multiple of the mean irradiance in the low part
 };
 
