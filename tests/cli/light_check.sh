@@ -82,6 +82,21 @@ done
 grep -qx 'no bias, as camera paths find all light' ground.said && grep -q '"audit.unbiased": 1' ground.json || bad 'a frame by paths does not say that it has no bias'
 grep -q '"name": "audit"' ground.json && bad 'paths were audited by paths'
 grep -q '"audit.direct"' lit.json && ! grep -q 'no bias' lit.said || bad 'a frame with a lamp is not audited'
+# Layer indirect has half of the light. Layer caustic has .01 %: its ninefold bias is below .1 % of the picture.
+"${PYTHON:-python3}" - <<'END' || bad 'audited.exr'
+import os, sys
+sys.path.insert(0, os.path.join(os.environ["HERE"], "..", "stress"))
+import exr
+def save(name, **of):
+    numbers = {f"tempolux:audit.{layer}{part}": value for layer, values in of.items()
+               for part, value in zip(("", "_error", ".of_layer", ".of_layer_error"), values)}
+    exr.write(name, 1, 1, {"R": [1.0]}, numbers=numbers)
+faint = (.0009, .0004, 9, 4)
+save("both.exr", caustic=faint, indirect=(.005, .001, .01, .002))
+save("faint.exr", caustic=faint)
+END
+tempolux-info --account both.exr | grep -qxF 'audit: indirect light +1.0 +- 0.2 %' || bad 'faint light is named in the account'
+tempolux-info --account faint.exr | grep -qxF 'audit: indirect and caustic light are below 2 % of the picture' || bad 'account of faint light'
 expect 0 '--seen-error 0.01: .* codes are left' frame-render "$matte" --size 16x9 --spp 2 --seen-error .01 -o made.exr
 tiny="--size 16x9 --rays 8" point="--point-count 200" frame="--size 16x9 --spp 2 --pixel-error 0"
 for kinds in direct indirect caustic caustic,indirect; do

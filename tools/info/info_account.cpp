@@ -26,6 +26,8 @@ struct Sum {
   double mean() const { return share / frames; }
   double error() const { return std::sqrt(share_square) / frames; }
   bool biased() const { return std::abs(mean()) > kLimit && std::abs(mean()) > kErrors * error(); }
+  /// The layer's audited light, as a share of the picture, is below the limit: whatever the layer errs by is not seen.
+  bool faint() const { return std::abs(share) < kLimit * std::abs(of_layer); }
 };
 
 /// A percentage with as many decimals as the error needs to show its first digit.
@@ -74,10 +76,12 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     unbiased += number(image, "audit.unbiased") != nullptr;
   }
   FramesAccount account;
+  bool audited = false;
   if (unbiased == files.size()) account.line = "no bias, as camera paths find all light";
   for (std::size_t l = 0; l < kLayers.size(); ++l) {
     const Sum& sum = sums[l];
-    if (sum.frames == 0) continue;
+    audited |= sum.frames > 0;
+    if (sum.frames == 0 || (sum.faint() && !sum.biased())) continue;
     std::string text = std::string(kLayers[l]) + " light " +
                        percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames);
     if (sum.biased() && !sum.worst_name.empty())
@@ -88,6 +92,7 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
                                  " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
                                  "INDIRECT=paths mend it");
   }
+  if (audited && account.line.empty()) account.line = "audit: indirect and caustic light are below 2 % of the picture";
   return account;
 }
 
