@@ -131,7 +131,7 @@ Joined join(const std::vector<Sample>& samples, float edge) {
     for (int c = 0; c < 3; ++c)
       key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
     const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
-    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.group, 0});
+    if (is_new) joined.cubes.push_back({Vec3{0, 0, 0}, Vec3{0, 0, 0}, Rgbd{0.0}, 0, 0, s.group, 0});
     joined.of.push_back(found->second);
     Sample& cube = joined.cubes[found->second];
     cube.position = cube.position + s.position * s.area;

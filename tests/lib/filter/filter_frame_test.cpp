@@ -294,7 +294,8 @@ TEST(Filter, StrangePixelsAreLeftOutAndFilled) {
 /// Tiles are invisible: pictures of four and of three tiles equal the picture filtered in one piece, up to the rounding
 /// of sums.
 TEST(Filter, TilesAreNotSeen) {
-  for (const auto& [width, height] : {std::pair{700, 370}, std::pair{40, 760}}) {
+  for (const auto& size : {std::pair{700, 370}, std::pair{40, 760}}) {
+    const int width = size.first, height = size.second;
     Image frame = wall(width, height);
     Noise noise(0.2f);
     std::vector<float> halves;
