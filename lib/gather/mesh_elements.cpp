@@ -194,10 +194,10 @@ void put_right(const std::vector<Sample>& samples, const std::vector<formats::Me
         irradiance[i][c] *= before[c] / after[c];
 }
 
-/// Share of a band that is kept: signal / (signal + noise) [Wiener]. A band is the difference of the light after the
-/// Gaussians of deviations s and 2 s. `mean_square`: that of the band. `variance`: the variance v of the light after
-/// the Gaussian s. White noise after the Gaussians s and t has the covariance q / (2 pi (s^2 + t^2)), so the
-/// variance of the band is v (1 + 1/4 - 2 x 2/5) = .45 v.
+/// Share of a band that is kept: signal / (signal + noise) [Wiener]. A band is light filtered by a Gaussian of
+/// deviation s minus light filtered by a Gaussian of deviation 2 s. `mean_square`: the band's mean square. `variance`:
+/// the variance v of the light filtered with s. White noise of density q, filtered once with s and once with t, has the
+/// covariance q / (2 pi (s^2 + t^2)). With t = s this is v, so the noise in the band is v (1 + 1/4 - 2 x 2/5) = .45 v.
 double kept_share(double mean_square, double variance) {
   return mean_square > 0 ? std::max(0.0, 1 - 0.45 * variance / mean_square) : 0;
 }

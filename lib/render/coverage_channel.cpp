@@ -13,7 +13,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4, kOther = 9;
-constexpr std::size_t kSearch = 8;                         // rays of each pixel that search for what no centre sees
+constexpr std::size_t kSearch = 8;  // rays per pixel that search for surfaces which no pixel centre sees
 constexpr std::uint64_t kPattern = 0x636f766572616765ull;  // one pattern of rays for all pixels and frames
 
 /// What a ray meets first.

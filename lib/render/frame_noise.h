@@ -22,7 +22,9 @@ struct Noise {
 
 struct FrameNoise {
   Noise image;
-  double stored_codes = 0;               ///< part of image.codes: noise of records and photons, equal in all samples
+  /// The part of image.codes that comes from noise of records and photons. All samples read the same records and
+  /// photons, so further samples do not reduce this part.
+  double stored_codes = 0;
   std::array<Noise, kLayerCount> layer;  ///< noise of each layer alone, at the exposure of the whole picture
   double exposure = 0;                   ///< factor that brings the median of the pixels' mean channels to .18
   std::size_t pixels = 0;                ///< number of pixels that were rendered twice

@@ -140,7 +140,7 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   const Vec3 wi = x.frame.to_world(next.wi);
   if (next.transmitted ? !x.sees_behind(wi) : !x.sees(wi)) return false;
   state.throughput *= next.weight * (1 / times);
-  if (next.straight) {  // light samples of the last vertex pass the pane, too, so MIS ignores the pane
+  if (next.straight) {  // MIS keeps the densities of the last vertex, whose light samples pass panes as well
     state.path.pass_straight();
     if (!survives(state, kLargestSurvival)) return false;
     go_on(spawn_ray(x.surface, state.ray.direction), state);

@@ -31,8 +31,8 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
 /// Follows `looks` camera rays, stratified over the picture. Same places for any number of threads.
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed);
 
-/// The scene's lights with a SkyGuide. The guide learns from places that the camera sees, and from places that these
-/// places see by one cosine-distributed ray.
+/// The scene's lights with a SkyGuide. The guide learns at two sets of places: where camera rays end, and where one
+/// cosine-distributed ray from each of these places ends.
 Lights guided_lights(const RenderScene& scene, const CameraView& view);
 
 }  // namespace tempolux

@@ -30,8 +30,8 @@ struct LightChanges {
 /// explicitly: records sample light explicitly in this frame (GatherOptions::bright).
 LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept, bool explicitly);
 
-/// True if the point is a bright point, or marked as close to a lamp (PointLookup::note_lamp). The light that rays
-/// bring from a bright point depends on the rays' length, too.
+/// True if photonmap-split gave the point a high part, or PointLookup::note_lamp found a lamp close to the point.
+/// Gather rays bring only a part of the point's light, and this part depends on the length of the ray.
 bool is_bright(const TemporalScene& scene, std::uint32_t point);
 /// Writes a Mark for each cell of a record. False if all cells are unmarked.
 bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const GatherDirections& directions,

@@ -25,6 +25,17 @@ struct Cornell {
         lights(frame, build_emission_table(scene, segment, time)),
         view(frame.camera(scene.camera_node("auto")), frame.origin, width, height) {}
   RenderScene render_scene() const { return {tracer, lights}; }
+  /// A record of 2 W/m^2 at the place that a raster position shows. Throws if the position shows no surface.
+  IrradianceRecord record_at(Vec2 raster, float radius, Rgb noise) const {
+    const SeenPoint seen = seen_through(tracer, view, {raster.x, raster.y, {}}).value();
+    IrradianceRecord record;
+    record.position = seen.surface.position;
+    record.normal = seen.normal;
+    record.irradiance = Rgb(2.0f);
+    record.noise = noise;
+    record.radius = record.radius_unclamped = radius;
+    return record;
+  }
 };
 
 /// A camera at z = 1 above the origin, looking down. 64 x 36 pixels of 1/32 m; the origin is in the middle of the

@@ -132,16 +132,8 @@ TEST(FrameNoise, SeenErrorIsReachedOrNot) {
 /// read the record. Samples stop when their own noise is half of what is requested, long before the limit.
 TEST(FrameNoise, SamplesStopWhereRecordsHaveTheNoise) {
   const Cornell c;
-  const std::optional<SeenPoint> seen = seen_through(c.tracer, c.view, {32, 30, {}});
-  ASSERT_TRUE(seen);
-  IrradianceRecord record;
-  record.position = seen->surface.position;
-  record.normal = seen->normal;
-  record.irradiance = Rgb(2.0f);
-  record.noise = {1.0f, 1, 1};
-  record.radius = record.radius_unclamped = 2;
   RecordStore store({.least_cosine = 0});
-  ASSERT_TRUE(store.add(record));
+  ASSERT_TRUE(store.add(c.record_at({32, 30}, 2, Rgb(1.0f))));
   KnownLight known;
   known.records = &store;
   FrameOptions options;

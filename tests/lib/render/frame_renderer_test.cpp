@@ -167,14 +167,7 @@ TEST(FrameRenderer, ABaseWithoutNoiseIsKnown) {
 /// gives frames the same noise.
 TEST(FrameRenderer, NoiseOfLocalisedRecordsIsThatOfPlainOnes) {
   const Cornell c;
-  const std::optional<SeenPoint> seen = seen_through(c.tracer, c.view, {32, 18, {}});
-  ASSERT_TRUE(seen);
-  IrradianceRecord record;
-  record.position = seen->surface.position;
-  record.normal = seen->normal;
-  record.irradiance = Rgb(2.0f);
-  record.noise = {0.5f, -1, 0.25f};
-  record.radius = record.radius_unclamped = 0.2f;
+  const IrradianceRecord record = c.record_at({32, 18}, 0.2f, {0.5f, -1, 0.25f});
   RecordStore store({.least_cosine = 0});
   ASSERT_TRUE(store.add(record));
   const std::vector<RecordChange> changes{{record.irradiance, 0}};
