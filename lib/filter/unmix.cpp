@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kRadius = 6;              ///< pixels
 constexpr std::size_t kMostLayers = 3;  ///< of a group
-/// Weight of a first estimate without a fit, as of a pixel in which one ray sees the surface. The estimate holds the
-/// light of other surfaces, too, and is only for parts so small that nothing else tells their light.
+/// Weight of a first estimate without a fit: that of a pixel in which one ray sees the surface. The estimate also holds
+/// the light of other surfaces, so it only counts for surfaces of which pixels see no more than this.
 constexpr double kFirstEstimate = 1.0 / (Coverage::kRays * Coverage::kRays);
 
 class Unmixing {
