@@ -32,8 +32,8 @@ struct RecordChange {
 
 /// Computes E_t of each record from the first of `maps`, and its influence as the largest over all maps. The maps are
 /// the frame's own and those of frames before, so the region of influence grows at once and shrinks over several
-/// frames. The disc is kWider times as wide as that of the irradiance point closest to the record, which k static
-/// photons fill.
+/// frames. A change is estimated over a disc. Its radius is kWider times the radius of the closest irradiance point,
+/// whose disc holds k static photons.
 std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
                                          const PointLookup& points, std::uint64_t seed);
 

@@ -47,7 +47,7 @@ struct Smoothed {
   std::vector<double> variance;  ///< (W/m^2)^2
 };
 
-/// Samples by group and by cubes of space that are as wide as the filter.
+/// Finds samples by group and place, in cubes that are as wide as the filter.
 class Neighbours {
  public:
   Neighbours(const std::vector<Sample>& samples, float reach) : per_m_(1 / reach) {

@@ -25,7 +25,7 @@ void set_object_names(Image& image, const std::set<std::uint32_t>& ids, const st
 /// What set_object_names() wrote. Lines of another form are left out: the attribute may be another program's.
 ObjectNames object_names_in(const Image& image);
 
-/// `Sofa` as "Sofa", or object 17 if there is no name.
+/// The object's name in quotes, as "Sofa" for messages; `object 17` if id 17 has no name.
 std::string object_in_words(std::uint32_t id, const ObjectNames& names);
 
 }  // namespace tempolux

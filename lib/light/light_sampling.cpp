@@ -137,7 +137,7 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
            is_finite(sample.facing_irradiance);
   const TriangleLight& t = triangles_[slot];
   if (joint) {
-    // A float has 24 bits: where choosing has used them up, bits of the other coordinate replace them.
+    // The float u.x had 24 random bits. The choice of the slot used some of them; bits made from u.y fill their places.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
     u.x = to_float(std::min(left + fill * step, 1.0));
   }

@@ -86,7 +86,7 @@ void need_pilots(const std::string& path, const PreviousMap& previous, UpdateStr
 
 }  // namespace
 
-/// Groups whose blocks an overlay holds itself.
+/// Groups whose photons the overlay file at `path` stores; the photons of other groups are in its base file.
 std::set<std::uint32_t> own_groups(const std::string& path) {
   formats::photons::FileReader reader(path);
   std::set<std::uint32_t> groups;

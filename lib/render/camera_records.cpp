@@ -60,8 +60,8 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const InfluenceField field(cache.standing, cache.changes, input.influence);
   const MovingObjects moving(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
-  // E_y is blended with the share f, so its squared error counts by f^2. With f times the rays this error is 1 / f
-  // times as large. In the picture it is f times, so at most once, the error of a record with all rays.
+  // The picture holds f E_y, so it holds f^2 times the squared error of E_y. A record with f times the rays has 1 / f
+  // times the squared error. The product, f times the error of a record with all rays, is never above that error.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
     const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
     IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);

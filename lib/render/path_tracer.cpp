@@ -30,11 +30,12 @@ struct PathState {
   LastScatter last;             ///< the last vertex and its pdf, for MIS
   std::uint32_t bounce = 0;     ///< number of events
   bool forked = false;          ///< both lobes of a surface have been followed: the path forks once
-  bool matte = false;           ///< there was an event D; the fields below describe what happened since the last one
-  bool caustic_known = false;   ///< light that arrives there by events S was added
-  bool indirect_known = false;  ///< light that arrives there by events D was added
-  bool specular = false;        ///< the path has had events S since
-  /// Bright points were sampled explicitly there: a Lambert lobe that the path meets contributes only the rest.
+  bool matte = false;           ///< there was an event D; the fields below concern the last one
+  bool caustic_known = false;   ///< the light that arrives at its place by events S was added
+  bool indirect_known = false;  ///< the light that arrives at its place by events D was added
+  bool specular = false;        ///< events S followed
+  /// At the last event D the bright points were sampled explicitly, so the next Lambert lobe contributes only the
+  /// remaining light.
   bool bright_sampled = false;
   /// m: a ray from a Lambert lobe would have spread as far after this distance. Equal to the path's length since the
   /// last event D; 0 if the path has met only smooth mirrors and glass.

@@ -52,8 +52,8 @@ struct RoughFrame {
   bool gathered = false, recorded = false;  ///< are gathering and records measured?
   int places = 0;                           ///< number of visible places with a Lambert lobe
   double radiance = 0;                      ///< mean of the picture by paths [W/m^2/sr]
-  /// wanted: mean squared error that the wish allows for all light but layer indirect, at least pixel_error^2.
-  /// wanted_of: the variance of a sample of that light.
+  /// All light but layer indirect. wanted: the mean squared error that the wish allows, at least pixel_error^2.
+  /// wanted_of: the variance of one sample.
   double wanted = 0, wanted_of = 0;
   double samples = 0;  ///< mean number of samples per pixel
   SampleEffort path;   ///< whole paths

@@ -57,7 +57,7 @@ class TangentGroups {
     measure();
     join_edges();
     for (Corner c = 0; c < group_.size(); ++c)
-      if (speaks_[c / 3] && group_[c] == kNone) grow(c);
+      if (has_tangent_[c / 3] && group_[c] == kNone) grow(c);
     lend();
   }
 
@@ -81,7 +81,7 @@ class TangentGroups {
   const Primitive& primitive_;
   const Texture& normal_map_;
   std::vector<std::uint32_t> joined_;  // by vertex: the first vertex that is equal
-  std::vector<bool> speaks_;           // by triangle: true if the triangle has area and its coordinates have area
+  std::vector<bool> has_tangent_;      // by triangle: true if the triangle has area and its coordinates have area
   // One entry per triangle. +1: u and v have the orientation of the corners. -1: they have the opposite one. 0:
   // unknown.
   std::vector<std::int8_t> turns_;
@@ -105,7 +105,7 @@ void TangentGroups::measure() {
     const bool collapsed = p[c[0]] == p[c[1]] || p[c[1]] == p[c[2]] || p[c[2]] == p[c[0]];
     const double area = collapsed ? 0 : Gradient(coordinates(t)).area;
     turns_.push_back(area > 0 ? 1 : area < 0 ? -1 : 0);
-    speaks_.push_back(area != 0);
+    has_tangent_.push_back(area != 0);
   }
 }
 
@@ -169,7 +169,7 @@ void TangentGroups::lend() {
 std::vector<Vec3> TangentGroups::tangents(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const {
   std::vector<Vec3d> sums(count(), Vec3d{});
   for (std::size_t t = 0; t < primitive_.triangles.size(); ++t) {
-    if (!speaks_[t]) continue;
+    if (!has_tangent_[t]) continue;
     const auto& corners = primitive_.triangles[t];
     const Vec3d p[] = {Vec3d(positions[corners[0]]), Vec3d(positions[corners[1]]), Vec3d(positions[corners[2]])};
     const Vec3d along_u = Gradient(coordinates(t)).along_u(p[1] - p[0], p[2] - p[0]);

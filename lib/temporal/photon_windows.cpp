@@ -117,8 +117,8 @@ class Grower {
     if ((old + added).equal_photons() * p < kPhotonsInBlock) return false;
     return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
   }
-  /// True if joining the frames would shift the region's mean by more than the noise that the kernel's mean would
-  /// lose.
+  /// True if the frames must not join: they would shift the mean of the region by more than the noise that they take
+  /// from the mean of the kernel.
   bool matters(const HitSeries& s, const Window& w, const Added& a, const HitBlock& kernel) const {
     const double old_frames = w.before + 1 + w.after, frames = old_frames + a.frames();
     const HitBlock all = all_of(s, w, a);

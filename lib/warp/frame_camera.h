@@ -31,7 +31,7 @@ class FrameCamera {
   int height() const { return height_; }
   const Affine& camera_from_world() const { return camera_from_world_; }
   const Affine& world_from_camera() const { return world_from_camera_; }
-  /// World space. For an orthographic camera, some point of the plane from which depth is counted.
+  /// Position of the camera in world space. For an orthographic camera, a point of the plane whose depth is 0.
   Vec3d eye() const { return world_from_camera_.translation; }
 
   /// Position of a point (camera space). Nothing if the point is not in front of a perspective camera.

@@ -117,7 +117,7 @@ void write_samples(const std::string& folder, Planner& planner, const Wish& wish
       json[kSamples[i]][file.stage].push_back(names);
     }
   }
-  // With --rays among the wish's words the samples have as many as the whole.
+  // If the wish sets --rays, the records of a sample have as many rays as those of the whole run.
   const double rays = has_word(wish.records, "--rays") ? 1 : kFewerRays;
   for (const auto& [stage, runs] : runs_by_stage(whole, 1 / (large * large), rays))
     json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
