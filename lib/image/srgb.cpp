@@ -63,4 +63,11 @@ double exposure_of(std::vector<double> means) {
   return means.empty() ? 1 : 0.18 / median();
 }
 
+double mean_to_white(const std::vector<double>& means) {
+  const double white = 1 / exposure_of(means);
+  double sum = 0;
+  for (const double mean : means) sum += std::min(mean, white);
+  return means.empty() ? 0 : sum / double(means.size());
+}
+
 }  // namespace tempolux

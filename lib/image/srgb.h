@@ -17,4 +17,8 @@ double srgb_code(double value);
 /// are 0, the median of the others is used. 1 for a black picture.
 double exposure_of(std::vector<double> means);
 
+/// Mean of `means`, of which each counts at most as much as white at their exposure_of(): a lamp in view is one white
+/// spot, however bright it is. 0 without elements.
+double mean_to_white(const std::vector<double>& means);
+
 }  // namespace tempolux

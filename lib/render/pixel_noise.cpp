@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lib/image/srgb.h"
 #include "lib/render/pixels_around.h"
 
 namespace tempolux {
@@ -149,13 +150,11 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
 }
 
 void PixelNoise::all_noted() {
-  double all = 0, n = 0;
+  std::vector<double> means;
   for (int y = lattice_ / 2; y < view_.height(); y += lattice_)
-    for (int x = lattice_ / 2; x < view_.width(); x += lattice_) {
-      all += pixels_[std::size_t(y) * std::size_t(view_.width()) + std::size_t(x)].mean;
-      ++n;
-    }
-  picture_ = all / std::max(1.0, n);
+    for (int x = lattice_ / 2; x < view_.width(); x += lattice_)
+      means.push_back(pixels_[std::size_t(y) * std::size_t(view_.width()) + std::size_t(x)].mean);
+  picture_ = mean_to_white(means);
 }
 
 }  // namespace tempolux

@@ -75,7 +75,7 @@ class PixelNoise {
   const FrameOptions& options_;
   PartCounts first_;
   int first_half_;      ///< number of samples in the first half of the first samples
-  double picture_ = 0;  ///< mean of the first samples over the pixels of a lattice
+  double picture_ = 0;  ///< mean_to_white() of the first samples of the pixels of a lattice
   int lattice_;         ///< spacing of that lattice in pixels
   std::vector<std::uint8_t> looked_at_;
   ParallelArray<Pixel> pixels_;

@@ -39,9 +39,9 @@ constexpr double kSure = 3;  ///< standard errors
 constexpr double kMapError2 =
     1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
 
-/// Light of one sample [W/m^2/sr], mean of the channels.
+/// Light of one sample [W/m^2/sr], mean of the channels. `other` includes `seen`, the layers emission and specular.
 struct Sample {
-  double other = 0, caustic = 0, indirect = 0;
+  double other = 0, caustic = 0, indirect = 0, seen = 0;
   double sum() const { return other + caustic + indirect; }
 };
 using Samples = std::vector<std::array<Sample, kSamples>>;  ///< by place
@@ -53,6 +53,7 @@ Sample sample_of(const Layers& layers) {
     (Layer(l) == Layer::caustic    ? sample.caustic
      : Layer(l) == Layer::indirect ? sample.indirect
                                    : sample.other) += value;
+    if (Layer(l) == Layer::emission || Layer(l) == Layer::specular) sample.seen += value;
   }
   return sample;
 }
@@ -106,20 +107,29 @@ double mean_of(const Samples& samples, const std::function<double(const Sample&)
 /// Radiance in the parts of the picture, from which the allowed errors follow.
 struct Levels {
   std::vector<std::size_t> part;  ///< part of each place
-  std::vector<double> allowed;    ///< by part: the allowed error at pixel error 1
-  double picture = 0, white = 0;
+  /// Mean of the picture. A lamp that a place sees, also in mirrors and through glass, counts at most as much as white:
+  /// a flame in a lantern is a thousand times as bright as the walls that it lights. The picture is at least as bright
+  /// as photons show: paths may find none of the light.
+  double picture = 0;
+  double white = 0;
+  std::vector<double> allowed;  ///< by part: the allowed error at pixel error 1
 
-  Levels(const Samples& samples, const CameraView& view, std::uint64_t seed) : allowed(kColumns * kRows) {
+  Levels(const Samples& samples, const SeenLight& photons, const CameraView& view, std::uint64_t seed)
+      : picture(photons.caustic.mean + photons.indirect.mean), allowed(kColumns * kRows) {
     std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       part.push_back(where(int(i), view, seed).part);
       for (const Sample& sample : samples[i]) sum[part.back()] += sample.sum(), ++count[part.back()];
     }
-    picture = mean_of(samples, [](const Sample& s) { return s.sum(); });
-    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : picture;
+    const double mean = mean_of(samples, [](const Sample& s) { return s.sum(); });
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : mean;
+    std::vector<double> sorted = sum;
+    std::ranges::nth_element(sorted, sorted.begin() + std::ptrdiff_t(sorted.size() / 2));
+    picture = std::max(picture, mean_of(samples, [](const Sample& s) { return s.caustic + s.indirect; })) +
+              mean_of(samples, [](const Sample& s) { return s.other - s.seen; });
+    white = std::max(sorted[sorted.size() / 2], 0.1 * (picture > 0 ? picture : mean)) / 0.18;
+    picture += mean_of(samples, [&](const Sample& s) { return std::min(s.seen, white); });
     for (std::size_t p = 0; p < sum.size(); ++p) allowed[p] = allowed_error(sum[p], picture, 1);
-    std::ranges::nth_element(sum, sum.begin() + std::ptrdiff_t(sum.size() / 2));
-    white = std::max(sum[sum.size() / 2], 0.1 * picture) / 0.18;
   }
 };
 
@@ -345,11 +355,9 @@ double unsure_share(const Samples& samples, const Levels& levels, int places) {
 }
 
 /// Compares paths with photons: the light that paths miss, and the error that a map of caustic photons would have.
-void compare(const Picture& picture, const PhotonView& photons, const Samples& paths, RoughFrame& rough) {
-  const auto [caustics, indirect] = see_photons(picture.scene, picture.view, photons);
-  // If paths find no light at all, the picture is as bright as photons show.
-  const double level = picture.levels.picture > 0 ? picture.levels.picture : caustics.mean + indirect.mean,
-               allowed2 = level * level;
+void compare(const Picture& picture, const SeenLight& photons, const Samples& paths, RoughFrame& rough) {
+  const auto& [caustics, indirect] = photons;
+  const double level = picture.levels.picture, allowed2 = level * level;
   if (!(allowed2 > 0)) return;
   const double samples = kSamples * double(paths.size());
   rough.missed_caustic =
@@ -393,20 +401,22 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   rough.paths_of_light = options.photons;
   const SeenPlaces seen = places_seen(scene, view, options.places, options.seed ^ 0x70696c6f74ull);
   rough.places = int(std::ranges::count_if(seen.places, &SeenPlace::exists));
+  formats::PhotonBlock photons;
+  if (rough.places > 0) {
+    photons = pilot_photons(scene.tracer, aimed, options.kinds, kPaths, options.seed ^ 0x61727269766564ull);
+    rough.photons_per_path = double(photons.photons.size()) / kPaths;
+    if (scene.lights.has_distant()) rough.paths_of_light = photon_paths(rough.photons_per_path, options.photons);
+  }
+  const SeenLight shown = see_photons(scene, view, photons);
   RayCounts counts;
   const Samples paths = take_samples(scene, view, nullptr, options, counts);
-  const Picture picture{scene, view, options, Levels(paths, view, options.seed)};
-  rough.radiance = picture.levels.picture;
+  const Picture picture{scene, view, options, Levels(paths, shown, view, options.seed)};
+  rough.radiance = mean_of(paths, [](const Sample& s) { return s.sum(); });
   ask(paths, picture.levels, options.pixel_error, rough);
   rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts, paths));
   rough.wanted_of = std::max(rough.path.other, kFirst * options.pixel_error * options.pixel_error);
   if (rough.places == 0) return rough;
-
-  formats::PhotonBlock photons =
-      pilot_photons(scene.tracer, aimed, options.kinds, kPaths, options.seed ^ 0x61727269766564ull);
-  rough.photons_per_path = double(photons.photons.size()) / kPaths;
-  if (scene.lights.has_distant()) rough.paths_of_light = photon_paths(rough.photons_per_path, options.photons);
-  compare(picture, photons, paths, rough);
+  compare(picture, shown, paths, rough);
   bound_by_paths(options, rough);
   const auto enough = [&] { return options.enough && options.enough(rough); };
   if (enough()) return rough;

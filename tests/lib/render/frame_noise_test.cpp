@@ -35,6 +35,13 @@ TEST(FrameNoise, ExposureIsByTheMedian) {
   EXPECT_EQ(exposure_of(std::vector<Layers>(4), {}), 1);
 }
 
+/// The median 2 goes to .18, so white is 2 / .18 = 11.1, and the lamp of 1000 counts as 11.1: (1 + 2 + 11.1) / 3.
+TEST(FrameNoise, ALampInViewCountsAsWhite) {
+  EXPECT_NEAR(mean_to_white({1, 1000, 2}), (1 + 2 + 2 / 0.18) / 3, 1e-9);
+  EXPECT_NEAR(mean_to_white({1, 4, 2}), 7.0 / 3, 1e-9);
+  EXPECT_EQ(mean_to_white({}), 0);
+}
+
 /// Samples without noise that read records whose noise is .02 in layer indirect: the frame has that noise, in the layer
 /// and in the image, and no other layer has any.
 TEST(FrameNoise, IncludesTheNoiseOfRecords) {
