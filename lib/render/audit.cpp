@@ -7,7 +7,6 @@
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
-#include "lib/image/srgb.h"
 #include "lib/photon/photon_trace.h"
 
 namespace tempolux {
@@ -48,17 +47,15 @@ FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::
   }
   for (std::size_t p = 0; p < objects.size(); ++p) object_part_[p] = part_of[objects[p]];
   sums_.resize(parts_.size());
-  std::vector<double> means;
   for (std::size_t p = 0; p < objects.size(); ++p) {
     if (!mask_.empty() && !mask_[p]) continue;
     const Layers& pixel = frame.mean.pixels[p];
-    means.push_back(radiance_of(pixel));
     for_parts_of(p, [&](std::size_t part) {
       ++parts_[part].pixels;
       for (std::size_t l = 0; l < kLayerCount; ++l) sums_[part].shown[l] += channel_mean(Rgbd(pixel.value[l]));
     });
   }
-  picture_ = mean_to_white(means) * double(means.size());
+  picture_ = mean_to_white(frame.mean.pixels, mask_) * double(parts_[0].pixels);
 }
 
 /// Calls body(part) for the picture, for the pixel's tile and for the pixel's object.

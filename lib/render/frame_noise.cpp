@@ -81,14 +81,23 @@ struct ImageAndLayers {
   }
 };
 
-}  // namespace
-
-double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
+/// Mean channels of the sum of all layers, of the pixels of the mask.
+std::vector<double> means_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
   std::vector<double> means;
   means.reserve(pixels.size());
   for (std::size_t p = 0; p < pixels.size(); ++p)
     if (mask.empty() || mask[p]) means.push_back(channel_mean(total(pixels[p])));
-  return exposure_of(std::move(means));
+  return means;
+}
+
+}  // namespace
+
+double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
+  return exposure_of(means_of(pixels, mask));
+}
+
+double mean_to_white(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
+  return mean_to_white(means_of(pixels, mask));
 }
 
 NoiseCheck::NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask)

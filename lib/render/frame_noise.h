@@ -36,6 +36,8 @@ struct FrameNoise {
 constexpr double pixel_error_of_codes(double codes) { return codes * (1 / (305 * 0.18)); }
 /// exposure_of() the mean channels of the sum of all layers, over the pixels of the mask (empty: all).
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
+/// mean_to_white() of the same.
+double mean_to_white(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
 
 /// Renders pixels of a grid a second time, with different random numbers and as many samples. For the two means x and
 /// y, E (x - y)^2 / 2 is the variance of x, with the gain by stratification included. The two halves of one pixel's

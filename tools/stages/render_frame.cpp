@@ -63,7 +63,7 @@ void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionT
   char share[48] = "";
   if (known) {
     const double missing = hidden_share(scene, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), view,
-                                        rendered.mean_radiance);
+                                        mean_to_white(rendered.mean.pixels, {}));
     if (!(missing > 0)) return;
     std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing);
   }
