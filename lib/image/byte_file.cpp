@@ -21,7 +21,7 @@ ByteFile::ByteFile(std::string path) : path_(std::move(path)) {
   struct stat status;
   if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
     ::close(descriptor_);
-    throw InputError(path_ + ": not a regular file; images are read from files only");
+    throw InputError(path_ + ": not a regular file; a pipe or a folder cannot be read");
   }
   size_ = std::uint64_t(status.st_size);
 }

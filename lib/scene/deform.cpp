@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lib/core/box_corners.h"
+
 namespace tempolux {
 namespace {
 
@@ -32,13 +34,6 @@ Affine blended(const Primitive& primitive, const Pose& pose, std::size_t vertex)
 
 bool follows_joints(const Primitive& primitive, const Pose& pose) {
   return primitive.influences_per_vertex > 0 && !pose.world_from_mesh.empty();
-}
-
-void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
-  if (local.empty()) return;
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.add(world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                            corner & 4 ? local.upper.z : local.lower.z}));
 }
 
 }  // namespace

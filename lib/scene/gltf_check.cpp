@@ -230,6 +230,19 @@ std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, co
   return unusable;
 }
 
+/// Elements as vectors; at(vector, c) is component c. The unusable ones become 0.
+template <class Vector, class At>
+std::vector<Vector> read_vectors(Import& import, int accessor, const std::string& place,
+                                 std::vector<std::uint32_t>& unusable, const At& at) {
+  const Elements elements = open_accessor(import, accessor, sizeof(Vector) / sizeof(float), place);
+  import.take_memory(elements.count * sizeof(Vector), place);
+  std::vector<Vector> values(elements.count);
+  unusable = read_all(import, elements, place, accessor,
+                      [&](std::uint64_t i, int c, double v) { at(values[i], c) = float(v); });
+  for (const std::uint32_t i : unusable) values[i] = {};
+  return values;
+}
+
 void refuse(const Import& import, int index, const std::string& place, const std::vector<std::uint32_t>& unusable) {
   if (!unusable.empty())
     import.fail(place,
@@ -257,24 +270,13 @@ void check_accessors(const Import& import) {
 
 std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place,
                             std::vector<std::uint32_t>& unusable) {
-  const Elements elements = open_accessor(import, accessor, 3, place);
-  import.take_memory(elements.count * sizeof(Vec3), place);
-  std::vector<Vec3> values(elements.count);
-  unusable =
-      read_all(import, elements, place, accessor, [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
-  for (const std::uint32_t i : unusable) values[i] = {};
-  return values;
+  return read_vectors<Vec3>(import, accessor, place, unusable, [](Vec3& v, int c) -> float& { return v[c]; });
 }
 
 std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place,
                             std::vector<std::uint32_t>& unusable) {
-  const Elements elements = open_accessor(import, accessor, 2, place);
-  import.take_memory(elements.count * sizeof(Vec2), place);
-  std::vector<Vec2> values(elements.count);
-  unusable = read_all(import, elements, place, accessor,
-                      [&](std::uint64_t i, int c, double v) { (c == 0 ? values[i].x : values[i].y) = float(v); });
-  for (const std::uint32_t i : unusable) values[i] = {};
-  return values;
+  return read_vectors<Vec2>(import, accessor, place, unusable,
+                            [](Vec2& v, int c) -> float& { return c == 0 ? v.x : v.y; });
 }
 
 std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place) {

@@ -37,10 +37,6 @@ constexpr std::array kExtensions{
   throw InputError(file + ": " + place + ": " + name.substr(0, 80) + " is not supported; " + remedy);
 }
 
-std::string numbered(const char* array, std::size_t index) {
-  return std::string(array) + "[" + std::to_string(index) + "]";
-}
-
 /// Places where the file uses an extension.
 struct Use {
   bool used = false;
@@ -53,7 +49,7 @@ Use use_by_textures(const Json& document, const char* name) {
   for (std::size_t t = 0; t < textures.size(); ++t) {
     if (!has_extension(textures[t], name)) continue;
     use.used = true;
-    if (!textures[t].contains("source") && use.only.empty()) use.only = numbered("textures", t);
+    if (!textures[t].contains("source") && use.only.empty()) use.only = place_of("textures", t);
   }
   return use;
 }

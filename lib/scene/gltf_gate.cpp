@@ -1,8 +1,6 @@
 // lib/scene/gltf_gate.cpp -- checks a glTF file before tinygltf reads it.
 #include "lib/scene/gltf_gate.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,9 +8,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "formats/error.h"
+#include "lib/image/byte_file.h"
 #include "lib/scene/gltf_extensions.h"
 #include "lib/scene/gltf_json.h"
 #include "lib/scene/gltf_unpack.h"
@@ -35,48 +35,6 @@ const std::set<std::string> kKnown{"KHR_lights_punctual",     "KHR_materials_emi
                                    "EXT_meshopt_compression", "KHR_meshopt_compression",
                                    "EXT_texture_webp"};
 
-[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
-  throw InputError(file + ": " + place + ": " + what);
-}
-
-/// A regular file opened for reading.
-class File {
- public:
-  explicit File(const std::string& path)
-      : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
-    if (descriptor_ < 0) throw InputError(path + ": cannot be opened: " + std::strerror(errno));
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-      ::close(descriptor_);
-      throw InputError(path + ": is not a regular file");
-    }
-    size_ = std::uint64_t(status.st_size);
-  }
-  ~File() { ::close(descriptor_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  std::uint64_t size() const { return size_; }
-  void read(std::uint64_t offset, void* to, std::uint64_t count) const {
-    char* out = static_cast<char*>(to);
-    while (count > 0) {
-      const ssize_t got =
-          ::pread(descriptor_, out, std::size_t(std::min<std::uint64_t>(count, 1u << 30)), off_t(offset));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw ResourceError(path_ + ": cannot be read: " + std::strerror(errno));
-      if (got == 0) throw InputError(path_ + ": ends at byte " + std::to_string(offset) + "; it is cut short");
-      out += got;
-      offset += std::uint64_t(got);
-      count -= std::uint64_t(got);
-    }
-  }
-
- private:
-  std::string path_;
-  int descriptor_;
-  std::uint64_t size_ = 0;
-};
-
 /// The JSON text, and the position of the binary chunk (length 0: none).
 struct Container {
   std::string json;
@@ -87,11 +45,11 @@ struct ChunkHeader {
   std::uint32_t length = 0, type = 0;
 };
 
-Container open_glb(const File& file, const std::string& path) {
+Container open_glb(const ByteFile& file, const std::string& path) {
   std::array<std::uint32_t, 3> header{};  // magic, version, length
   if (file.size() < 20)
     fail(path, "GLB header", "the file has " + std::to_string(file.size()) + " bytes; it is cut short");
-  file.read(0, header.data(), sizeof header);
+  file.read_at(0, header.data(), sizeof header);
   if (header[1] != 2) fail(path, "GLB header", "version " + std::to_string(header[1]) + "; only 2 can be read");
   const std::uint64_t end = header[2];
   if (end > file.size())
@@ -102,7 +60,7 @@ Container open_glb(const File& file, const std::string& path) {
   std::uint64_t at = sizeof header;
   for (int chunk = 0; chunk < 2 && at + sizeof(ChunkHeader) <= end; ++chunk) {
     ChunkHeader chunk_header;
-    file.read(at, &chunk_header, sizeof chunk_header);
+    file.read_at(at, &chunk_header, sizeof chunk_header);
     at += sizeof chunk_header;
     const std::string place = "GLB chunk " + std::to_string(chunk);
     if (chunk_header.length > end - at) fail(path, place, "reaches beyond the end of the file");
@@ -111,7 +69,7 @@ Container open_glb(const File& file, const std::string& path) {
       if (chunk_header.length > kMaxJsonBytes)
         fail(path, place, "has more than 1 GB of JSON; move the data into a buffer file");
       container.json.resize(chunk_header.length);
-      file.read(at, container.json.data(), chunk_header.length);
+      file.read_at(at, container.json.data(), chunk_header.length);
     } else if (chunk_header.type == kChunkBin) {
       container.bin = {path, at, chunk_header.length};
     }
@@ -121,16 +79,16 @@ Container open_glb(const File& file, const std::string& path) {
 }
 
 Container open_container(const std::string& path, const GltfOptions& options) {
-  const File file(path);
+  const ByteFile file(path);
   if (file.size() > options.max_file_bytes)
     fail(path, "size", std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
   std::uint32_t magic = 0;
-  if (file.size() >= sizeof magic) file.read(0, &magic, sizeof magic);
+  if (file.size() >= sizeof magic) file.read_at(0, &magic, sizeof magic);
   if (magic == kGlbMagic) return open_glb(file, path);
   if (file.size() > kMaxJsonBytes) fail(path, "size", "more than 1 GB of JSON; move the data into a buffer file");
   Container container;
   container.json.resize(file.size());
-  file.read(0, container.json.data(), file.size());
+  file.read_at(0, container.json.data(), file.size());
   return container;
 }
 
@@ -238,13 +196,19 @@ std::string resolved(const std::string& uri, const std::string& path, const std:
   return (folder / relative).string();
 }
 
+/// The text after the comma of a data URI; nothing unless it is base64.
+std::optional<std::string_view> base64_of(std::string_view uri) {
+  const std::size_t comma = uri.find(',');
+  if (comma == uri.npos || comma > 200 || !uri.substr(0, comma).ends_with(";base64")) return std::nullopt;
+  return uri.substr(comma + 1);
+}
+
 /// Checks a data URI and rewrites it in the one form that tinygltf accepts for any media type.
 std::string checked_data_uri(const std::string& uri, std::uint64_t length, const std::string& path,
                              const std::string& place) {
-  const std::size_t comma = uri.find(',');
-  if (comma == std::string::npos || comma > 200 || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
-    fail(path, place, "a data URI must be base64");
-  std::string_view payload = std::string_view(uri).substr(comma + 1);
+  const std::optional<std::string_view> coded = base64_of(uri);
+  if (!coded) fail(path, place, "a data URI must be base64");
+  std::string_view payload = *coded;
   while (payload.ends_with('=')) payload.remove_suffix(1);
   const auto is_base64 = [](char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '/';
@@ -255,12 +219,12 @@ std::string checked_data_uri(const std::string& uri, std::uint64_t length, const
     fail(
         path, place,
         "decodes to " + std::to_string(payload.size() * 3 / 4) + " bytes, but byteLength is " + std::to_string(length));
-  return "data:application/octet-stream;base64," + uri.substr(comma + 1);
+  return "data:application/octet-stream;base64," + std::string(*coded);
 }
 
 void approve_buffer(Json& buffer, std::size_t index, const std::string& path, const Container& container,
                     const GltfOptions& options, Gated& gated) {
-  const std::string place = "buffers[" + std::to_string(index) + "]";
+  const std::string place = place_of("buffers", index);
   ByteRange range{path, 0, 0};
   if (is_stand_in(buffer) && (index != 0 || container.bin.length == 0)) {
     gated.buffers.push_back(range);
@@ -282,7 +246,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   } else {
     range.path = resolved(uri, path, place + ".uri");
     require_file(range.path, path, place + ".uri");
-    const File file(range.path);
+    const ByteFile file(range.path);
     if (file.size() > options.max_file_bytes)
       fail(range.path, "size",
            std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
@@ -302,17 +266,15 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
 GatedImage approve_image(const Json& image, std::size_t index, const std::string& path) {
   GatedImage approved;
   approved.name = image.value("name", "");
-  const std::string place = "images[" + std::to_string(index) + "].uri";
+  const std::string place = place_of("images", index) + ".uri";
   const std::string uri = image.value("uri", "");
   if (image.contains("bufferView")) {
     approved.buffer_view = image["bufferView"].get<int>();
   } else if (!image.contains("uri")) {
     approved.refused = "has neither uri nor bufferView";
   } else if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string::npos || comma > 200 || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
-      approved.refused = "a data URI must be base64";
-    else approved.base64 = uri.substr(comma + 1);
+    if (const auto coded = base64_of(uri)) approved.base64 = *coded;
+    else approved.refused = "a data URI must be base64";
   } else if (has_scheme(uri)) {
     approved.refused =
         "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
@@ -325,7 +287,7 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
 /// Checks the total size: many buffers that name one file could make a small file large.
 void check_total(const std::string& path, const GltfOptions& options, const Gated& gated) {
   std::uint64_t on_disk = 0, wanted = 0;
-  for (const std::string& file : gated.files) on_disk += File(file).size();
+  for (const std::string& file : gated.files) on_disk += ByteFile(file).size();
   for (const ByteRange& range : gated.buffers) wanted += range.length;
   if (wanted > options.max_file_bytes || wanted > 2 * on_disk + (1u << 20))
     fail(path, "buffers",
@@ -363,7 +325,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
 
 std::vector<unsigned char> read_range(const ByteRange& range) {
   std::vector<unsigned char> bytes(range.length);
-  File(range.path).read(range.offset, bytes.data(), range.length);
+  ByteFile(range.path).read_at(range.offset, bytes.data(), range.length);
   return bytes;
 }
 
@@ -375,11 +337,11 @@ void require_file(const std::string& named, const std::string& path, const std::
 }
 
 std::vector<unsigned char> read_whole(const std::string& path, std::uint64_t max_bytes) {
-  const File file(path);
+  const ByteFile file(path);
   if (file.size() > max_bytes)
     fail(path, "size", std::to_string(file.size()) + " bytes; the limit is " + std::to_string(max_bytes));
   std::vector<unsigned char> bytes(file.size());
-  file.read(0, bytes.data(), bytes.size());
+  file.read_at(0, bytes.data(), bytes.size());
   return bytes;
 }
 

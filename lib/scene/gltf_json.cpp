@@ -13,10 +13,6 @@ namespace {
 constexpr std::size_t kMaxDepth = 64;
 constexpr std::size_t kMaxValues = 8'000'000;
 
-[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
-  throw InputError(file + ": " + place + ": " + what);
-}
-
 /// Counts values without storing them.
 class Counter final : public nlohmann::json_sax<Json> {
  public:

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "lib/core/json.h"
+#include "lib/scene/gltf_place.h"
 
 namespace tempolux::gltf {
 

@@ -8,6 +8,7 @@
 #include "formats/error.h"
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_gate.h"
+#include "lib/scene/gltf_place.h"
 
 namespace tempolux {
 namespace gltf {

@@ -10,18 +10,10 @@
 #include <vector>
 
 #include "lib/scene/gltf_load.h"
+#include "lib/scene/gltf_place.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux::gltf {
-
-/// Throws InputError "FILE: PLACE: WHAT".
-[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what);
-
-/// The first line of a text from a file or a library, at most `length` bytes, without control characters.
-std::string one_line(std::string text, std::size_t length);
-
-/// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.
-std::string place_of(const char* array, std::size_t index, const std::string& name = {});
 
 struct Gated;  // gltf_gate.h
 

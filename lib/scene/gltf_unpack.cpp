@@ -17,10 +17,6 @@ namespace {
 /// takes at least 12 bytes unpacked; meshopt shrinks at most 64 times.
 constexpr std::uint64_t kMostGrowth = 1000, kSmall = 64u << 20;
 
-std::string numbered(const char* array, std::size_t index) {
-  return std::string(array) + "[" + std::to_string(index) + "]";
-}
-
 /// The packed pieces of a document and the places of their unpacked bytes.
 class Unpacking {
  public:
@@ -30,7 +26,7 @@ class Unpacking {
   /// Adds a bufferView that meshopt packed.
   void add_view(std::size_t index, const char* name) {
     Json& view = document_["bufferViews"][index];
-    const std::string place = numbered("bufferViews", index) + ".extensions." + name;
+    const std::string place = place_of("bufferViews", index) + ".extensions." + name;
     Json packed = view["extensions"][name];
     check_meshopt(packed, place, path_);
     PackedPiece piece = piece_of(Packer::meshopt, place, name);
@@ -52,7 +48,7 @@ class Unpacking {
   void add_primitive(std::size_t mesh, std::size_t number) {
     Json& primitive = document_["meshes"][mesh]["primitives"][number];
     const std::string place =
-        numbered("meshes", mesh) + ".primitives[" + std::to_string(number) + "].extensions." + kDraco;
+        place_of("meshes", mesh) + ".primitives[" + std::to_string(number) + "].extensions." + kDraco;
     Json packed = primitive["extensions"][kDraco];
     check_draco(packed, place, path_);
     if (primitive.value("mode", 4) != 4) fail(place, "packs something else than a list of triangles");
@@ -144,7 +140,7 @@ class Unpacking {
     const Json& accessors = array_of(document_, "accessors");
     if (part.accessor >= accessors.size()) fail(place, "accessor " + std::to_string(part.accessor) + " does not exist");
     const Json& accessor = accessors[part.accessor];
-    const std::string accessor_place = numbered("accessors", part.accessor);
+    const std::string accessor_place = place_of("accessors", part.accessor);
     const std::uint64_t count = accessor["count"].get<std::uint64_t>();
     const int type = accessor["componentType"].get<int>();
     const std::uint32_t size = component_bytes(type), components = components_of(accessor["type"].get<std::string>());
@@ -237,7 +233,7 @@ void use_webp_images(Json& document, const std::string& path) {
     Json& texture = document["textures"][t];
     if (!has_extension(texture, name)) continue;
     Json packed = texture["extensions"][name];
-    check_webp(packed, numbered("textures", t) + ".extensions." + name, path);
+    check_webp(packed, place_of("textures", t) + ".extensions." + name, path);
     if (!texture.contains("source")) texture["source"] = packed["source"];
     takes_out(texture, name);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "formats/error.h"
+#include "lib/core/box_corners.h"
 #include "lib/scene/deform.h"
 
 namespace tempolux {
@@ -69,16 +70,11 @@ std::vector<Vec3> place_normals(const std::vector<Vec3>& normals, const Affine& 
   return placed;
 }
 
-void add_corners(Box3& bounds, const Box3d& local, const Affine& scene) {
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.add(Vec3(scene.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                                 corner & 4 ? local.upper.z : local.lower.z})));
-}
-
 void check_range(const Scene& scene, std::size_t n, const Surface& surface, const Sharing& sharing) {
   Box3 box;
   for (const Vec3& p : surface.positions) box.add(p);
-  if (surface.instanced()) add_corners(box, sharing.box(*surface.primitive), surface.scene_from_node);
+  if (surface.instanced())
+    for_corners(surface.scene_from_node, sharing.box(*surface.primitive), [&](Vec3d corner) { box.add(Vec3(corner)); });
   for (const Vec3& corner : {box.lower, box.upper})
     if (!(max_component(abs(corner)) < kMaxCoordinate))
       throw InputError(node_place(scene, n) + ": its transform takes vertices beyond 1e15 m");

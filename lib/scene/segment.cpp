@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "formats/error.h"
+#include "lib/core/box_corners.h"
 #include "lib/scene/animate.h"
 #include "lib/scene/at_frame.h"
 #include "lib/scene/deform.h"
@@ -140,12 +141,6 @@ Box3d local_box(const Mesh& mesh) {
   for (const Primitive& primitive : mesh.primitives)
     for (const Vec3& p : primitive.positions) box.add(Vec3d(p));
   return box;
-}
-
-void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
-  for (int corner = 0; corner < 8; ++corner)
-    bounds.add(world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                            corner & 4 ? local.upper.z : local.lower.z}));
 }
 
 /// Adds every vertex of static surfaces; for instances and posed meshes their boxes.

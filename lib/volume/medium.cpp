@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/hash.h"
+#include "lib/core/box_corners.h"
 #include "lib/core/parallel.h"
 
 namespace tempolux {
@@ -13,10 +14,7 @@ namespace {
 
 Box3d transformed(const Affine& to_from, const Box3d& box) {
   Box3d result;
-  if (box.empty()) return result;
-  for (int corner = 0; corner < 8; ++corner)
-    result.add(to_from.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                              corner & 4 ? box.upper.z : box.lower.z}));
+  add_corners(result, box, to_from);
   return result;
 }
 
