@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "formats/error.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux::vision {
 namespace {
@@ -49,15 +49,13 @@ std::vector<float> displayed_luminance(const Display& display, const std::vector
   const auto& weight = planes.size() == 3 ? kRec709 : kGrey;
   const double range = display.white - display.black, largest = (display.peak - display.black) / range;
   std::vector<float> luminance(planes.at(0)->size());
-  parallel_chunks(luminance.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      double sum = 0;
-      for (std::size_t c = 0; c < planes.size(); ++c) {
-        const double value = double((*planes[c])[i]) * exposure;
-        sum += weight[c] * (value > 0 ? std::min(value, largest) : 0);  // NaN counts as 0
-      }
-      luminance[i] = float(display.black + range * sum);
+  parallel_each(luminance.size(), 1 << 16, [&](std::size_t i) {
+    double sum = 0;
+    for (std::size_t c = 0; c < planes.size(); ++c) {
+      const double value = double((*planes[c])[i]) * exposure;
+      sum += weight[c] * (value > 0 ? std::min(value, largest) : 0);  // NaN counts as 0
     }
+    luminance[i] = float(display.black + range * sum);
   });
   return luminance;
 }

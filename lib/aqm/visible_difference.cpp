@@ -9,6 +9,7 @@
 
 #include "lib/aqm/cortex_channels.h"
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux::vision {
 namespace {
@@ -21,14 +22,12 @@ struct Responses {
 
 Responses responses_of(const DisplayedPair& pair) {
   Responses out{pair.first, pair.second, 0};
-  parallel_chunks(pair.first.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      float& a = out.first[i];
-      float& b = out.second[i];
-      a = float(receptor_response(a));
-      b = float(receptor_response(b));
-      if (!pair.counted.empty() && !pair.counted[i]) a = b = 0.5f * (a + b);
-    }
+  parallel_each(pair.first.size(), 1 << 15, [&](std::size_t i) {
+    float& a = out.first[i];
+    float& b = out.second[i];
+    a = float(receptor_response(a));
+    b = float(receptor_response(b));
+    if (!pair.counted.empty() && !pair.counted[i]) a = b = 0.5f * (a + b);
   });
   double sum = 0;
   std::size_t count = 0;
@@ -87,12 +86,9 @@ BandGains band_gains(const ChannelGrid& grid, const ChannelFilters& filters, con
     std::vector<float>& gain = gains[std::size_t(band - 1)];
     gain.assign(std::size_t(columns) * std::size_t(rows), float(scale * filters.sensitivity(band, kDriftSpeed)));
     if (speed.empty()) continue;
-    parallel_chunks(std::size_t(rows), 16, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end; ++y)
-        for (int x = 0; x < columns; ++x) {
-          const double around = std::max(means.mean(x * step, int(y) * step, radius), kDriftSpeed);
-          gain[y * std::size_t(columns) + std::size_t(x)] = float(scale * filters.sensitivity(band, around));
-        }
+    parallel_pixels(columns, rows, [&](int x, int y, std::size_t p) {
+      const double around = std::max(means.mean(x * step, y * step, radius), kDriftSpeed);
+      gain[p] = float(scale * filters.sensitivity(band, around));
     });
   }
   return gains;
@@ -190,16 +186,12 @@ Detection detection_map(const DisplayedPair& pair, const std::vector<float>& spe
   });
   const BandGains gains = band_gains(grid, filters, retinal_speeds(speed, viewing.gaze), contrast_response);
   const BandTerms terms = all_terms(grid, responses, filters, gains);
-  parallel_chunks(std::size_t(pair.height), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      for (int x = 0; x < pair.width; ++x) {
-        const std::size_t i = y * std::size_t(pair.width) + std::size_t(x);
-        if (!pair.counted.empty() && !pair.counted[i]) continue;
-        if (std::abs(double(pair.first[i]) - double(pair.second[i])) < kLeastDifference) continue;
-        float sum = 0;
-        for (int band = 1; band <= kBands; ++band) sum += term_at(grid, band, terms[std::size_t(band - 1)], x, int(y));
-        result.probability[i] = float(detection_probability(double(sum)));
-      }
+  parallel_pixels(pair.width, pair.height, [&](int x, int y, std::size_t i) {
+    if (!pair.counted.empty() && !pair.counted[i]) return;
+    if (std::abs(double(pair.first[i]) - double(pair.second[i])) < kLeastDifference) return;
+    float sum = 0;
+    for (int band = 1; band <= kBands; ++band) sum += term_at(grid, band, terms[std::size_t(band - 1)], x, y);
+    result.probability[i] = float(detection_probability(double(sum)));
   });
   return result;
 }

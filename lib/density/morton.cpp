@@ -5,7 +5,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -76,9 +76,8 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points) {
   const CurveLayout layout(box.empty() ? Box3{{}, {}} : box);
 
   std::vector<std::uint64_t> items(points.size());
-  parallel_chunks(points.size(), kCodeChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) items[i] = std::uint64_t(layout.code(points[i])) << 32 | i;
-  });
+  parallel_each(points.size(), kCodeChunk,
+                [&](std::size_t i) { items[i] = std::uint64_t(layout.code(points[i])) << 32 | i; });
   sort_by_code(items);
   std::vector<std::uint32_t> order(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint32_t(items[i]);

@@ -6,6 +6,7 @@
 
 #include "formats/large_pages.h"
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 
@@ -149,33 +150,30 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
   flux_ = room_for<Rgb>(size_);
   source_ = room_for<std::uint32_t>(size_);
   object_ = room_for<std::uint16_t>(size_);
-  parallel_chunks(leaf_count_ * kLeafSize, kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      Leaf& leaf = leaves_[i / kLeafSize];
-      const std::size_t lane = i % kLeafSize;
-      const bool used = i < size_;
-      leaf.x[lane] = used ? items[i].position[0] : kNaN;
-      leaf.y[lane] = used ? items[i].position[1] : kNaN;
-      leaf.z[lane] = used ? items[i].position[2] : kNaN;
-      const formats::Photon* photon = used ? &photons[items[i].source] : nullptr;
-      filters_[i / kLeafSize].code[lane] = photon ? filter_code(*photon) : 0;
-      if (!photon) continue;
-      flux_[i] = {photon->flux[0], photon->flux[1], photon->flux[2]};
-      source_[i] = items[i].source;
-      object_[i] = photon->object;
-    }
+  parallel_each(leaf_count_ * kLeafSize, kChunk, [&](std::size_t i) {
+    Leaf& leaf = leaves_[i / kLeafSize];
+    const std::size_t lane = i % kLeafSize;
+    const bool used = i < size_;
+    leaf.x[lane] = used ? items[i].position[0] : kNaN;
+    leaf.y[lane] = used ? items[i].position[1] : kNaN;
+    leaf.z[lane] = used ? items[i].position[2] : kNaN;
+    const formats::Photon* photon = used ? &photons[items[i].source] : nullptr;
+    filters_[i / kLeafSize].code[lane] = photon ? filter_code(*photon) : 0;
+    if (!photon) return;
+    flux_[i] = {photon->flux[0], photon->flux[1], photon->flux[2]};
+    source_[i] = items[i].source;
+    object_[i] = photon->object;
   });
 }
 
 void PhotonIndex::build_tree() {
   std::vector<Box3> places(leaf_count_), normals(leaf_count_);
-  parallel_chunks(leaf_count_, kChunk / kLeafSize, [&](std::size_t first, std::size_t last) {
-    for (std::size_t j = first; j < last; ++j)
-      for (std::size_t i = j * kLeafSize; i < std::min((j + 1) * kLeafSize, size_); ++i) {
-        places[j].add(position(i));
-        const std::uint32_t code = filters_[j].code[i % kLeafSize];
-        normals[j].add(Vec3{coded(code, 0), coded(code, 1), coded(code, 2)});
-      }
+  parallel_each(leaf_count_, kChunk / kLeafSize, [&](std::size_t j) {
+    for (std::size_t i = j * kLeafSize; i < std::min((j + 1) * kLeafSize, size_); ++i) {
+      places[j].add(position(i));
+      const std::uint32_t code = filters_[j].code[i % kLeafSize];
+      normals[j].add(Vec3{coded(code, 0), coded(code, 1), coded(code, 2)});
+    }
   });
   tree_ = BoxTree(std::move(places));
   normals_ = BoxTree(std::move(normals));

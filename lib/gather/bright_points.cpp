@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "lib/core/frame.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/transport/media.h"
@@ -86,9 +86,7 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
         return near.count() > 0;
       });
   std::vector<std::optional<Site>> found(placed.size());
-  parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) found[i] = site_at(placed[i].place, placed[i].area);
-  });
+  parallel_each(placed.size(), 256, [&](std::size_t i) { found[i] = site_at(placed[i].place, placed[i].area); });
   for (std::optional<Site>& site : found)
     if (site) sites_.push_back(std::move(*site));
   std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });

@@ -1,15 +1,14 @@
 #include "lib/gather/irradiance_points.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <numeric>
 #include <optional>
 
-#include "lib/core/parallel.h"
 #include "lib/core/parallel_array.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
@@ -39,9 +38,7 @@ using Areas = ParallelArray<double>;
 Areas triangle_areas(const Surface& surface) {
   const auto& triangles = surface.primitive->triangles;
   Areas areas(triangles.size());
-  parallel_chunks(triangles.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) areas[i] = triangle_area(surface, triangles[i]);
-  });
+  parallel_each(triangles.size(), 1 << 14, [&](std::size_t i) { areas[i] = triangle_area(surface, triangles[i]); });
   return areas;
 }
 
@@ -102,18 +99,11 @@ struct SideOfSurface {
 /// the sequence.
 template <class Wanted>
 std::vector<IrradiancePoint> spread(const SideOfSurface& side, std::uint64_t key, const Wanted& wanted) {
-  constexpr std::size_t kChunk = 4096;
-  std::vector<std::vector<IrradiancePoint>> found((side.count + kChunk - 1) / kChunk);
-  parallel_chunks(side.count, kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Vec2 u = sobol_owen_2d(std::uint32_t(i), key);
-      const IrradiancePoint point = point_on(side.surface, side.ground, u, side.back);
-      if (length2(point.normal) > 0 && wanted(point.position)) found[first / kChunk].push_back(point);
-    }
+  return parallel_found<IrradiancePoint>(side.count, 4096, [&](std::size_t i, std::vector<IrradiancePoint>& found) {
+    const Vec2 u = sobol_owen_2d(std::uint32_t(i), key);
+    const IrradiancePoint point = point_on(side.surface, side.ground, u, side.back);
+    if (length2(point.normal) > 0 && wanted(point.position)) found.push_back(point);
   });
-  std::vector<IrradiancePoint> points;
-  for (const auto& some : found) points.insert(points.end(), some.begin(), some.end());
-  return points;
 }
 
 /// The spheres in which points are spread: some of the spheres around what cameras see; empty: everywhere. They are
@@ -324,29 +314,25 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
   const PointDensity indirect(tracer, photons.photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const DirectLight direct{tracer, lights, options.light_samples};
   const std::vector<std::uint32_t> order = in_space(points, which);
-  parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      IrradiancePoint& point = points[order[i]];
-      const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering = direct.scattering(point);
-      point.direct = direct.at(point, scattering, random);
-      const FootprintLight light = caustic.estimate(point.position, scattering.lit(point.normal));
-      Rgb noise{0.0f};
-      point.indirect = indirect.estimate(point, random, point.radius, &noise);
-      point.caustic = light.irradiance;
-      point.noise = light.noise + noise;
-    }
+  parallel_each(order.size(), 256, [&](std::size_t i) {
+    IrradiancePoint& point = points[order[i]];
+    const PathRandom random = point_random(options, order[i]);
+    const Scattering scattering = direct.scattering(point);
+    point.direct = direct.at(point, scattering, random);
+    const FootprintLight light = caustic.estimate(point.position, scattering.lit(point.normal));
+    Rgb noise{0.0f};
+    point.indirect = indirect.estimate(point, random, point.radius, &noise);
+    point.caustic = light.irradiance;
+    point.noise = light.noise + noise;
   });
 }
 
 void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std::vector<IrradiancePoint>& points) {
   const float offset = Reach(tracer).offset();
-  parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      IrradiancePoint& point = points[i];
-      const Scattering scattering = density.directed() ? scattering_at(tracer, point, offset) : plain(point);
-      point.caustic = density.estimate(point.position, scattering.lit(point.normal)).irradiance;
-    }
+  parallel_each(points.size(), 256, [&](std::size_t i) {
+    IrradiancePoint& point = points[i];
+    const Scattering scattering = density.directed() ? scattering_at(tracer, point, offset) : plain(point);
+    point.caustic = density.estimate(point.position, scattering.lit(point.normal)).irradiance;
   });
 }
 
@@ -356,26 +342,20 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
   const DirectLight direct{tracer, lights, options.light_samples};
   const std::vector<std::uint32_t> order = in_space(points, all_of(points));
   const std::optional<Box3> box = box_of_lights(tracer.frame());
-  std::atomic<std::size_t> sampled = 0;
-  parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
-    std::size_t count = 0;
-    for (std::size_t i = first; i < last; ++i) {
-      IrradiancePoint& point = points[order[i]];
-      if (watch && box && !watch->between(point.position, *box)) continue;
-      const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering = direct.scattering(point);
-      bool touched = !watch;
-      if (watch)
-        direct.for_samples(point, scattering, random, [&](const DirectSample& sample, const WayBits&) {
-          touched = touched || watch->touching(sample.shadow, 1) != 0;
-        });
-      if (!touched) continue;
-      point.direct = direct.at(point, scattering, random);
-      ++count;
-    }
-    sampled += count;
+  return parallel_sum<std::size_t>(order.size(), 256, [&](std::size_t i, std::size_t& sampled) {
+    IrradiancePoint& point = points[order[i]];
+    if (watch && box && !watch->between(point.position, *box)) return;
+    const PathRandom random = point_random(options, order[i]);
+    const Scattering scattering = direct.scattering(point);
+    bool touched = !watch;
+    if (watch)
+      direct.for_samples(point, scattering, random, [&](const DirectSample& sample, const WayBits&) {
+        touched = touched || watch->touching(sample.shadow, 1) != 0;
+      });
+    if (!touched) return;
+    point.direct = direct.at(point, scattering, random);
+    ++sampled;
   });
-  return sampled;
 }
 
 ClearanceTest point_clearance(const Tracer& tracer) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -36,23 +36,21 @@ float InfluenceThresholds::gathered_share(float influence) const {
 std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
                                          const PointLookup& points, std::uint64_t seed) {
   std::vector<RecordChange> changes(records.size());
-  parallel_chunks(records.size(), 256, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const IrradianceRecord& record = records[i];
-      changes[i].update = record.irradiance;
-      const PointLookup::Light* point = points.nearest(record.position, record.normal);
-      const float radius = point ? kWider * points.point(*point).radius : 0;
-      const PathRandom random = random_at(record.position, seed);
-      SignedDensity::Area area;
-      for (std::size_t m = 0; m < maps.size(); ++m) {
-        if (m > 0 && !(maps[m].most_influence(record.position, record.normal, radius, random, area) >
-                       double(changes[i].influence)))
-          continue;
-        const auto change = maps[m].at(record.position, record.normal, radius, random, area);
-        if (!change) continue;
-        changes[i].influence = std::max(changes[i].influence, float(change->influence));
-        if (m == 0) changes[i].update = Rgb(Rgbd(record.irradiance) + change->irradiance);
-      }
+  parallel_each(records.size(), 256, [&](std::size_t i) {
+    const IrradianceRecord& record = records[i];
+    changes[i].update = record.irradiance;
+    const PointLookup::Light* point = points.nearest(record.position, record.normal);
+    const float radius = point ? kWider * points.point(*point).radius : 0;
+    const PathRandom random = random_at(record.position, seed);
+    SignedDensity::Area area;
+    for (std::size_t m = 0; m < maps.size(); ++m) {
+      if (m > 0 && !(maps[m].most_influence(record.position, record.normal, radius, random, area) >
+                     double(changes[i].influence)))
+        continue;
+      const auto change = maps[m].at(record.position, record.normal, radius, random, area);
+      if (!change) continue;
+      changes[i].influence = std::max(changes[i].influence, float(change->influence));
+      if (m == 0) changes[i].update = Rgb(Rgbd(record.irradiance) + change->irradiance);
     }
   });
   return changes;

@@ -7,7 +7,7 @@
 
 #include "formats/error.h"
 #include "formats/octahedral.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 
 namespace tempolux {
@@ -96,22 +96,20 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
 /// Irradiance of all samples with a width: flux over area under the kernel.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
             Smoothed& result) {
-  parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      if (!(samples[i].width > 0)) continue;
-      Rgbd flux{0.0};
-      double area = 0, squares = 0;
-      neighbours.around(samples[i], [&](std::uint32_t j) {
-        const float w = weight(filter, samples[i], samples[j]);
-        if (!(w > 0)) return;
-        flux += samples[j].flux * double(w);
-        area += double(w) * double(samples[j].area);
-        squares += double(w) * double(w) * samples[j].squares;
-      });
-      if (!(area > 0)) continue;
-      result.light[i] = flux * (1 / area);
-      result.variance[i] = squares / (area * area);
-    }
+  parallel_each(samples.size(), kAtOnce, [&](std::size_t i) {
+    if (!(samples[i].width > 0)) return;
+    Rgbd flux{0.0};
+    double area = 0, squares = 0;
+    neighbours.around(samples[i], [&](std::uint32_t j) {
+      const float w = weight(filter, samples[i], samples[j]);
+      if (!(w > 0)) return;
+      flux += samples[j].flux * double(w);
+      area += double(w) * double(samples[j].area);
+      squares += double(w) * double(w) * samples[j].squares;
+    });
+    if (!(area > 0)) return;
+    result.light[i] = flux * (1 / area);
+    result.variance[i] = squares / (area * area);
   });
 }
 
@@ -213,20 +211,18 @@ bool inside_solid(const Tracer& tracer, Vec3 place, Vec3 normal) {
 std::vector<Sample> samples_of(const Tracer& tracer, std::span<const Rgbd> flux, const MeshFilter& filter,
                                std::span<const float> widths, const std::vector<formats::MeshElement>& elements) {
   std::vector<Sample> samples(elements.size());
-  parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const formats::MeshElement& e = elements[i];
-      const auto n = formats::decode_normal(e.normal);
-      const Vec3 position{e.position[0], e.position[1], e.position[2]}, normal{float(n[0]), float(n[1]), float(n[2])};
-      const std::uint32_t material = tracer.frame().surfaces[e.surface].material;
-      samples[i] = {position,
-                    normal,
-                    flux[i],
-                    e.area,
-                    widths.empty() ? float(filter.width) : widths[i],
-                    2 * material + inside_solid(tracer, position, normal),
-                    0};
-    }
+  parallel_each(samples.size(), kAtOnce, [&](std::size_t i) {
+    const formats::MeshElement& e = elements[i];
+    const auto n = formats::decode_normal(e.normal);
+    const Vec3 position{e.position[0], e.position[1], e.position[2]}, normal{float(n[0]), float(n[1]), float(n[2])};
+    const std::uint32_t material = tracer.frame().surfaces[e.surface].material;
+    samples[i] = {position,
+                  normal,
+                  flux[i],
+                  e.area,
+                  widths.empty() ? float(filter.width) : widths[i],
+                  2 * material + inside_solid(tracer, position, normal),
+                  0};
   });
   return samples;
 }
@@ -283,20 +279,18 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
     std::uint32_t cuts = 0, cell = 0;  ///< cuts 0: no element was found
   };
   std::vector<Place> places(photons.size());
-  parallel_chunks(photons.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const formats::Photon& photon = photons[i];
-      const auto decoded = formats::decode_normal(photon.normal);
-      const Vec3 normal{float(decoded[0]), float(decoded[1]), float(decoded[2])};
-      const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
-      // start of the ray above the surface: the largest rounding error, or a thousandth of a cell
-      const float above = std::max(float(cuts_.cell()) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
-      Hit hit;
-      if (!tracer_.intersect({position + normal * above, -normal, 0, 2 * above}, hit)) continue;
-      const std::uint32_t cuts = cuts_(hit.surface, hit.triangle);
-      const bool back = dot(tracer_.surface_point(hit).normal_geometric, normal) < 0;
-      places[i] = {{hit.surface, hit.triangle, std::uint16_t(back)}, cuts, formats::mesh_cell(cuts, hit.u, hit.v)};
-    }
+  parallel_each(photons.size(), kAtOnce, [&](std::size_t i) {
+    const formats::Photon& photon = photons[i];
+    const auto decoded = formats::decode_normal(photon.normal);
+    const Vec3 normal{float(decoded[0]), float(decoded[1]), float(decoded[2])};
+    const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
+    // start of the ray above the surface: the largest rounding error, or a thousandth of a cell
+    const float above = std::max(float(cuts_.cell()) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
+    Hit hit;
+    if (!tracer_.intersect({position + normal * above, -normal, 0, 2 * above}, hit)) return;
+    const std::uint32_t cuts = cuts_(hit.surface, hit.triangle);
+    const bool back = dot(tracer_.surface_point(hit).normal_geometric, normal) < 0;
+    places[i] = {{hit.surface, hit.triangle, std::uint16_t(back)}, cuts, formats::mesh_cell(cuts, hit.u, hit.v)};
   });
   for (std::size_t i = 0; i < photons.size(); ++i) {
     const Place& place = places[i];

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 
 namespace tempolux {
@@ -88,18 +87,12 @@ class Placement {
   template <class LookAt, class Note>
   void cover(const std::vector<std::size_t>& pixels, bool checked, const LookAt& look, const Note& note) {
     // A covered point stays covered, so only uncovered points are sorted and tested again, batch by batch.
-    constexpr std::size_t kChunk = 1024;
-    std::vector<std::vector<Open>> found((pixels.size() + kChunk - 1) / kChunk);
-    parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const std::optional<SeenPoint> seen = view_(look(pixels[i]));
-        if (!seen) continue;
-        note(pixels[i], *seen);
-        if (!is_covered(*seen)) found[first / kChunk].push_back({mix64(pixels[i]), pixels[i], *seen});
-      }
+    std::vector<Open> open = parallel_found<Open>(pixels.size(), 1024, [&](std::size_t i, std::vector<Open>& found) {
+      const std::optional<SeenPoint> seen = view_(look(pixels[i]));
+      if (!seen) return;
+      note(pixels[i], *seen);
+      if (!is_covered(*seen)) found.push_back({mix64(pixels[i]), pixels[i], *seen});
     });
-    std::vector<Open> open;
-    for (const auto& some : found) open.insert(open.end(), some.begin(), some.end());
     std::sort(open.begin(), open.end(),
               [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
     for (std::size_t start = 0; start < open.size(); start += kPlacedTogether)
@@ -125,22 +118,16 @@ class Placement {
 
   void add_batch(std::span<const Open> points, bool checked) {
     std::vector<std::optional<IrradianceRecord>> records(points.size()), again(points.size());
-    std::mutex mutex;
-    parallel_chunks(points.size(), 8, [&](std::size_t first, std::size_t last) {
-      GatherCounts local;
-      for (std::size_t i = first; i < last; ++i) {
-        const SeenPoint& seen = points[i].seen;
-        if (is_covered(seen)) continue;
-        if (source_) {
-          records[i] = source_->gather(seen, i, local);
-          continue;
-        }
-        records[i] = gathered(gather_, seen, local);
-        if (checked && i % kCheckedOneIn == 0) again[i] = gathered(again_, seen, local);
-        gather_.look_around(seen.surface, *records[i]);
+    counts_ += parallel_sum<GatherCounts>(points.size(), 8, [&](std::size_t i, GatherCounts& counts) {
+      const SeenPoint& seen = points[i].seen;
+      if (is_covered(seen)) return;
+      if (source_) {
+        records[i] = source_->gather(seen, i, counts);
+        return;
       }
-      const std::lock_guard lock(mutex);
-      counts_ += local;
+      records[i] = gathered(gather_, seen, counts);
+      if (checked && i % kCheckedOneIn == 0) again[i] = gathered(again_, seen, counts);
+      gather_.look_around(seen.surface, *records[i]);
     });
     for (std::size_t i = 0; i < records.size(); ++i)
       if (records[i] && store_.add(*records[i])) {

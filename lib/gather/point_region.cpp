@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -64,20 +64,12 @@ class Splitter {
 
 std::vector<TrianglePiece> pieces_in(const Surface& surface, std::span<const AimSphere> spheres) {
   const auto& triangles = surface.primitive->triangles;
-  constexpr std::size_t kChunk = 4096;
-  std::vector<std::vector<TrianglePiece>> found((triangles.size() + kChunk - 1) / kChunk);
-  parallel_chunks(triangles.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const auto& t = triangles[i];
-      Splitter(spheres, std::uint32_t(i),
-               {Vec3d(surface.position(t[0])), Vec3d(surface.position(t[1])), Vec3d(surface.position(t[2]))},
-               found[first / kChunk])
-          .split({Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}});
-    }
+  return parallel_found<TrianglePiece>(triangles.size(), 4096, [&](std::size_t i, std::vector<TrianglePiece>& found) {
+    const auto& t = triangles[i];
+    Splitter(spheres, std::uint32_t(i),
+             {Vec3d(surface.position(t[0])), Vec3d(surface.position(t[1])), Vec3d(surface.position(t[2]))}, found)
+        .split({Vec2{0, 0}, Vec2{1, 0}, Vec2{0, 1}});
   });
-  std::vector<TrianglePiece> pieces;
-  for (const auto& some : found) pieces.insert(pieces.end(), some.begin(), some.end());
-  return pieces;
 }
 
 std::vector<AimSphere> spheres_with_points(std::span<const AimSphere> spheres, std::span<const double> areas) {

@@ -1,9 +1,8 @@
 #include "lib/gather/update_points.h"
 
 #include <algorithm>
-#include <atomic>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 #include "lib/gather/localised.h"
 #include "lib/gather/signed_density.h"
@@ -92,20 +91,14 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
     }
   }
   counts.anew = anew.size();
-  std::atomic<std::size_t> changed = 0;
-  parallel_chunks(others.size(), 256, [&](std::size_t first, std::size_t last) {
-    std::size_t count = 0;
-    for (std::size_t i = first; i < last; ++i) {
-      IrradiancePoint& point = points[others[i]];
-      const auto change =
-          density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]));
-      if (!change) continue;
-      point.indirect = not_negative(Rgbd(point.indirect) + change->irradiance);
-      ++count;
-    }
-    changed += count;
+  counts.changed = parallel_sum<std::size_t>(others.size(), 256, [&](std::size_t i, std::size_t& changed) {
+    IrradiancePoint& point = points[others[i]];
+    const auto change =
+        density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]));
+    if (!change) return;
+    point.indirect = not_negative(Rgbd(point.indirect) + change->irradiance);
+    ++changed;
   });
-  counts.changed = changed;
 
   const PhotonMaps maps{in.static_photons, in.dynamic_photons, in.static_shift, in.dynamic_shift};
   // Close to movers: all photons that an estimate there may use.

@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
-
-constexpr std::size_t kRows = 16;  ///< of a chunk
 
 std::vector<float> channel_or_zero(const Image& image, const char* name) {
   const Channel* channel = image.find(name);
@@ -30,19 +29,14 @@ PixelSurfaces::PixelSurfaces(const Image& image)
   if (const Channel* ids = image.find("id.object"); ids && !ids->ids.empty()) object = ids->ids;
   if (const Channel* z = image.find("Z"); z && !z->values.empty())
     for (std::size_t p = 0; p < w.size(); ++p) w[p] = inverse_depth(z->values[p]);
-  const auto columns = std::size_t(width_), rows = std::size_t(height_);
-  parallel_chunks(rows, kRows, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first; y < last; ++y)
-      for (std::size_t x = 0; x < columns; ++x) {
-        const std::size_t p = y * columns + x;
-        const auto slope = [&](bool before, bool after, std::size_t step) {
-          before = before && object[p - step] == object[p];
-          after = after && object[p + step] == object[p];
-          return smaller(before ? w[p] - w[p - step] : 0, before, after ? w[p + step] - w[p] : 0, after);
-        };
-        w_right[p] = slope(x > 0, x + 1 < columns, 1);
-        w_down[p] = slope(y > 0, y + 1 < rows, columns);
-      }
+  parallel_pixels(width_, height_, [&](int x, int y, std::size_t p) {
+    const auto slope = [&](bool before, bool after, std::size_t step) {
+      before = before && object[p - step] == object[p];
+      after = after && object[p + step] == object[p];
+      return smaller(before ? w[p] - w[p - step] : 0, before, after ? w[p + step] - w[p] : 0, after);
+    };
+    w_right[p] = slope(x > 0, x + 1 < width_, 1);
+    w_down[p] = slope(y > 0, y + 1 < height_, std::size_t(width_));
   });
 }
 
@@ -58,15 +52,11 @@ bool PixelSurfaces::same(std::size_t pixel, int dx, int dy) const {
 
 std::vector<std::uint8_t> PixelSurfaces::edges() const {
   std::vector<std::uint8_t> edge(w.size());
-  parallel_chunks(std::size_t(height_), kRows, [&](std::size_t first, std::size_t last) {
-    for (int y = int(first); y < int(last); ++y)
-      for (int x = 0; x < width_; ++x) {
-        const std::size_t p = std::size_t(y) * std::size_t(width_) + std::size_t(x);
-        for (int j = std::max(-1, -y); j <= std::min(1, height_ - 1 - y); ++j)
-          for (int i = std::max(-1, -x); i <= std::min(1, width_ - 1 - x); ++i)
-            if ((i != 0 || j != 0) && !(same(p, i, j) && same(p + std::size_t(std::ptrdiff_t(j) * width_ + i), -i, -j)))
-              edge[p] = 1;
-      }
+  parallel_pixels(width_, height_, [&](int x, int y, std::size_t p) {
+    for (int j = std::max(-1, -y); j <= std::min(1, height_ - 1 - y); ++j)
+      for (int i = std::max(-1, -x); i <= std::min(1, width_ - 1 - x); ++i)
+        if ((i != 0 || j != 0) && !(same(p, i, j) && same(p + std::size_t(std::ptrdiff_t(j) * width_ + i), -i, -j)))
+          edge[p] = 1;
   });
   return edge;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/pi.h"
 #include "lib/light/linear_density.h"
 
@@ -57,12 +58,10 @@ void EnvironmentLight::integrate() {
     weight[std::min(row, height_ - 1)] += slope - std::cos(b);
   }
   std::vector<Rgbd> mean(height_);
-  parallel_chunks(height_, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first; y < last; ++y) {
-      Rgbd sum;
-      for (std::uint32_t x = 0; x < width_; ++x) sum += Rgbd(environment_.radiance[y * width_ + x]);
-      mean[y] = sum / double(width_);
-    }
+  parallel_each(height_, 16, [&](std::size_t y) {
+    Rgbd sum;
+    for (std::uint32_t x = 0; x < width_; ++x) sum += Rgbd(environment_.radiance[y * width_ + x]);
+    mean[y] = sum / double(width_);
   });
   for (std::uint32_t y = 0; y < height_; ++y) integral_ += mean[y] * (2 * kPiD * weight[y]);
 }

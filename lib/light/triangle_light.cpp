@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/pi.h"
 #include "lib/core/sampling.h"
 #include "lib/light/spherical_triangle.h"
@@ -75,9 +75,7 @@ EmissionShares::EmissionShares(const SceneFrame& frame, std::uint32_t surface)
     : alpha(frame.materials[frame.surfaces[surface].material].alpha) {
   if (!emission_varies(frame.materials[frame.surfaces[surface].material])) return;
   of.resize(frame.surfaces[surface].primitive->triangles.size());
-  parallel_chunks(of.size(), 1024, [&](std::size_t first, std::size_t last) {
-    for (std::size_t t = first; t < last; ++t) of[t] = mean_emission_share(frame, surface, std::uint32_t(t));
-  });
+  parallel_each(of.size(), 1024, [&](std::size_t t) { of[t] = mean_emission_share(frame, surface, std::uint32_t(t)); });
 }
 
 TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index,

@@ -6,7 +6,7 @@
 
 #include "formats/error.h"
 #include "formats/photons/file_reader.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/photon/photon_ledger.h"
 
 namespace tempolux {
@@ -34,10 +34,9 @@ double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot>
 void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMap& previous) {
   const std::uint32_t pilots = previous.header.pilots;
   previous.change.assign(previous.ledger.size(), 0.0);
-  parallel_chunks(previous.ledger.size(), kGroupsTogether, [&](std::size_t first, std::size_t last) {
-    for (std::size_t g = first; g < last; ++g)
-      previous.change[g] =
-          difference(strategy, previous.ledger[g].pilots, tracer.trace_members(std::uint32_t(g), 0, pilots).pilots);
+  parallel_each(previous.ledger.size(), kGroupsTogether, [&](std::size_t g) {
+    previous.change[g] =
+        difference(strategy, previous.ledger[g].pilots, tracer.trace_members(std::uint32_t(g), 0, pilots).pilots);
   });
   previous.pilot_paths = std::uint64_t(pilots) * previous.ledger.size();
 }
@@ -127,9 +126,8 @@ void find_change(const std::string& path, PreviousMap& previous, const PhotonTra
   if (strategy != UpdateStrategy::census) return previous.change.clear();
   const Census census(tracer, offset_of(previous.header, origin));
   previous.change.assign(previous.header.group_count, 0.0);
-  parallel_chunks(previous.photons.size(), kGroupsTogether, [&](std::size_t first, std::size_t last) {
-    for (std::size_t g = first; g < last; ++g)
-      for (const formats::PhotonBlock& block : previous.photons[g]) previous.change[g] += census.of(block);
+  parallel_each(previous.photons.size(), kGroupsTogether, [&](std::size_t g) {
+    for (const formats::PhotonBlock& block : previous.photons[g]) previous.change[g] += census.of(block);
   });
 }
 

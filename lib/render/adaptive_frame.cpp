@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "lib/core/parallel_each.h"
 #include "lib/render/frame_noise.h"
 #include "lib/render/pixel_noise.h"
 #include "lib/render/spread_outliers.h"
@@ -26,8 +27,6 @@ PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
   return more;
 }
-
-constexpr std::size_t kJudgedTogether = 64;  ///< pixels per piece of parallel work
 
 /// A frame whose pixels get samples in several passes.
 class AdaptiveFrame {
@@ -133,11 +132,9 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
 /// Sums the parts into the picture and measures its noise.
 void AdaptiveFrame::put_together() {
   std::vector<Layers>& pixels = frame_.mean.pixels;
-  parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      pixels[p] = parts_[p].sum();
-      if (!frame_.mean.stored_noise.empty()) frame_.mean.stored_noise[p] = parts_[p].stored_noise;
-    }
+  parallel_each(pixels.size(), 4096, [&](std::size_t p) {
+    pixels[p] = parts_[p].sum();
+    if (!frame_.mean.stored_noise.empty()) frame_.mean.stored_noise[p] = parts_[p].stored_noise;
   });
   if (options_.spread_outliers) spread();
   frame_.noise = check_.measure(
@@ -154,18 +151,14 @@ void AdaptiveFrame::spread() {
   const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels);
   std::vector<std::uint32_t> further_of(judged.empty() ? 0 : pixels.size(), kNone);
   std::vector<FurtherSamples> further(judged.size());
-  std::vector<RayCounts> rays((judged.size() + kJudgedTogether - 1) / kJudgedTogether);
-  parallel_chunks(judged.size(), kJudgedTogether, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
-      const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
-      further_of[pixel] = std::uint32_t(i);
-      further[i].count = more;
-      const PixelPass pass{pixel, int(pixel % width), int(pixel / width), have, more};
-      join_parts(sample_pixel(camera_, pass, nullptr, rays[first / kJudgedTogether]), {}, more, further[i].mean);
-    }
+  frame_.rays += parallel_sum<RayCounts>(judged.size(), 64, [&](std::size_t i, RayCounts& rays) {
+    const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
+    const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
+    further_of[pixel] = std::uint32_t(i);
+    further[i].count = more;
+    const PixelPass pass{pixel, int(pixel % width), int(pixel / width), have, more};
+    join_parts(sample_pixel(camera_, pass, nullptr, rays), {}, more, further[i].mean);
   });
-  for (const RayCounts& counts : rays) frame_.rays += counts;
   samples.further_of = further_of;
   samples.further = further;
   std::vector<Layers> before;

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "formats/octahedral.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 #include "lib/photon/photon_trace.h"
 
@@ -86,24 +86,22 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
   };
   const PhotonSplats camera(tracer, view_);
   std::array<std::vector<Seen>, kAudits> seen;
-  parallel_chunks(kAudits, 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k) {
-      PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
-                            .photon_count = (effort.photon_paths + kAudits - 1) / kAudits,
-                            .group_count = 1};
-      const PhotonTracer photons(tracer, lights, options);
-      for (std::size_t b = 0; b < photons.batch_count(); ++b) {
-        const formats::PhotonBlock block = photons.trace(b).block;
-        for (std::size_t i = 0; i < block.photons.size(); ++i) {
-          std::optional<Vec3> wi;
-          if (!block.directions.empty()) {
-            const std::array<float, 3> decoded = formats::decode_normal(block.directions[i]);
-            wi = Vec3{decoded[0], decoded[1], decoded[2]};
-          }
-          const std::array<float, 3>& flux = block.photons[i].flux;
-          if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, wi))
-            seen[k].push_back({*splat, channel_mean(Rgbd(Rgb{flux[0], flux[1], flux[2]}))});
+  parallel_each(kAudits, 1, [&](std::size_t k) {
+    PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
+                          .photon_count = (effort.photon_paths + kAudits - 1) / kAudits,
+                          .group_count = 1};
+    const PhotonTracer photons(tracer, lights, options);
+    for (std::size_t b = 0; b < photons.batch_count(); ++b) {
+      const formats::PhotonBlock block = photons.trace(b).block;
+      for (std::size_t i = 0; i < block.photons.size(); ++i) {
+        std::optional<Vec3> wi;
+        if (!block.directions.empty()) {
+          const std::array<float, 3> decoded = formats::decode_normal(block.directions[i]);
+          wi = Vec3{decoded[0], decoded[1], decoded[2]};
         }
+        const std::array<float, 3>& flux = block.photons[i].flux;
+        if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, wi))
+          seen[k].push_back({*splat, channel_mean(Rgbd(Rgb{flux[0], flux[1], flux[2]}))});
       }
     }
   });
@@ -127,22 +125,19 @@ void FrameAudit::expect(const Tracer& tracer, const PhotonSplats& camera, const 
     const int x = int(i) % columns * kStep, y = int(i) / columns * kStep;
     return std::pair(x, y);
   };
-  parallel_chunks(unit.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const auto [x, y] = pixel_of(i);
-      const Ray ray = view_.ray(float(x) + 0.5f, float(y) + 0.5f);
-      Hit hit;
-      if (!tracer.intersect(ray, hit)) continue;
-      const SurfacePoint place = tracer.surface_point(hit);
-      const Vec3 normal =
-          dot(place.normal_geometric, ray.direction) < 0 ? place.normal_geometric : -place.normal_geometric;
-      const formats::Photon photon{.position = {place.position.x, place.position.y, place.position.z},
-                                   .flux = {1, 1, 1},
-                                   .normal = formats::encode_normal({normal.x, normal.y, normal.z}),
-                                   .kind = formats::PathKind::indirect};
-      if (const std::optional<Splat> splat = camera.splat(photon, {}, {}))
-        unit[i] = channel_mean(Rgbd(splat->radiance));
-    }
+  parallel_each(unit.size(), 64, [&](std::size_t i) {
+    const auto [x, y] = pixel_of(i);
+    const Ray ray = view_.ray(float(x) + 0.5f, float(y) + 0.5f);
+    Hit hit;
+    if (!tracer.intersect(ray, hit)) return;
+    const SurfacePoint place = tracer.surface_point(hit);
+    const Vec3 normal =
+        dot(place.normal_geometric, ray.direction) < 0 ? place.normal_geometric : -place.normal_geometric;
+    const formats::Photon photon{.position = {place.position.x, place.position.y, place.position.z},
+                                 .flux = {1, 1, 1},
+                                 .normal = formats::encode_normal({normal.x, normal.y, normal.z}),
+                                 .kind = formats::PathKind::indirect};
+    if (const std::optional<Splat> splat = camera.splat(photon, {}, {})) unit[i] = channel_mean(Rgbd(splat->radiance));
   });
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const auto [x, y] = pixel_of(i);
@@ -166,22 +161,20 @@ void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) 
     std::array<double, kLayerCount> layer{};
   };
   std::vector<Found> found(kAudits * count);
-  parallel_chunks(found.size(), 64, [&](std::size_t first, std::size_t last) {
+  parallel_each(found.size(), 64, [&](std::size_t i) {
+    const std::uint64_t seed = mix64(effort.seed ^ (kEyeKey + i / count));
+    const std::size_t run = i % count;
+    const PixelRandom random(seed, run, 0);
+    const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, run).get2(0, Purpose::pixel);
+    const std::size_t pixel =
+        std::min(pixels - 1, std::size_t((double(run) + double(within.x)) * double(pixels) / double(count)));
+    found[i].pixel = pixel;
+    if (!mask_.empty() && !mask_[pixel]) return;
+    const auto width = std::size_t(view_.width());
+    const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
     RayCounts rays;
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint64_t seed = mix64(effort.seed ^ (kEyeKey + i / count));
-      const std::size_t run = i % count;
-      const PixelRandom random(seed, run, 0);
-      const Vec2 jitter = random.get2(0, Purpose::pixel), within = PathRandom(seed ^ 1, run).get2(0, Purpose::pixel);
-      const std::size_t pixel =
-          std::min(pixels - 1, std::size_t((double(run) + double(within.x)) * double(pixels) / double(count)));
-      found[i].pixel = pixel;
-      if (!mask_.empty() && !mask_[pixel]) continue;
-      const auto width = std::size_t(view_.width());
-      const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
-      const Layers light = trace_eye_path(scene, ray, random, nullptr, rays, view_.cone());
-      for (std::size_t l = 0; l < kLayerCount; ++l) found[i].layer[l] = channel_mean(Rgbd(light.value[l]));
-    }
+    const Layers light = trace_eye_path(scene, ray, random, nullptr, rays, view_.cone());
+    for (std::size_t l = 0; l < kLayerCount; ++l) found[i].layer[l] = channel_mean(Rgbd(light.value[l]));
   });
   const double pixels_of_path = double(pixels) / double(count);
   for (std::size_t i = 0; i < found.size(); ++i)

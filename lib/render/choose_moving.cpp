@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/density/photon_index.h"
 #include "lib/gather/localised.h"
 #include "lib/photon/dynamic_map.h"
@@ -57,14 +58,12 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, co
     PhotonBatch batch, change;
   };
   std::vector<Piece> pieces(fixed.batch_count());
-  parallel_chunks(pieces.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t b = first; b < last; ++b) {
-      Piece& piece = pieces[b];
-      piece.batch = fixed.trace(b);
-      std::vector<std::uint64_t> paths;
-      for (const formats::TouchedPath& path : piece.batch.touched) paths.push_back(path.path);
-      if (!paths.empty()) piece.change = difference_of(fixed, whole, paths);
-    }
+  parallel_each(pieces.size(), 1, [&](std::size_t b) {
+    Piece& piece = pieces[b];
+    piece.batch = fixed.trace(b);
+    std::vector<std::uint64_t> paths;
+    for (const formats::TouchedPath& path : piece.batch.touched) paths.push_back(path.path);
+    if (!paths.empty()) piece.change = difference_of(fixed, whole, paths);
   });
   PilotMaps maps;
   for (const Piece& piece : pieces) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/pixel_surfaces.h"
 
@@ -160,13 +161,11 @@ void add_coverage_channel(const RenderScene& scene, const CameraView& view, cons
   std::uint32_t* const around = image.add_ids("coverage").ids.data();
   std::uint32_t* const other = image.add_ids("coverage.other").ids.data();
   const PixelCoverage pixels(scene, view);
-  parallel_chunks(image.pixel_count(), 1024, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      const PixelCoverage::Counts counts =
-          pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
-      around[p] = counts.around;
-      other[p] = counts.other;
-    }
+  parallel_each(image.pixel_count(), 1024, [&](std::size_t p) {
+    const PixelCoverage::Counts counts =
+        pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
+    around[p] = counts.around;
+    other[p] = counts.other;
   });
 }
 

@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "formats/error.h"
 #include "formats/large_pages.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/render/adaptive_frame.h"
 #include "lib/render/known_light.h"
 #include "lib/render/pixel_samples.h"
 
 namespace tempolux {
 namespace {
-
-constexpr std::size_t kChunk = 4096;  ///< pixels
 
 /// Adds samples [first, first + count) of every pixel of one half to `image`.
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
@@ -72,11 +69,9 @@ Rgb total(const Layers& layers) {
 }
 
 double mean_radiance(const LayerImage& image) {
-  std::vector<double> sums((image.pixels.size() + kChunk - 1) / kChunk);
-  parallel_chunks(image.pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) sums[first / kChunk] += channel_sum(Rgbd(total(image.pixels[p])));
+  const double sum = parallel_sum<double>(image.pixels.size(), 4096, [&](std::size_t p, double& light) {
+    light += channel_sum(Rgbd(total(image.pixels[p])));
   });
-  const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
   return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "formats/error.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/image/channel_groups.h"
 #include "lib/render/known_light.h"
 
@@ -20,15 +20,13 @@ void add_influence_channels(const RenderScene& scene, const CameraView& view, co
   float* const influence = image.add("influence").values.data();
   float* const share = image.add("blend").values.data();
   const auto width = std::size_t(view.width());
-  parallel_chunks(image.pixel_count(), 512, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      const std::optional<SeenPoint> seen =
-          seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});
-      if (!seen) continue;
-      const float here = light->influence(seen->surface, seen->normal);
-      influence[p] = std::isfinite(here) ? here : light->thresholds().high;
-      share[p] = light->gathered_share(seen->surface, seen->normal);
-    }
+  parallel_each(image.pixel_count(), 512, [&](std::size_t p) {
+    const std::optional<SeenPoint> seen =
+        seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});
+    if (!seen) return;
+    const float here = light->influence(seen->surface, seen->normal);
+    influence[p] = std::isfinite(here) ? here : light->thresholds().high;
+    share[p] = light->gathered_share(seen->surface, seen->normal);
   });
 }
 

@@ -1,6 +1,6 @@
 #include "lib/render/pilot_photons.h"
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/photon/photon_trace.h"
 
 namespace tempolux {
@@ -14,9 +14,7 @@ formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, c
   options.set_kinds(kinds);
   const PhotonTracer photons_of(tracer, lights, options);
   std::vector<PhotonBatch> batches(photons_of.batch_count());
-  parallel_chunks(batches.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t b = first; b < last; ++b) batches[b] = photons_of.trace(b);
-  });
+  parallel_each(batches.size(), 1, [&](std::size_t b) { batches[b] = photons_of.trace(b); });
   formats::PhotonBlock all;
   for (const PhotonBatch& batch : batches) {
     all.photons.insert(all.photons.end(), batch.block.photons.begin(), batch.block.photons.end());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/image/image.h"
 #include "lib/render/path_tracer.h"
 
@@ -55,11 +55,9 @@ template <class Colour>
 void add_colour(const std::string& prefix, Image& image, const Colour& colour) {
   std::array<float*, 3> to{};
   for (std::size_t c = 0; c < 3; ++c) to[c] = image.add(prefix + "RGB"[c]).values.data();
-  parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      const Rgb value = colour(p);
-      for (std::size_t c = 0; c < 3; ++c) to[c][p] = value[int(c)];
-    }
+  parallel_each(image.pixel_count(), 4096, [&](std::size_t p) {
+    const Rgb value = colour(p);
+    for (std::size_t c = 0; c < 3; ++c) to[c][p] = value[int(c)];
   });
 }
 

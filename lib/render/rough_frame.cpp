@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/sobol.h"
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
@@ -75,19 +76,15 @@ Samples take_samples(const RenderScene& scene, const CameraView& view, const Kno
                      const RoughOptions& options, RayCounts& counts) {
   const std::uint64_t seed = options.seed;
   Samples samples(std::size_t(options.places));
-  std::vector<RayCounts> by_place(samples.size());
-  parallel_chunks(samples.size(), 32, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Where at = where(int(i), view, seed);
-      for (std::uint32_t s = 0; s < kSamples; ++s) {
-        const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
-        const Vec2 in_pixel = random.get2(0, Purpose::pixel);
-        const Ray ray = view.ray(at.x + in_pixel.x, at.y + in_pixel.y);
-        samples[i][s] = sample_of(trace_eye_path(scene, ray, random, known, by_place[i], view.cone()));
-      }
+  counts += parallel_sum<RayCounts>(samples.size(), 32, [&](std::size_t i, RayCounts& rays) {
+    const Where at = where(int(i), view, seed);
+    for (std::uint32_t s = 0; s < kSamples; ++s) {
+      const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
+      const Vec2 in_pixel = random.get2(0, Purpose::pixel);
+      const Ray ray = view.ray(at.x + in_pixel.x, at.y + in_pixel.y);
+      samples[i][s] = sample_of(trace_eye_path(scene, ray, random, known, rays, view.cone()));
     }
   });
-  for (const RayCounts& some : by_place) counts += some;
   return samples;
 }
 

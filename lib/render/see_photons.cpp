@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/material/bsdf.h"
@@ -66,13 +66,11 @@ Vec2 look_at(std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); }
 /// The places that camera rays reach through mirrors and glass, by ray; empty if no ray does.
 std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, const CameraView& view) {
   std::vector<std::optional<SeenPoint>> places(kLooks);
-  parallel_chunks(kLooks, 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Vec2 at = look_at(i);
-      const Look look{at.x * float(view.width()), at.y * float(view.height()), PathRandom(kLooks, i)};
-      places[i] = seen_through(scene.tracer, view, look);
-      if (places[i] && !places[i]->by_choice) places[i].reset();
-    }
+  parallel_each(kLooks, 64, [&](std::size_t i) {
+    const Vec2 at = look_at(i);
+    const Look look{at.x * float(view.width()), at.y * float(view.height()), PathRandom(kLooks, i)};
+    places[i] = seen_through(scene.tracer, view, look);
+    if (places[i] && !places[i]->by_choice) places[i].reset();
   });
   if (std::ranges::none_of(places, [](const auto& place) { return place.has_value(); })) places.clear();
   return places;
@@ -83,9 +81,8 @@ std::vector<SeenFlux> all_behind(const RenderScene& scene, std::span<const std::
   if (places.empty()) return {};
   const FootprintDensity density(scene.tracer, photons, {.asked = 8}, kind_bit(kind));
   std::vector<SeenFlux> behind(density.empty() ? 0 : places.size());
-  parallel_chunks(behind.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) behind[i] = seen_behind(scene, density, places[i], look_at(i));
-  });
+  parallel_each(behind.size(), 64,
+                [&](std::size_t i) { behind[i] = seen_behind(scene, density, places[i], look_at(i)); });
   return behind;
 }
 
@@ -117,9 +114,8 @@ SeenLight see_photons(const RenderScene& scene, const CameraView& view, const Ph
   const PhotonSplats splats(scene.tracer, view);
   const auto of_kind = [&](formats::PathKind kind) {
     std::vector<SeenFlux> seen(photons.photons.size());
-    parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        if (photons.photons[i].kind == kind) seen[i] = seen_flux(splats, view, photons, i);
+    parallel_each(photons.photons.size(), 64, [&](std::size_t i) {
+      if (photons.photons[i].kind == kind) seen[i] = seen_flux(splats, view, photons, i);
     });
     return joined(seen, all_behind(scene, places, photons, kind));
   };

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
 #include "lib/render/shading.h"
@@ -74,15 +74,13 @@ void add_seen_channels(const RenderScene& scene, const CameraView& view, const s
   for (std::size_t i = 0; i < kNames.size(); ++i) to[i] = image.add(kNames[i]).values.data();
   std::uint32_t* const ids = image.add_ids("seen.id").ids.data();
   const auto width = std::size_t(view.width());
-  parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      const Ray ray = view.ray(float(p % width) + 0.5f, float(p / width) + 0.5f);
-      const Shown shown = follow(scene.tracer, view, ray);
-      const std::array<float, kNames.size()> values{shown.depth,    shown.normal.x, shown.normal.y, shown.normal.z,
-                                                    shown.albedo.r, shown.albedo.g, shown.albedo.b};
-      for (std::size_t i = 0; i < values.size(); ++i) to[i][p] = values[i];
-      ids[p] = shown.id;
-    }
+  parallel_each(image.pixel_count(), 4096, [&](std::size_t p) {
+    const Ray ray = view.ray(float(p % width) + 0.5f, float(p / width) + 0.5f);
+    const Shown shown = follow(scene.tracer, view, ray);
+    const std::array<float, kNames.size()> values{shown.depth,    shown.normal.x, shown.normal.y, shown.normal.z,
+                                                  shown.albedo.r, shown.albedo.g, shown.albedo.b};
+    for (std::size_t i = 0; i < values.size(); ++i) to[i][p] = values[i];
+    ids[p] = shown.id;
   });
 }
 

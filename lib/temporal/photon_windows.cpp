@@ -9,7 +9,7 @@
 #include <unordered_map>
 
 #include "formats/octahedral.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 
 namespace tempolux {
@@ -353,22 +353,20 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
   const double density = around.all().block(0, int(frames.size()) - 1).photons / double(frames.size()) * full / area;
   CollectedLight result{{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<double>(elements.size(), 0)},
                         std::vector<float>(elements.size(), 0)};
-  parallel_chunks(elements.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const HitSeries& kernel = around.kernel(i);
-      if (kernel.block(0, int(frames.size()) - 1).photons == 0) continue;
-      HitSeries own(frames.size());
-      for (const HitTable::Entry& entry : table.of(i))
-        own.at(entry.frame) += hits_of(*entry.counted, unit_of(frames, entry));
-      own.sum_up();
-      const Window window =
-          grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
-      std::tie(result.flux.mean[i], result.flux.squares[i]) =
-          put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
-      const double photons = kernel.block(now - window.before, now + window.after).photons;
-      const double fewer = density * around.kernel_area(i) / std::max(1.0, photons);
-      result.widths[i] = float(options.width * std::sqrt(std::sqrt(std::clamp(fewer, 1.0, full))));
-    }
+  parallel_each(elements.size(), kChunk, [&](std::size_t i) {
+    const HitSeries& kernel = around.kernel(i);
+    if (kernel.block(0, int(frames.size()) - 1).photons == 0) return;
+    HitSeries own(frames.size());
+    for (const HitTable::Entry& entry : table.of(i))
+      own.at(entry.frame) += hits_of(*entry.counted, unit_of(frames, entry));
+    own.sum_up();
+    const Window window =
+        grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
+    std::tie(result.flux.mean[i], result.flux.squares[i]) =
+        put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
+    const double photons = kernel.block(now - window.before, now + window.after).photons;
+    const double fewer = density * around.kernel_area(i) / std::max(1.0, photons);
+    result.widths[i] = float(options.width * std::sqrt(std::sqrt(std::clamp(fewer, 1.0, full))));
   });
   return result;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lib/core/frame.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/transport/media.h"
@@ -14,7 +14,6 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kRays = 4;
-constexpr std::size_t kChunk = 64;  ///< places
 constexpr std::uint64_t kSeed = 0x736b79;
 
 void add_hits(const Tracer& tracer, const Lights& lights, const SkyPlace& from, std::uint32_t number,
@@ -35,15 +34,12 @@ void add_hits(const Tracer& tracer, const Lights& lights, const SkyPlace& from, 
 std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
                                           std::span<const SkyPlace> places) {
   if (!lights.has_environment()) return nullptr;
-  std::vector<std::vector<SkyGuide::Hit>> found((places.size() + kChunk - 1) / kChunk);
-  parallel_chunks(places.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-      add_hits(tracer, lights, places[i], std::uint32_t(i), found[first / kChunk]);
-  });
+  std::vector<SkyGuide::Hit> hits =
+      parallel_found<SkyGuide::Hit>(places.size(), 64, [&](std::size_t i, std::vector<SkyGuide::Hit>& found) {
+        add_hits(tracer, lights, places[i], std::uint32_t(i), found);
+      });
   std::vector<SkyGuide::Place> senders;
   for (const SkyPlace& place : places) senders.push_back({place.surface.position, place.shading});
-  std::vector<SkyGuide::Hit> hits;
-  for (const auto& some : found) hits.insert(hits.end(), some.begin(), some.end());
   auto guide = std::make_shared<const SkyGuide>(senders, std::move(hits), int(kRays));
   return guide->empty() ? nullptr : guide;
 }

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -98,20 +98,17 @@ PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const N
   const SeenSurfaces& seen = view.seen();
   PixelFlow flow(seen.width, seen.height);
   const Neighbour later(view, next), earlier(view, previous);
-  parallel_chunks(seen.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      const RasterPoint centre{double(p % std::size_t(seen.width)) + 0.5, double(p / std::size_t(seen.width)) + 0.5};
-      const bool nothing = !(seen.depth[p] < INFINITY);
-      if (nothing && view.camera().orthographic()) continue;
-      const Vec3d at =
-          nothing ? view.camera().direction(centre) : view.camera().unproject(centre, double(seen.depth[p]));
-      const Followed f = follow(later, p, at, nothing, centre), b = follow(earlier, p, at, nothing, centre);
-      flow.forward[p] = f.flow;
-      flow.backward[p] = b.flow;
-      flow.valid[p] = std::uint32_t(f.known) * forward_known + std::uint32_t(b.known) * backward_known;
-      if (!view.camera().orthographic() && (f.known || b.known))
-        flow.speed[p] = float(angular_speed(at, f.known ? f.there : b.there, fps));
-    }
+  parallel_each(seen.pixel_count(), 4096, [&](std::size_t p) {
+    const RasterPoint centre{double(p % std::size_t(seen.width)) + 0.5, double(p / std::size_t(seen.width)) + 0.5};
+    const bool nothing = !(seen.depth[p] < INFINITY);
+    if (nothing && view.camera().orthographic()) return;
+    const Vec3d at = nothing ? view.camera().direction(centre) : view.camera().unproject(centre, double(seen.depth[p]));
+    const Followed f = follow(later, p, at, nothing, centre), b = follow(earlier, p, at, nothing, centre);
+    flow.forward[p] = f.flow;
+    flow.backward[p] = b.flow;
+    flow.valid[p] = std::uint32_t(f.known) * forward_known + std::uint32_t(b.known) * backward_known;
+    if (!view.camera().orthographic() && (f.known || b.known))
+      flow.speed[p] = float(angular_speed(at, f.known ? f.there : b.there, fps));
   });
   return flow;
 }

@@ -5,6 +5,7 @@
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -54,17 +55,13 @@ void KeyFrame::look_at_pixels() {
   whole_ = whole_pixels(seen_, camera_);
   shown_.resize(seen_.pixel_count());
   const auto width = std::size_t(seen_.width), height = std::size_t(seen_.height);
-  parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first, p = first * width; y < last; ++y)
-      for (std::size_t x = 0; x < width; ++x, ++p) shown_[p] = {seen_.depth[p], seen_.object_at(p), seen_.normal_at(p)};
+  parallel_each(shown_.size(), 4096, [&](std::size_t p) {
+    shown_[p] = {seen_.depth[p], seen_.object_at(p), seen_.normal_at(p)};
   });
   std::vector<std::uint8_t> four(whole_.size());
-  parallel_chunks(height - 1, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first; y < last; ++y) {
-      const std::uint8_t *upper = whole_.data() + y * width, *lower = upper + width;
-      for (std::size_t x = 0; x + 1 < width; ++x)
-        four[y * width + x] = upper[x] & upper[x + 1] & lower[x] & lower[x + 1];
-    }
+  parallel_each(height - 1, 16, [&](std::size_t y) {
+    const std::uint8_t *upper = whole_.data() + y * width, *lower = upper + width;
+    for (std::size_t x = 0; x + 1 < width; ++x) four[y * width + x] = upper[x] & upper[x + 1] & lower[x] & lower[x + 1];
   });
   for (std::size_t p = 0; p < whole_.size(); ++p) whole_[p] = std::uint8_t(whole_[p] | four[p] << 1);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -114,34 +114,30 @@ void Masking::mark_changed_light(const std::array<std::vector<float>, 2>& light,
                                  std::vector<std::uint32_t>& why) const {
   const int width = target_.seen->width, height = target_.seen->height;
   const auto given = [&](std::size_t k, std::size_t p) { return k < keys_.size() && light[k][p] >= 0; };
-  parallel_chunks(std::size_t(height), 16, [&](std::size_t first, std::size_t last) {
-    for (int y = int(first); y < int(last); ++y)
-      for (int x = 0; x < width; ++x) {
-        const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-        if (!given(0, p) || !given(1, p)) {
-          // A pixel from one key alone: nothing shows that its light is the target frame's light.
-          for (std::size_t k = 0; k < keys_.size(); ++k)
-            if (given(k, p) && keys_[k].light_may_differ) why[p] |= formats::why_changed_light;
-          continue;
-        }
-        // Mean and standard error of the keys' difference over the surrounding pixels that both keys give.
-        double sum = 0, squares = 0, both = 0;
-        int n = 0;
-        for (int ny = std::max(y - kReach, 0); ny <= std::min(y + kReach, height - 1); ++ny)
-          for (int nx = std::max(x - kReach, 0); nx <= std::min(x + kReach, width - 1); ++nx) {
-            const std::size_t q = std::size_t(ny) * std::size_t(width) + std::size_t(nx);
-            if (!given(0, q) || !given(1, q)) continue;
-            const double a = double(light[0][q]), b = double(light[1][q]);
-            sum += a - b;
-            squares += (a - b) * (a - b);
-            both += 0.5 * (a + b);
-            ++n;
-          }
-        const double mean = sum / n, variance = n > 1 ? std::max(0.0, (squares - sum * mean) / (n - 1)) : 0;
-        const double least = options_.light_share * std::max(both / n, double(dark_));
-        if (std::abs(mean) > std::max(least, kStandardErrors * std::sqrt(variance / n)))
-          why[p] |= formats::why_changed_light;
+  parallel_pixels(width, height, [&](int x, int y, std::size_t p) {
+    if (!given(0, p) || !given(1, p)) {
+      // A pixel from one key alone: nothing shows that its light is the target frame's light.
+      for (std::size_t k = 0; k < keys_.size(); ++k)
+        if (given(k, p) && keys_[k].light_may_differ) why[p] |= formats::why_changed_light;
+      return;
+    }
+    // Mean and standard error of the keys' difference over the surrounding pixels that both keys give.
+    double sum = 0, squares = 0, both = 0;
+    int n = 0;
+    for (int ny = std::max(y - kReach, 0); ny <= std::min(y + kReach, height - 1); ++ny)
+      for (int nx = std::max(x - kReach, 0); nx <= std::min(x + kReach, width - 1); ++nx) {
+        const std::size_t q = std::size_t(ny) * std::size_t(width) + std::size_t(nx);
+        if (!given(0, q) || !given(1, q)) continue;
+        const double a = double(light[0][q]), b = double(light[1][q]);
+        sum += a - b;
+        squares += (a - b) * (a - b);
+        both += 0.5 * (a + b);
+        ++n;
       }
+    const double mean = sum / n, variance = n > 1 ? std::max(0.0, (squares - sum * mean) / (n - 1)) : 0;
+    const double least = options_.light_share * std::max(both / n, double(dark_));
+    if (std::abs(mean) > std::max(least, kStandardErrors * std::sqrt(variance / n)))
+      why[p] |= formats::why_changed_light;
   });
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "formats/error.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 
 namespace tempolux {
 namespace {
@@ -41,44 +41,37 @@ Vec3 unit_normal(Vec3 n) {
 }  // namespace
 
 std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCamera& camera) {
-  const auto width = std::size_t(seen.width), height = std::size_t(seen.height);
+  const int columns = seen.width, rows = seen.height;
+  const auto width = std::size_t(columns);
   const float angle = camera.orthographic() ? 0 : float(camera.pixel_width());
   std::vector<float> tolerance(seen.pixel_count());
-  parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first, p = first * width; y < last; ++y)
-      for (std::size_t x = 0; x < width; ++x, ++p)
-        tolerance[p] = depth_tolerance(angle, facing(camera, seen.normal_at(p), double(x) + 0.5, double(y) + 0.5));
+  parallel_pixels(columns, rows, [&](int x, int y, std::size_t p) {
+    tolerance[p] = depth_tolerance(angle, facing(camera, seen.normal_at(p), x + 0.5, y + 0.5));
   });
   // One bit for each neighbour that shows another face: right, and the three below.
   std::vector<std::uint8_t> ends(seen.pixel_count());
-  parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first, p = first * width; y < last; ++y)
-      for (std::size_t x = 0; x < width; ++x, ++p) {
-        const FacePoint here = point_at(seen, p);
-        // The larger of the two tolerances, so that both directions give the same answer.
-        const auto differs = [&](std::size_t q) {
-          return !same_face(here, point_at(seen, q), std::max(tolerance[p], tolerance[q]));
-        };
-        std::uint8_t bits = 0;
-        if (x + 1 < width && differs(p + 1)) bits |= 1;
-        if (y + 1 < height) {
-          if (x > 0 && differs(p + width - 1)) bits |= 2;
-          if (differs(p + width)) bits |= 4;
-          if (x + 1 < width && differs(p + width + 1)) bits |= 8;
-        }
-        ends[p] = bits;
-      }
+  parallel_pixels(columns, rows, [&](int x, int y, std::size_t p) {
+    const FacePoint here = point_at(seen, p);
+    // The larger of the two tolerances, so that both directions give the same answer.
+    const auto differs = [&](std::size_t q) {
+      return !same_face(here, point_at(seen, q), std::max(tolerance[p], tolerance[q]));
+    };
+    std::uint8_t bits = 0;
+    if (x + 1 < columns && differs(p + 1)) bits |= 1;
+    if (y + 1 < rows) {
+      if (x > 0 && differs(p + width - 1)) bits |= 2;
+      if (differs(p + width)) bits |= 4;
+      if (x + 1 < columns && differs(p + width + 1)) bits |= 8;
+    }
+    ends[p] = bits;
   });
   std::vector<std::uint8_t> whole(seen.pixel_count());
-  parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t y = first, p = first * width; y < last; ++y)
-      for (std::size_t x = 0; x < width; ++x, ++p) {
-        bool end = ends[p] != 0 || (x > 0 && (ends[p - 1] & 1));
-        if (y > 0)
-          end |= (ends[p - width] & 4) || (x > 0 && (ends[p - width - 1] & 8)) ||
-                 (x + 1 < width && (ends[p - width + 1] & 2));
-        whole[p] = !end;
-      }
+  parallel_pixels(columns, rows, [&](int x, int y, std::size_t p) {
+    bool end = ends[p] != 0 || (x > 0 && (ends[p - 1] & 1));
+    if (y > 0)
+      end |= (ends[p - width] & 4) || (x > 0 && (ends[p - width - 1] & 8)) ||
+             (x + 1 < columns && (ends[p - width + 1] & 2));
+    whole[p] = !end;
   });
   return whole;
 }
