@@ -1,20 +1,11 @@
 #include "lib/photon/dynamic_map.h"
 
 #include <algorithm>
-#include <memory>
 
-#include "lib/core/parallel.h"
 #include "lib/photon/photon_ledger.h"
 
 namespace tempolux {
 namespace {
-
-constexpr int kChunksPerThread = 2;  ///< in flight
-
-struct Piece {
-  PhotonBatch batch;
-  std::string bytes;
-};
 
 /// The photons of a batch sorted by path: path i has the photons first[i] to first[i + 1] - 1, in order of bounce.
 struct ByPath {
@@ -62,10 +53,7 @@ PhotonBatch difference_of(const PhotonTracer& static_scene, const PhotonTracer& 
     };
     for (const std::uint32_t p : a.subspan(common)) take(before, p, negative(before.block.photons[p]));
     for (const std::uint32_t p : b.subspan(common)) take(after, p, after.block.photons[p]);
-    const FluxBalance &was = before.balance_of[path], &is = after.balance_of[number_of[path]];
-    result.emitted += is.emitted - was.emitted;
-    result.escaped += is.escaped - was.escaped;
-    result.absorbed += is.absorbed - was.absorbed;
+    result += after.balance_of[number_of[path]] - before.balance_of[path];
   }
   result.path_count = before.path_count + after.path_count;
   result.ray_count = before.ray_count + after.ray_count;
@@ -86,37 +74,15 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& static_scene, const Photon
       borders.push_back(i);
   if (!paths.empty()) borders.push_back(paths.size());
 
-  PhotonMapResult result;
-  header.group_count = whole.group_count();
-  header.emitted_count = whole.photon_count();
-  header.kinds = options.kinds();
-  if (whole.stores_directions()) header.columns |= formats::column_direction;
-  formats::PhotonWriter writer(sink, header);
-  Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
-  parallel_ordered(
-      borders.size() - 1, std::size_t(kChunksPerThread * parallel_thread_count()),
-      [&](std::size_t i) -> std::shared_ptr<void> {
-        auto piece = std::make_shared<Piece>();
-        piece->batch = difference_of(static_scene, whole, paths.subspan(borders[i], borders[i + 1] - borders[i]));
-        if (!piece->batch.block.photons.empty())
-          piece->bytes = formats::encode_block(piece->batch.block, header.columns);
-        return piece;
+  describe_map(whole, options, header);
+  BatchWriter writer(sink, header, progress);
+  PhotonMapResult result = writer.write(
+      borders.size() - 1,
+      [&](std::size_t i) {
+        return difference_of(static_scene, whole, paths.subspan(borders[i], borders[i + 1] - borders[i]));
       },
-      [&](std::size_t i, void* pointer) {
-        const auto& piece = *static_cast<const Piece*>(pointer);
-        if (!piece.bytes.empty()) writer.write_encoded(piece.bytes, piece.batch.block);
-        result.path_count += piece.batch.path_count;
-        result.ray_count += piece.batch.ray_count;
-        result.specular_ray_count += piece.batch.specular_ray_count;
-        emitted += piece.batch.emitted;
-        escaped += piece.batch.escaped;
-        absorbed += piece.batch.absorbed;
-        if (progress) progress(double(i + 1) / double(borders.size() - 1));
-      });
-  result.totals.emitted_flux = as_array(emitted);
-  result.totals.escaped_flux = as_array(escaped);
-  result.totals.absorbed_flux = as_array(absorbed);
-  result.totals = writer.finish(result.totals);
+      [](const PhotonBatch&) {});
+  writer.finish(result.totals);
   return result;
 }
 

@@ -1,12 +1,17 @@
-// lib/photon/photon_ledger.h -- shared by the writers of photon maps: the ledger of flux by group, the header, records
-// of media.
+// lib/photon/photon_ledger.h -- shared by the writers of photon maps: the ledger of flux by group, the header, batches
+// traced in parallel and written in order, records of media.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
 
 #include "formats/photons/photons.h"
+#include "lib/core/parallel.h"
 #include "lib/photon/photon_map.h"
 
 namespace tempolux {
@@ -32,7 +37,7 @@ inline void close_ledger(formats::GroupFlux& group) {
   for (double& flux : group.absorbed) flux = std::max(flux, 0.0);
 }
 
-inline void count(const PhotonBatch& batch, PhotonMapResult& result) {
+inline void add_counts(const PhotonBatch& batch, PhotonMapResult& result) {
   result.path_count += batch.path_count;
   result.ray_count += batch.ray_count;
   result.specular_ray_count += batch.specular_ray_count;
@@ -51,6 +56,58 @@ inline void describe_map(const PhotonTracer& tracer, const PhotonOptions& option
   }
   if (tracer.stores_directions()) header.columns |= formats::column_direction;
 }
+
+/// Writes a photon map from batches.
+class BatchWriter {
+ public:
+  /// `progress` is called with values in [0, 1]; it may be empty.
+  BatchWriter(const std::function<void(const void*, std::size_t)>& sink, const formats::PhotonHeader& header,
+              const std::function<void(double)>& progress)
+      : writer_(sink, header), columns_(header.columns), progress_(progress) {}
+
+  /// Calls trace(i) for each i < count in parallel, writes the batches in order, and calls take(batch) for each written
+  /// one. Returns the counts and the sums of flux.
+  template <class Trace, class Take>
+  PhotonMapResult write(std::size_t count, const Trace& trace, const Take& take) {
+    struct Encoded {
+      PhotonBatch batch;
+      std::string bytes;
+    };
+    constexpr int kOfThread = 2;  // in flight, 100 kB each: one is traced, one waits to be written
+    PhotonMapResult result;
+    FluxBalance sum;
+    parallel_ordered(
+        count, std::size_t(kOfThread * parallel_thread_count()),
+        [&](std::size_t i) -> std::shared_ptr<void> {
+          auto item = std::make_shared<Encoded>();
+          item->batch = trace(i);
+          if (!item->batch.block.photons.empty()) item->bytes = formats::encode_block(item->batch.block, columns_);
+          return item;
+        },
+        [&](std::size_t i, void* pointer) {
+          const auto& [batch, bytes] = *static_cast<const Encoded*>(pointer);
+          if (!bytes.empty()) writer_.write_encoded(bytes, batch.block);
+          add_counts(batch, result);
+          sum += batch;
+          result.touched.insert(result.touched.end(), batch.touched.begin(), batch.touched.end());
+          take(batch);
+          if (progress_) progress_(double(i + 1) / double(count));
+        });
+    result.totals.emitted_flux = as_array(sum.emitted);
+    result.totals.escaped_flux = as_array(sum.escaped);
+    result.totals.absorbed_flux = as_array(sum.absorbed);
+    return result;
+  }
+  /// PhotonWriter::finish.
+  void finish(formats::PhotonTotals& totals, std::span<const formats::GroupFlux> ledger = {}) {
+    totals = writer_.finish(totals, ledger);
+  }
+
+ private:
+  formats::PhotonWriter writer_;
+  std::uint32_t columns_;
+  const std::function<void(double)>& progress_;
+};
 
 /// A tentative photon stores in place of a normal the probability that its collision was real: extinction / majorant in
 /// 65534ths.

@@ -16,17 +16,17 @@ const MajorantGrid& PhotonTracer::majorants() const {
 }
 
 /// Follows photons to the next surface, as the loop of follow() does without media. Photons that a medium scatters
-/// before they reach a surface are listed in `scattered`. Returns the number of photons that arrive.
-std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits,
-                              std::uint32_t* scattered, std::size_t& scattered_count, PhotonBatch& batch) const {
+/// before they reach a surface are listed in wave.scattered. Returns the number of photons that arrive.
+std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Wave& wave, std::size_t& scattered_count,
+                              PhotonBatch& batch) const {
   std::size_t arrived = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    Path& path = paths[alive[i]];
-    const bool meets = tracer_.intersect(path.ray, hits[arrived]);
-    const Flown flown = fly_through_media(path, meets ? hits[arrived].t : INFINITY, bounce, batch);
-    if (flown == Flown::scattered) scattered[scattered_count++] = alive[i];
+    Path& path = wave.paths[wave.alive[i]];
+    const bool meets = tracer_.intersect(path.ray, wave.hits[arrived]);
+    const Flown flown = fly_through_media(path, meets ? wave.hits[arrived].t : INFINITY, bounce, batch);
+    if (flown == Flown::scattered) wave.scattered[scattered_count++] = wave.alive[i];
     if (flown != Flown::through) continue;
-    if (meets) alive[arrived++] = alive[i];
+    if (meets) wave.alive[arrived++] = wave.alive[i];
     else path.balance->escaped += Rgbd(path.flux);
   }
   return arrived;
@@ -51,9 +51,15 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     if (path.pilot) [[unlikely]]
       pilot_signature::look(*path.pilot, bits & 1, flux, extinction,
                             t.majorant);  // the last bit of the word, which FlightNumbers does not use
-    if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share)
-      record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, extinction, t.majorant,
-                       bounce, batch);
+    if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share) {
+      const Rgb stored = flux * (1 / (t.majorant * options_.volume_share));
+      batch.block.photons.push_back({.position = {position.x, position.y, position.z},
+                                     .flux = {stored.r, stored.g, stored.b},
+                                     .normal = encode_likelihood(extinction, t.majorant),
+                                     .kind = formats::PathKind::tentative,
+                                     .bounce = std::uint8_t(std::min(bounce, 255u))});
+      if (stores_directions()) record_direction(-path.ray.direction, batch);
+    }
     if (!(numbers.accept * t.majorant < extinction)) continue;
 
     if (path.pilot) [[unlikely]]
@@ -71,19 +77,6 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     path.ray = {position, sample_hg(medium.g, path.ray.direction, random.get2(bounce, Purpose::phase)), 0, INFINITY};
     return Flown::scattered;
   }
-}
-
-void PhotonTracer::record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant,
-                                    std::uint32_t bounce, PhotonBatch& batch) const {
-  formats::Photon& photon = batch.block.photons.emplace_back();
-  photon.position = {position.x, position.y, position.z};
-  photon.flux = {flux.r, flux.g, flux.b};
-  photon.normal = encode_likelihood(extinction, majorant);
-  photon.kind = formats::PathKind::tentative;
-  photon.bounce = std::uint8_t(std::min(bounce, 255u));
-  if (!stores_directions()) return;
-  const Vec3 wi = -path.ray.direction;
-  batch.block.directions.push_back(formats::encode_normal({wi.x, wi.y, wi.z}));
 }
 
 }  // namespace tempolux

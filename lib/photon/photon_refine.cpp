@@ -14,16 +14,16 @@
 namespace tempolux {
 namespace {
 
-/// Scales all sums and photons of a batch by a factor.
-void scale(PhotonBatch& batch, double factor) {
-  for (formats::Photon& photon : batch.block.photons)
+void scale(std::vector<formats::Photon>& photons, double factor) {
+  for (formats::Photon& photon : photons)
     for (float& flux : photon.flux) flux = float(double(flux) * factor);
-  for (Rgbd* flux : {&batch.emitted, &batch.escaped, &batch.absorbed}) *flux = *flux * factor;
 }
 
-struct Refined {
-  std::vector<PhotonBatch> fresh;  ///< new paths of one group
-};
+/// Scales all sums and photons of a batch by a factor.
+void scale(PhotonBatch& batch, double factor) {
+  scale(batch.block.photons, factor);
+  for (Rgbd* flux : {&batch.emitted, &batch.escaped, &batch.absorbed}) *flux = *flux * factor;
+}
 
 }  // namespace
 
@@ -151,32 +151,29 @@ PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOption
   parallel_ordered(
       paths.size(), std::size_t(2 * parallel_thread_count()),
       [&](std::size_t g) -> std::shared_ptr<void> {
-        auto refined = std::make_shared<Refined>();
+        auto fresh = std::make_shared<std::vector<PhotonBatch>>();
         // The tracer divides flux by `members`.
         const double factor = double(tracer.members()) / double(std::max<std::uint64_t>(1, paths[g]));
         for (std::uint64_t q = groups.paths[g]; q < paths[g]; q += PhotonTracer::kBatch) {
-          refined->fresh.push_back(
-              tracer.trace_members(std::uint32_t(g), q, std::min(paths[g], q + PhotonTracer::kBatch)));
-          scale(refined->fresh.back(), factor);
+          fresh->push_back(tracer.trace_members(std::uint32_t(g), q, std::min(paths[g], q + PhotonTracer::kBatch)));
+          scale(fresh->back(), factor);
         }
-        return refined;
+        return fresh;
       },
       [&](std::size_t g, void* pointer) {
         const double factor = double(groups.paths[g]) / double(std::max<std::uint64_t>(1, paths[g]));
         for (; more && block.group == g; more = reader.read_block(block)) {
-          if (factor != 1)
-            for (formats::Photon& photon : block.photons)
-              for (float& flux : photon.flux) flux = float(double(flux) * factor);
+          if (factor != 1) scale(block.photons, factor);
           writer.write(block);
         }
         formats::GroupFlux& entry = ledger[g];
         for (auto* flux : {&entry.emitted, &entry.escaped, &entry.absorbed})
           for (double& f : *flux) f *= factor;
-        for (const PhotonBatch& batch : static_cast<const Refined*>(pointer)->fresh) {
+        for (const PhotonBatch& batch : *static_cast<const std::vector<PhotonBatch>*>(pointer)) {
           if (!batch.block.photons.empty()) writer.write(batch.block);
           const std::int32_t frame = entry.frame;
           add_to_ledger(batch, frame, entry);
-          count(batch, result);
+          add_counts(batch, result);
         }
         close_ledger(entry);
       });

@@ -105,28 +105,12 @@ struct Textured {
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
 
-/// Field by field: copying a record of 32 bytes that was just assembled would stall.
-void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std::uint32_t bounce,
-            std::vector<formats::Photon>& photons) {
-  formats::Photon& photon = photons.emplace_back();
-  photon.position = {point.position.x, point.position.y, point.position.z};
-  photon.flux = {flux.r, flux.g, flux.b};
-  photon.normal = formats::encode_normal({normal.x, normal.y, normal.z});
-  photon.object = std::uint16_t(point.object);
-  photon.kind = kind;
-  photon.bounce = std::uint8_t(std::min(bounce, 255u));
-}
-
 /// True if caustic light can fall on a Lambert lobe with a normal map. Tests all materials, whether or not they are in
 /// the frame, so that the static map and the global map have the same columns.
 bool normal_maps_see_caustics(const std::vector<Material>& materials) {
   return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return lobes_of(m).specular; }) &&
          std::any_of(materials.begin(), materials.end(),
                      [](const Material& m) { return m.textures && m.textures->normal && may_have_lambert(m); });
-}
-
-void record_direction(Vec3 wi, PhotonBatch& batch) {
-  batch.block.directions.push_back(formats::encode_normal({wi.x, wi.y, wi.z}));
 }
 
 }  // namespace
@@ -258,130 +242,144 @@ void sort_by_path(std::span<const std::uint8_t> of, std::size_t first, PhotonBat
 
 }  // namespace
 
+/// Starts the paths of a wave. Returns the number of paths alive: lights that are off emit nothing.
+std::size_t PhotonTracer::start(std::span<const std::uint64_t> numbers, std::uint32_t first_path, Wave& wave,
+                                PhotonBatch& batch) const {
+  std::array<double, 4> emission_numbers[kWave];
+  for (std::size_t i = 0; i < numbers.size(); ++i) emission_numbers[i] = halton_.point(numbers[i]);
+  lights_.emit({emission_numbers, numbers.size()}, {wave.emissions, numbers.size()});
+  if (batch.by_path) wave.moved = &batch.moved[first_path];
+  const float share = float(1.0 / double(photon_count()));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const PhotonEmission& e = wave.emissions[i];
+    Path& path = wave.paths[i];
+    if (watch_) wave.touched[i] = slot_moves_[e.slot] ? watch_->all() : 0;
+    path.random = PathRandom(options_.seed, numbers[i]);
+    path.flux = e.flux * share;
+    path.ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
+    path.balance = batch.by_path ? &batch.balance_of[first_path + i] : &batch;
+    if (wave.moved) [[unlikely]]
+      wave.moved[i] = std::uint8_t(slot_moves_[e.slot]);
+    path.balance->emitted += Rgbd(path.flux);
+    if (!batch.pilots.empty()) [[unlikely]]
+      if (const std::uint64_t member = numbers[i] / group_count_; member < batch.pilots.size()) {
+        path.pilot = &batch.pilots[member];
+        pilot_signature::start(*path.pilot, path.ray, path.flux);
+      }
+    if (!is_black(path.flux)) wave.alive[count++] = std::uint32_t(i);
+  }
+  batch.path_count += numbers.size();
+  return count;
+}
+
 /// Processes the photons of a wave step by step: the steps of different photons are independent, so the processor
 /// overlaps them.
 void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path,
                           PhotonBatch& batch) const {
-  const std::size_t started = path_numbers.size();
-  Path paths[kWave];
-  std::array<double, 4> emission_numbers[kWave];
-  PhotonEmission emissions[kWave];
-  for (std::size_t i = 0; i < started; ++i) emission_numbers[i] = halton_.point(path_numbers[i]);
-  lights_.emit({emission_numbers, started}, {emissions, started});
-  std::uint32_t alive[kWave], scattered[kWave];  // indices of paths
-  const float share = float(1.0 / double(photon_count()));
-  std::size_t count = 0;
-  std::uint64_t touched[kWave];  // by interval, if movers are watched
-  for (std::size_t i = 0; i < started; ++i) {
-    const PhotonEmission& e = emissions[i];
-    if (watch_) touched[i] = slot_moves_[e.slot] ? watch_->all() : 0;
-    paths[i].random = PathRandom(options_.seed, path_numbers[i]);
-    paths[i].flux = e.flux * share;
-    paths[i].ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
-    paths[i].balance = batch.by_path ? &batch.balance_of[first_path + i] : &batch;
-    if (batch.by_path) [[unlikely]]
-      batch.moved[first_path + i] = std::uint8_t(slot_moves_[e.slot]);
-    paths[i].balance->emitted += Rgbd(paths[i].flux);
-    if (!batch.pilots.empty()) [[unlikely]]
-      if (const std::uint64_t member = path_numbers[i] / group_count_; member < batch.pilots.size()) {
-        paths[i].pilot = &batch.pilots[member];
-        pilot_signature::start(*paths[i].pilot, paths[i].ray, paths[i].flux);
-      }
-    if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);  // lights that are off emit nothing
-  }
-  batch.path_count += started;
+  Wave wave;
+  std::size_t count = start(path_numbers, first_path, wave, batch);
   thread_local std::vector<std::uint8_t> owners;  // of the photons of this wave; not in media
   owners.clear();
   const std::size_t first_photon = batch.block.photons.size();
-
-  Hit hits[kWave];
-  SurfacePoint points[kWave];
   Vec2 numbers[kWave];
   Vec3 directions[kWave];
   for (std::uint32_t bounce = 0; count > 0; ++bounce) {
     batch.ray_count += count;
     std::size_t arrived = 0, in_media = 0;
     if (media_) [[unlikely]]
-      arrived = fly(bounce, count, paths, alive, hits, scattered, in_media, batch);
+      arrived = fly(bounce, count, wave, in_media, batch);
     else
       for (std::size_t i = 0; i < count; ++i) {
-        const Path& path = paths[alive[i]];
-        const bool meets = tracer_.intersect(path.ray, hits[arrived]);
+        const std::uint32_t number = wave.alive[i];
+        const Path& path = wave.paths[number];
+        const bool meets = tracer_.intersect(path.ray, wave.hits[arrived]);
         if (watch_) [[unlikely]]
-          touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[arrived].t : INFINITY);
-        if (meets && batch.by_path) [[unlikely]]
-          batch.moved[first_path + alive[i]] |= std::uint8_t(moves(hits[arrived]));
-        if (meets) alive[arrived++] = alive[i];
+          wave.touched[number] |= watch_->touching(path.ray, meets ? wave.hits[arrived].t : INFINITY);
+        if (meets && wave.moved) [[unlikely]]
+          wave.moved[number] |= std::uint8_t(moves(wave.hits[arrived]));
+        if (meets) wave.alive[arrived++] = number;
         else path.balance->escaped += Rgbd(path.flux);
       }
-    tracer_.surface_points({hits, arrived}, points);
-    if (bounce == 0 && has_point_lights_)
-      arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, touched,
-                                       batch.by_path ? &batch.moved[first_path] : nullptr, batch);
-    for (std::size_t i = 0; i < arrived; ++i) numbers[i] = paths[alive[i]].random.get2(bounce, Purpose::scatter);
+    tracer_.surface_points({wave.hits, arrived}, wave.points);
+    if (bounce == 0 && has_point_lights_) arrived = leave_planes_of_lights(arrived, wave, batch);
+    for (std::size_t i = 0; i < arrived; ++i)
+      numbers[i] = wave.paths[wave.alive[i]].random.get2(bounce, Purpose::scatter);
     sample_hemisphere_cos({numbers, arrived}, directions);
     count = 0;
     for (std::size_t i = 0; i < arrived; ++i) {
       const Draw draw{bounce, numbers[i], directions[i]};
-      const std::uint32_t number = alive[i];
-      if (paths[number].pilot) [[unlikely]]
-        pilot_signature::meet(*paths[number].pilot, bounce, hits[i]);
-      alive[count] = number;
-      count += scatter(paths[number], points[i], hits[i].t, draw, batch);
+      const std::uint32_t number = wave.alive[i];
+      Path& path = wave.paths[number];
+      if (path.pilot) [[unlikely]]
+        pilot_signature::meet(*path.pilot, bounce, wave.hits[i]);
+      wave.alive[count] = number;
+      count += scatter(path, wave.points[i], wave.hits[i].t, draw, batch);
       if (!media_) owners.resize(batch.block.photons.size() - first_photon, std::uint8_t(number));
       if (batch.by_path) [[unlikely]]
         batch.path_of.resize(batch.block.photons.size(), first_path + number);
     }
-    for (std::size_t i = 0; i < in_media; ++i) alive[count++] = scattered[i];
+    for (std::size_t i = 0; i < in_media; ++i) wave.alive[count++] = wave.scattered[i];
   }
   if (!media_) sort_by_path(owners, first_photon, batch);
   if (watch_)
-    for (std::size_t i = 0; i < started; ++i)
-      if (touched[i]) batch.touched.push_back({path_numbers[i], touched[i]});
+    for (std::size_t i = 0; i < path_numbers.size(); ++i)
+      if (wave.touched[i]) batch.touched.push_back({path_numbers[i], wave.touched[i]});
 }
 
 /// A surface receives nothing from a point light in its plane, since the cosine is 0; light samples give 0, too.
 /// Rounding starts half of the photons behind the plane, and they would put half of the light's flux into one place.
 /// Such photons pass the surface. Returns the number that still arrives.
-std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths,
-                                                 std::uint32_t* alive, Hit* hits, SurfacePoint* points,
-                                                 std::uint64_t* touched, std::uint8_t* moved,
-                                                 PhotonBatch& batch) const {
+std::size_t PhotonTracer::leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < arrived; ++i) {
-    const PhotonEmission& e = emissions[alive[i]];
-    Path& path = paths[alive[i]];
+    const std::uint32_t number = wave.alive[i];
+    const PhotonEmission& e = wave.emissions[number];
+    Path& path = wave.paths[number];
+    Hit& hit = wave.hits[i];
     const auto in_plane = [&](const SurfacePoint& point) {
       return e.normal == Vec3{} &&
              std::abs(dot(point.position - e.origin, point.normal_geometric)) <= kInPlane * point.offset;
     };
     bool meets = true;
-    for (int plane = 0; meets && plane < kMostPlanes && in_plane(points[i]); ++plane) {
-      path.ray = spawn_ray(points[i], path.ray.direction);
+    for (int plane = 0; meets && plane < kMostPlanes && in_plane(wave.points[i]); ++plane) {
+      path.ray = spawn_ray(wave.points[i], path.ray.direction);
       ++batch.ray_count;
-      meets = tracer_.intersect(path.ray, hits[i]);
-      if (watch_) touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[i].t : INFINITY);
-      if (meets && moved) moved[alive[i]] |= std::uint8_t(moves(hits[i]));
-      if (meets) points[i] = tracer_.surface_point(hits[i]);
+      meets = tracer_.intersect(path.ray, hit);
+      if (watch_) wave.touched[number] |= watch_->touching(path.ray, meets ? hit.t : INFINITY);
+      if (meets && wave.moved) wave.moved[number] |= std::uint8_t(moves(hit));
+      if (meets) wave.points[i] = tracer_.surface_point(hit);
       else path.balance->escaped += Rgbd(path.flux);
     }
     if (!meets) continue;
-    alive[kept] = alive[i];
-    hits[kept] = hits[i];
-    points[kept++] = points[i];
+    wave.alive[kept] = number;
+    wave.hits[kept] = hit;
+    wave.points[kept++] = wave.points[i];
   }
   return kept;
 }
 
+/// A photon's arrival, and the surface there.
+struct PhotonTracer::Meeting : Arrival {
+  const SurfacePoint& point;
+  float distance;  ///< m: length of the ray
+  const Bsdf& bsdf;
+  float coverage;  ///< share of photons that hit the surface there
+  Vec3 smooth;     ///< the shading normal without a normal map
+};
+
 /// Lets a photon arrive at a surface; false if it ends there.
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw,
                            PhotonBatch& batch) const {
+  const Vec3 travel = path.ray.direction;
   if (varies_[point.material]) [[unlikely]] {
-    const Textured textured(tracer_.frame(), point, path.ray.direction);
-    return scatter_at(path, point, distance, textured.bsdf, textured.coverage, textured.smooth, draw, batch);
+    const Textured textured(tracer_.frame(), point, travel);
+    return scatter_at(path, {{point, travel}, point, distance, textured.bsdf, textured.coverage, textured.smooth}, draw,
+                      batch);
   }
-  const bool front = dot(point.normal_geometric, path.ray.direction) < 0;
-  return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, point.normal, draw, batch);
+  const bool front = dot(point.normal_geometric, travel) < 0;
+  return scatter_at(path, {{point, travel}, point, distance, bsdfs_[point.material][front], 1, point.normal}, draw,
+                    batch);
 }
 
 /// Aims half of the first bounces (events D) outside the spheres that cameras see at the spheres, with less flux. Where
@@ -403,32 +401,42 @@ float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, st
   return float(cosine / (double(1 - Aim::kTowards) * cosine + double(Aim::kTowards) * towards));
 }
 
-bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
-                              Vec3 smooth, const Draw& draw, PhotonBatch& batch) const {
-  const Arrival at(point, path.ray.direction);
+/// Records a photon with this flux where it arrives, if the surface has a Lambert lobe and the map stores its kind.
+void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uint32_t bounce,
+                         PhotonBatch& batch) const {
+  const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
+  float weight = at.bsdf.arrival_weight(at.wi_local.z) * at.shading_correction;
+  if (directions_ && kind == PathKind::caustic) [[unlikely]]
+    weight = at.correction_by(at.smooth);
+  if (!(stores_[std::size_t(kind)] && at.bsdf.has_lambert() && weight > 0)) return;
+  Rgb stored = flux * weight;
+  if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
+  if (at.coverage != 1) stored *= 1 / at.coverage;
+  // Field by field: copying a record of 32 bytes that was just assembled would stall.
+  formats::Photon& photon = batch.block.photons.emplace_back();
+  photon.position = {at.point.position.x, at.point.position.y, at.point.position.z};
+  photon.flux = {stored.r, stored.g, stored.b};
+  photon.normal = formats::encode_normal({at.normal_geometric.x, at.normal_geometric.y, at.normal_geometric.z});
+  photon.object = std::uint16_t(at.point.object);
+  photon.kind = kind;
+  photon.bounce = std::uint8_t(std::min(bounce, 255u));
+  if (directions_) [[unlikely]]
+    record_direction(at.wi, batch);
+}
+
+/// Records a photon, then scatters or absorbs it; false if it ends there.
+bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const {
+  const SurfacePoint& point = at.point;
+  const Bsdf& bsdf = at.bsdf;
   const bool front = dot(point.normal_geometric, at.wi) > 0;
   const bool solid = solid_[point.material];
   Rgb flux = path.flux;
   if (path.inside.any() || (solid && !front)) {
-    flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, distance);
+    flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, at.distance);
     path.balance->absorbed += Rgbd(path.flux) - Rgbd(flux);
   }
 
-  // Record the photon.
-  const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
-  float weight = bsdf.arrival_weight(at.wi_local.z) * at.shading_correction;
-  if (directions_ && kind == PathKind::caustic) [[unlikely]]
-    weight = at.correction_by(smooth);
-  if (stores_[std::size_t(kind)] && bsdf.has_lambert() && weight > 0) {
-    Rgb stored = flux * weight;
-    if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
-    if (coverage != 1) stored *= 1 / coverage;
-    record(stored, point, at.normal_geometric, kind, draw.bounce, batch.block.photons);
-    if (directions_) [[unlikely]]
-      record_direction(at.wi, batch);
-  }
-
-  // Scatter or absorb the photon.
+  store(path, at, flux, draw.bounce, batch);
   const PathRandom& random = path.random;
   // Without specular lobes there is no choice.
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;

@@ -43,6 +43,14 @@ std::uint32_t automatic_group_count(std::uint64_t photon_count, bool media);
 /// Balance of flux, W: emitted = escaped + absorbed, up to rounding.
 struct FluxBalance {
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
+
+  FluxBalance& operator+=(const FluxBalance& o) {
+    emitted += o.emitted, escaped += o.escaped, absorbed += o.absorbed;
+    return *this;
+  }
+  FluxBalance operator-(const FluxBalance& o) const {
+    return {emitted - o.emitted, escaped - o.escaped, absorbed - o.absorbed};
+  }
 };
 
 /// Result of tracing a batch of photon paths.
@@ -126,7 +134,9 @@ class PhotonTracer {
 
  private:
   struct Path;
+  struct Wave;
   struct Draw;
+  struct Meeting;
   /// Photons followed together; their state fits into the first-level cache.
   static constexpr std::uint64_t kWave = 64;
   static_assert(kWave <= Lights::kMostEmitted);
@@ -134,20 +144,18 @@ class PhotonTracer {
   /// Follows the photons of these numbers to their ends; at most kWave. first_path is the place of the first one in the
   /// caller's list.
   void follow(std::span<const std::uint64_t> numbers, std::uint32_t first_path, PhotonBatch& batch) const;
-  std::size_t leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths,
-                                     std::uint32_t* alive, Hit* hits, SurfacePoint* points, std::uint64_t* touched,
-                                     std::uint8_t* moved, PhotonBatch& batch) const;
+  std::size_t start(std::span<const std::uint64_t> numbers, std::uint32_t first_path, Wave& wave,
+                    PhotonBatch& batch) const;
+  std::size_t leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const;
   bool moves(const Hit& hit) const { return hit.surface >= tracer_.frame().static_count; }
-  std::size_t fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits,
-                  std::uint32_t* scattered, std::size_t& scattered_count, PhotonBatch& batch) const;
+  std::size_t fly(std::uint32_t bounce, std::size_t count, Wave& wave, std::size_t& scattered_count,
+                  PhotonBatch& batch) const;
   enum class Flown { through, scattered, ended };
   Flown fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const;
-  void record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant,
-                        std::uint32_t bounce, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   float aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const;
-  bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
-                  const Draw& draw, PhotonBatch& batch) const;
+  void store(const Path& path, const Meeting& at, Rgb flux, std::uint32_t bounce, PhotonBatch& batch) const;
+  bool scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const;
 
   const Tracer& tracer_;
   const Lights& lights_;

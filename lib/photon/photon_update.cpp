@@ -21,29 +21,48 @@ std::uint64_t draw(int frame, std::uint32_t group) {
   return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group);
 }
 
-/// Reads a file's blocks, group by group.
-class Groups {
+/// The photons of groups that an update keeps.
+class KeptPhotons {
  public:
-  explicit Groups(std::function<bool(formats::PhotonBlock&)> read) : read_(std::move(read)) { more_ = read_(next_); }
+  /// own_only: reads only the groups that the map, an overlay, holds itself. none: reads nothing, because the base of
+  /// the new map holds these groups.
+  KeptPhotons(const MapUpdate& update, bool own_only, bool none) : previous_(update.previous), none_(none) {
+    if (previous_.is_kept() || none) return;
+    if (own_only) file_ = std::make_unique<formats::photons::FileReader>(update.path);
+    else whole_ = std::make_unique<formats::PhotonReader>(update.path, formats::PhotonReadOptions{.digest = false});
+    read();
+  }
   /// Calls take(block) for each block of the group; blocks of earlier groups are skipped.
   template <class Take>
   void of(std::uint32_t group, const Take& take) {
-    while (more_ && next_.group < group) more_ = read_(next_);
-    while (more_ && next_.group == group) {
-      take(next_);
-      more_ = read_(next_);
-    }
+    if (previous_.is_kept() && !none_)
+      for (const formats::PhotonBlock& block : previous_.photons[group]) take(block);
+    while (more_ && next_.group < group) read();
+    for (; more_ && next_.group == group; read()) take(next_);
   }
   /// Reads to the end, so that the file is checked.
   void finish() {
-    while (more_) more_ = read_(next_);
+    while (more_) read();
   }
 
  private:
-  std::function<bool(formats::PhotonBlock&)> read_;
+  void read() { more_ = file_ ? file_->read_block(next_) : whole_->read_block(next_); }
+
+  const PreviousMap& previous_;
+  bool none_, more_ = false;
+  std::unique_ptr<formats::photons::FileReader> file_;
+  std::unique_ptr<formats::PhotonReader> whole_;
   formats::PhotonBlock next_;
-  bool more_ = false;
 };
+
+/// The groups that differ from the base after the update.
+std::set<std::uint32_t> groups_beside_base(const MapUpdate& update) {
+  std::set<std::uint32_t> groups;
+  const PreviousMap& previous = update.previous;
+  if (!previous.header.base_name.empty()) groups = previous.is_kept() ? previous.own : own_groups(update.path);
+  groups.insert(update.groups.begin(), update.groups.end());
+  return groups;
+}
 
 std::vector<PhotonBatch> trace_group(const PhotonTracer& tracer, std::uint32_t group) {
   std::vector<PhotonBatch> batches;
@@ -98,47 +117,30 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
 PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options,
                                   formats::PhotonHeader header, const MapUpdate& update,
                                   const std::function<void(const void*, std::size_t)>& sink) {
-  const std::string& path = update.path;
   PreviousMap& previous = update.previous;
   const std::span<const std::uint32_t> groups = update.groups;
   describe_map(tracer, options, header);
   const bool upon_overlay = !previous.header.base_name.empty();
-  std::set<std::uint32_t> differing = !upon_overlay        ? std::set<std::uint32_t>{}
-                                      : previous.is_kept() ? previous.own
-                                                           : own_groups(path);
-  differing.insert(groups.begin(), groups.end());
+  std::set<std::uint32_t> differing = groups_beside_base(update);
   const bool overlay = update.may_overlay && differing.size() * 2 <= header.group_count;
   if (overlay) {
-    header.base_name = upon_overlay ? previous.header.base_name : file_name(path);
+    header.base_name = upon_overlay ? previous.header.base_name : file_name(update.path);
     header.base_digest = upon_overlay ? previous.header.base_digest : previous.digest;
   }
   PhotonMapResult result;
   formats::PhotonWriter writer(sink, header);
-  // The kept photons: in an overlay the groups that it holds itself, else all.
-  std::unique_ptr<formats::photons::FileReader> file;
-  std::unique_ptr<formats::PhotonReader> whole;
-  if (previous.is_kept()) {
-  } else if (overlay && upon_overlay) file = std::make_unique<formats::photons::FileReader>(path);
-  else if (!overlay) whole = std::make_unique<formats::PhotonReader>(path, formats::PhotonReadOptions{.digest = false});
-  Groups from_file([&](formats::PhotonBlock& block) {
-    return file ? file->read_block(block) : whole ? whole->read_block(block) : false;
-  });
-  const auto photons_of = [&](std::uint32_t group, const auto& take) {
-    if (!previous.is_kept()) return from_file.of(group, take);
-    if (!overlay || upon_overlay)
-      for (const formats::PhotonBlock& block : previous.photons[group]) take(block);
+  KeptPhotons kept(update, overlay, overlay && !upon_overlay);
+  const auto write = [&](const formats::PhotonBlock& block, bool& any) {
+    writer.write(block);
+    any = true;
   };
-
   std::vector<formats::GroupFlux> ledger;
   std::uint32_t next = 0;
   const auto keep_until = [&](std::uint32_t end) {
     for (; next < end; ++next) {
       if (overlay && !differing.contains(next)) continue;
       bool any = false;
-      photons_of(next, [&](const formats::PhotonBlock& block) {
-        writer.write(block);
-        any = true;
-      });
+      kept.of(next, [&](const formats::PhotonBlock& block) { write(block, any); });
       if (overlay && !any) writer.write({next, {}, {}, {}});
       ledger.push_back(previous.ledger[next]);
     }
@@ -155,10 +157,9 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
         if (previous.is_kept()) previous.photons[groups[i]].clear();
         for (PhotonBatch& batch : *static_cast<std::vector<PhotonBatch>*>(pointer)) {
           add_to_ledger(batch, header.identity.first_frame, entry);
-          count(batch, result);
+          add_counts(batch, result);
           if (batch.block.photons.empty()) continue;
-          writer.write(batch.block);
-          any = true;
+          write(batch.block, any);
           if (previous.is_kept()) previous.photons[groups[i]].push_back(std::move(batch.block));
         }
         if (overlay && !any) writer.write({groups[i], {}, {}, {}});
@@ -167,7 +168,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
         next = groups[i] + 1;
       });
   keep_until(header.group_count);
-  from_file.finish();
+  kept.finish();
   result.totals = writer.finish({}, ledger);
   if (!overlay) previous.photons.clear();  // kept in memory only for overlays, whose reader needs the base
   if (previous.is_kept()) {
