@@ -62,8 +62,7 @@ PhotonBatch difference_of(const PhotonTracer& static_scene, const PhotonTracer& 
 }
 
 PhotonMapResult write_dynamic_map(const PhotonTracer& static_scene, const PhotonTracer& whole,
-                                  std::span<const std::uint64_t> paths, const PhotonOptions& options,
-                                  formats::PhotonHeader header,
+                                  std::span<const std::uint64_t> paths, formats::PhotonHeader header,
                                   const std::function<void(const void*, std::size_t)>& sink,
                                   const std::function<void(double)>& progress) {
   // Borders of pieces: each piece has paths of one group, at most a batch.
@@ -74,7 +73,7 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& static_scene, const Photon
       borders.push_back(i);
   if (!paths.empty()) borders.push_back(paths.size());
 
-  describe_map(whole, options, header);
+  describe_map(whole, header);
   BatchWriter writer(sink, header, progress);
   PhotonMapResult result = writer.write(
       borders.size() - 1,

@@ -20,8 +20,7 @@ PhotonBatch difference_of(const PhotonTracer& static_scene, const PhotonTracer& 
 /// photon by photon, if `paths` holds every path that a mover touches. Photons come in the order of a map: groups
 /// ascending, paths of a group ascending. The totals are differences, too. The same bytes for any number of threads.
 PhotonMapResult write_dynamic_map(const PhotonTracer& static_scene, const PhotonTracer& whole,
-                                  std::span<const std::uint64_t> paths, const PhotonOptions& options,
-                                  formats::PhotonHeader header,
+                                  std::span<const std::uint64_t> paths, formats::PhotonHeader header,
                                   const std::function<void(const void*, std::size_t)>& sink,
                                   const std::function<void(double)>& progress);
 

@@ -46,7 +46,8 @@ inline void add_counts(const PhotonBatch& batch, PhotonMapResult& result) {
 }
 
 /// Fills in counts, kinds, columns and majorants of the tracer's map.
-inline void describe_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader& header) {
+inline void describe_map(const PhotonTracer& tracer, formats::PhotonHeader& header) {
+  const PhotonOptions& options = tracer.options();
   header.group_count = tracer.group_count();
   header.emitted_count = tracer.photon_count();
   header.kinds = options.kinds();

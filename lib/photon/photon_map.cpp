@@ -6,13 +6,13 @@
 
 namespace tempolux {
 
-PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
+PhotonMapResult write_photon_map(const PhotonTracer& tracer, formats::PhotonHeader header,
                                  const std::function<void(const void*, std::size_t)>& sink,
                                  const std::function<void(double)>& progress) {
-  describe_map(tracer, options, header);
+  describe_map(tracer, header);
   BatchWriter writer(sink, header, progress);
   std::vector<formats::GroupFlux> ledger;  // only with tentative photons
-  if (options.store_volume) ledger.resize(header.group_count);
+  if (tracer.options().store_volume) ledger.resize(header.group_count);
   PhotonMapResult result = writer.write(
       tracer.batch_count(), [&](std::size_t i) { return tracer.trace(i); },
       [&](const PhotonBatch& batch) {

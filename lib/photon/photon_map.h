@@ -21,7 +21,7 @@ struct PhotonMapResult {
 /// written by one thread; a fixed number is in flight, so memory does not grow with the number of photons. `header`
 /// identifies the scene; this function fills in counts and kinds. The same bytes for any number of threads. `progress`
 /// is called with values in [0, 1]; it may be empty.
-PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
+PhotonMapResult write_photon_map(const PhotonTracer& tracer, formats::PhotonHeader header,
                                  const std::function<void(const void*, std::size_t)>& sink,
                                  const std::function<void(double)>& progress);
 

@@ -136,10 +136,10 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   return groups;
 }
 
-PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options,
-                                  formats::PhotonHeader header, const std::string& path, const GroupMoments& groups,
-                                  std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink) {
-  describe_map(tracer, options, header);
+PhotonMapResult write_refined_map(const PhotonTracer& tracer, formats::PhotonHeader header, const std::string& path,
+                                  const GroupMoments& groups, std::uint64_t extra,
+                                  const std::function<void(const void*, std::size_t)>& sink) {
+  describe_map(tracer, header);
   const std::vector<std::uint64_t> paths = spread_paths(groups.moments, groups.paths, extra);
   header.emitted_count = std::accumulate(paths.begin(), paths.end(), std::uint64_t(0));
   PhotonMapResult result;

@@ -45,8 +45,8 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer);
 /// Phi the flux of its light path if it were the only one, N_g the number of groups and n_g the paths of the group.
 /// Existing photons are scaled by n_g before / n_g after; new paths continue the group's Halton sequence. Every group
 /// carries 1 / N_g of the flux, so a group with many paths is not brighter. `header` is the new map's.
-PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options,
-                                  formats::PhotonHeader header, const std::string& path, const GroupMoments& groups,
-                                  std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink);
+PhotonMapResult write_refined_map(const PhotonTracer& tracer, formats::PhotonHeader header, const std::string& path,
+                                  const GroupMoments& groups, std::uint64_t extra,
+                                  const std::function<void(const void*, std::size_t)>& sink);
 
 }  // namespace tempolux

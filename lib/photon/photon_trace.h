@@ -121,6 +121,7 @@ class PhotonTracer {
   /// Number of paths of each group.
   std::uint64_t members() const { return members_; }
   std::uint64_t seed() const { return options_.seed; }
+  const PhotonOptions& options() const { return options_; }
   /// Traces these paths, which must be of one group. Thread-safe.
   PhotonBatch trace_paths(std::span<const std::uint64_t> paths) const;
 

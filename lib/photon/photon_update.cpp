@@ -114,12 +114,11 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
   return order;
 }
 
-PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options,
-                                  formats::PhotonHeader header, const MapUpdate& update,
+PhotonMapResult write_updated_map(const PhotonTracer& tracer, formats::PhotonHeader header, const MapUpdate& update,
                                   const std::function<void(const void*, std::size_t)>& sink) {
   PreviousMap& previous = update.previous;
   const std::span<const std::uint32_t> groups = update.groups;
-  describe_map(tracer, options, header);
+  describe_map(tracer, header);
   const bool upon_overlay = !previous.header.base_name.empty();
   std::set<std::uint32_t> differing = groups_beside_base(update);
   const bool overlay = update.may_overlay && differing.size() * 2 <= header.group_count;

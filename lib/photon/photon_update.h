@@ -44,8 +44,7 @@ struct MapUpdate {
 
 /// Writes the map of `header` through `sink`: the chosen groups are traced, all others copied from the earlier map. If
 /// at most half of the groups differ from the base the map is written as an overlay on it, otherwise whole.
-PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options,
-                                  formats::PhotonHeader header, const MapUpdate& update,
+PhotonMapResult write_updated_map(const PhotonTracer& tracer, formats::PhotonHeader header, const MapUpdate& update,
                                   const std::function<void(const void*, std::size_t)>& sink);
 
 }  // namespace tempolux

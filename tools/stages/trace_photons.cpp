@@ -48,17 +48,16 @@ std::function<void(double)> progress_of(Tool& tool) {
 }
 
 /// Writes the touched paths of a static map.
-void write_paths(const formats::PhotonHeader& map, const PhotonTracer& photons, const PhotonOptions& options,
-                 const std::vector<std::string>& movers, const std::vector<formats::TouchedPath>& touched,
-                 Output& output) {
+void write_paths(const formats::PhotonHeader& map, const PhotonTracer& photons, const std::vector<std::string>& movers,
+                 const std::vector<formats::TouchedPath>& touched, Output& output) {
   formats::PathsHeader paths;
   paths.history = map.history;
   paths.identity = map.identity;
   paths.origin = map.origin;
   paths.group_count = photons.group_count();
   paths.emitted_count = photons.photon_count();
-  paths.seed = options.seed;
-  paths.kinds = options.kinds();
+  paths.seed = photons.seed();
+  paths.kinds = photons.options().kinds();
   paths.movers = movers;
   formats::PathsWriter writer(output.sink(), paths);
   writer.write(touched);
@@ -143,10 +142,9 @@ void PhotonTracing::trace_global(int frame_number) {
   const PhotonTracer photons(tracer, lights, options);
   const bool updates = options_.updating.updates();
   const PhotonMapResult result =
-      updates ? update_map(tool_, options_.updating,
-                           {frame, photons, options, header, frame_name(options_.output, frame.frame)}, output.sink(),
-                           kept_)
-              : write_photon_map(photons, options, header, output.sink(), progress_of(tool_));
+      updates ? update_map(tool_, options_.updating, {frame, photons, header, frame_name(options_.output, frame.frame)},
+                           output.sink(), kept_)
+              : write_photon_map(photons, header, output.sink(), progress_of(tool_));
   tool_.stats().phase("commit");
   finish(output, result, tracer.refused_ray_count());
   if (!updates) warn_of_few(lights, result, frame_number);
@@ -183,10 +181,10 @@ void PhotonTracing::trace_static(int frame_number) {
   PhotonTracer photons(tracer, lights, options);
   std::optional<MoverWatch> watch;
   if (paths_output) photons.watch(&watch.emplace(std::move(boxes)));
-  const PhotonMapResult result = write_photon_map(photons, options, header, output.sink(), progress_of(tool_));
+  const PhotonMapResult result = write_photon_map(photons, header, output.sink(), progress_of(tool_));
   tool_.stats().phase("commit");
   if (paths_output) {
-    write_paths(header, photons, options, hashes, result.touched, *paths_output);
+    write_paths(header, photons, hashes, result.touched, *paths_output);
     tool_.stats().count("touched_paths", double(result.touched.size()));
   }
   finish(output, result, tracer.refused_ray_count());
@@ -249,8 +247,7 @@ void PhotonTracing::trace_dynamic(int frame_number) {
 
   tool_.stats().phase("trace", true);
   const PhotonTracer whole(tracer, lights, photon_options), without(static_tracer, static_lights, photon_options);
-  const PhotonMapResult result =
-      write_dynamic_map(without, whole, touched, photon_options, header, output.sink(), progress_of(tool_));
+  const PhotonMapResult result = write_dynamic_map(without, whole, touched, header, output.sink(), progress_of(tool_));
   tool_.stats().phase("commit");
   finish(output, result, tracer.refused_ray_count() + static_tracer.refused_ray_count());
   tool_.stats().count("touched_paths", double(touched.size()));

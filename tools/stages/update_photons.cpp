@@ -63,7 +63,7 @@ bool may_keep(const Tool& tool, std::uint64_t photons) {
 void check_updatable(const std::string& name, const MapToUpdate& map, const formats::PhotonHeader& previous,
                      bool any_count) {
   formats::PhotonHeader wanted = map.header;
-  describe_map(map.photons, map.options, wanted);
+  describe_map(map.photons, wanted);
   if (any_count) wanted.emitted_count = previous.emitted_count;
   if (const std::string why = why_not_updatable(previous, wanted); !why.empty())
     throw InputError(name + ": cannot be " + (any_count ? "refined" : "updated") + ": " + why +
@@ -80,7 +80,7 @@ PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t ex
   const GroupMoments groups = read_moments(name, map.photons);
   formats::PhotonHeader header = map.header;
   header.history = previous.history + map.header.history;
-  const PhotonMapResult result = write_refined_map(map.photons, map.options, header, name, groups, extra, sink);
+  const PhotonMapResult result = write_refined_map(map.photons, header, name, groups, extra, sink);
   tool.stats().count("paths_added", double(extra));
   return result;
 }
@@ -187,7 +187,7 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   header.history = before.history + map.header.history;
   const auto folder = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
   MapUpdate update{name, previous, groups, map.output != "-" && folder(map.output) == folder(name)};
-  const PhotonMapResult result = write_updated_map(map.photons, map.options, header, update, sink);
+  const PhotonMapResult result = write_updated_map(map.photons, header, update, sink);
   if (previous.is_kept()) kept.name = map.output;
   return result;
 }

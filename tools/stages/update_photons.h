@@ -32,7 +32,6 @@ std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& p
 struct MapToUpdate {
   const SceneFrame& frame;
   const PhotonTracer& photons;
-  const PhotonOptions& options;
   const formats::PhotonHeader& header;  ///< of the map, if it were traced whole
   std::string output;                   ///< name of the new file
 };

@@ -127,7 +127,7 @@ Maps maps_of(const Room& room, std::uint64_t count, bool all_paths = false) {
   header.map = "dynamic";
   std::string bytes;
   maps.difference = write_dynamic_map(
-      fixed, global, paths, options, header,
+      fixed, global, paths, header,
       [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, {});
   maps.dynamic = photons_in(bytes);
   return maps;

@@ -96,7 +96,7 @@ TEST(PhotonMedia, FileHasLedgerMajorantsAndDirections) {
     std::string bytes;
     formats::PhotonHeader header;
     header.identity.first_frame = header.identity.last_frame = 12;
-    write_photon_map(photons, options, header,
+    write_photon_map(photons, header,
                      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
                      {});
     EXPECT_EQ(bytes.substr(8, 4), std::string("\1\0\3\0", 4));

@@ -150,7 +150,7 @@ TEST(PhotonMap, BytesAreEqualForAnyNumberOfThreads) {
   for (int threads : {1, 2, 3, 7}) {
     const ThreadLimit limit(threads);
     std::string bytes;
-    write_photon_map(photons, options, formats::PhotonHeader(),
+    write_photon_map(photons, formats::PhotonHeader(),
                      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
                      {});
     if (first.empty()) first = bytes;
@@ -172,8 +172,7 @@ TEST(PhotonMap, WhereNothingIsAbsorbedTheTotalIsNotNegative) {
     options.photon_count = 1000;
     options.seed = seed;
     const PhotonTracer photons(tracer, lights, options);
-    const auto result =
-        write_photon_map(photons, options, formats::PhotonHeader(), [](const void*, std::size_t) {}, {});
+    const auto result = write_photon_map(photons, formats::PhotonHeader(), [](const void*, std::size_t) {}, {});
     for (const double x : result.totals.absorbed_flux) EXPECT_GE(x, 0) << seed;
   }
 }

@@ -61,14 +61,14 @@ class PhotonUpdate : public testing::Test {
     return reader.digest();
   }
   std::string fresh(const std::string& name, const Room& room, int frame) const {
-    return written(name, [&](const auto& sink) { write_photon_map(*room.photons, options_, header(frame), sink, {}); });
+    return written(name, [&](const auto& sink) { write_photon_map(*room.photons, header(frame), sink, {}); });
   }
   std::string updated(const std::string& name, const std::string& from, const Room& room, int frame,
                       const UpdateOptions& how, bool same = false) {
     PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
     groups_ = choose_groups(previous, frame, same, how);
     return written(name, [&](const auto& sink) {
-      write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true}, sink);
+      write_updated_map(*room.photons, header(frame), {path(from), previous, groups_, true}, sink);
     });
   }
   bool is_overlay(const std::string& name) const {
@@ -128,7 +128,7 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   // The same map, written as a whole file.
   PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::string whole = written("whole.photons", [&](const auto& sink) {
-    write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false}, sink);
+    write_updated_map(*thick.photons, header(2), {path("1.photons"), previous, groups_, false}, sink);
   });
   EXPECT_EQ(whole, two);
 }
@@ -157,7 +157,7 @@ TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
     ASSERT_EQ(choose_groups(kept, frame, false, how), groups_);
     EXPECT_EQ(written("kept/" + name,
                       [&](const auto& sink) {
-                        write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true}, sink);
+                        write_updated_map(*room.photons, header(frame), {before, kept, groups_, true}, sink);
                       }),
               wanted)
         << frame;
@@ -272,7 +272,7 @@ TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
   GroupMoments groups = read_moments(path("0.photons"), *thick.photons);
   for (std::size_t g = 0; g < groups.moments.size(); ++g) groups.moments[g] = g % 5 == 0 ? 1 : 0;
   written("1.photons", [&](const auto& sink) {
-    write_refined_map(*thick.photons, options_, header(0), path("0.photons"), groups, 13000, sink);
+    write_refined_map(*thick.photons, header(0), path("0.photons"), groups, 13000, sink);
   });
   const auto totals = [&](const std::string& name) {
     formats::PhotonReader reader(path(name));
@@ -336,11 +336,10 @@ TEST_F(PhotonUpdate, RefiningLosesNoLight) {
     options.volume_share = 0.05f;
     options.seed = seed;
     const PhotonTracer photons(*thick.tracer, *thick.lights, options);
-    written("0.photons", [&](const auto& sink) { write_photon_map(photons, options, header(0), sink, {}); });
+    written("0.photons", [&](const auto& sink) { write_photon_map(photons, header(0), sink, {}); });
     const GroupMoments groups = read_moments(path("0.photons"), photons);
-    written("1.photons", [&](const auto& sink) {
-      write_refined_map(photons, options, header(0), path("0.photons"), groups, 1260, sink);
-    });
+    written("1.photons",
+            [&](const auto& sink) { write_refined_map(photons, header(0), path("0.photons"), groups, 1260, sink); });
     before += collided("0.photons");
     after += collided("1.photons");
   }
