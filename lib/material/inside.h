@@ -49,6 +49,13 @@ class Inside {
     for (int i = 0; i < count_; ++i) product *= materials[within_[i]].ior * materials[within_[i]].ior;
     return product > 0 ? product : 1;
   }
+  /// n^2 of the solid `met` if the path shows only now that it started inside, else 1. A camera outside sees the
+  /// radiance of a lamp inside undivided, which is n^2 times the radiance that leaves the solid: a photon of the lamp
+  /// carries n^2 times the watts from here on. front: the side that the path came from.
+  float index_squared_of_start(std::span<const Material> materials, std::uint32_t met, bool front) const {
+    const float ior = materials[met].ior;
+    return !front && count_ == 0 && ior > 0 ? ior * ior : 1;
+  }
   /// Updates the state after an event S at the boundary of a solid (is_solid_glass). front: the side that the path came
   /// from.
   void scatter(std::uint32_t material, bool front, bool transmitted) {

@@ -476,7 +476,14 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
-  if (solid && !next.diffuse) path.inside.scatter(point.material, front, next.transmitted);
+  if (solid && !next.diffuse) {
+    const std::span<const Material> materials = tracer_.frame().materials;
+    if (const float larger = path.inside.index_squared_of_start(materials, point.material, front); larger != 1) {
+      path.balance->emitted += Rgbd(path.flux * larger) - Rgbd(path.flux);
+      path.flux *= larger;
+    }
+    path.inside.scatter(point.material, front, next.transmitted);
+  }
   path.ray = spawn_ray(point, travel);
   return survives;
 }

@@ -83,6 +83,32 @@ TEST(Caustics, SlabPassesWhatFresnelSays) {
   }
 }
 
+/// A lamp 0.3 m above a black floor, both in a slab of glass whose top is 0.2 m above the lamp. All paths see the
+/// lamp's radiance undivided: from inside, in the top's mirror image, and from outside. So the floor gets half of the
+/// light, and what the top reflects; a black ceiling above the slab gets n^2 times the watts that pass the top.
+TEST(Caustics, LampInsideASolidIsAsBrightAsPathsSeeIt) {
+  HandMadeScene scene;
+  scene.add_box({-40, -1, -40}, {40, 0.2f, 40}, glass(0));
+  const std::uint32_t floor =
+      scene.add_quad({-39, -0.3f, 39}, {39, -0.3f, 39}, {39, -0.3f, -39}, {-39, -0.3f, -39}, matte(Rgb(0.0f)));
+  const std::uint32_t ceiling =
+      scene.add_quad({-400, 2, -400}, {400, 2, -400}, {400, 2, 400}, {-400, 2, 400}, matte(Rgb(0.0f)));
+  scene.add_point_light({0, 0, 0}, Rgb(1.0f));
+  double reflected = 0;  // 2 pi integral F(mu) dmu; total reflection where sin t = 1.5 sin i is above 1
+  constexpr int kSteps = 20000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps, sin2 = 2.25 * (1 - mu * mu), c = std::sqrt(std::max(0.0, 1 - sin2));
+    const double rs = (1.5 * mu - c) / (1.5 * mu + c), rp = (mu - 1.5 * c) / (mu + 1.5 * c);
+    reflected += (sin2 >= 1 ? 1 : (rs * rs + rp * rp) / 2) * 2 * M_PI / kSteps;
+  }
+  // 400000 photons: sigma .2 % of each. The outermost ring, which misses the floor, holds 1.8 % of what is reflected.
+  const Stored below = trace(scene, 400000, floor), above = trace(scene, 400000, ceiling);
+  EXPECT_NEAR(below.direct / (2 * M_PI), 1, 0.02);
+  EXPECT_NEAR(below.caustic / reflected, 1, 0.03);
+  EXPECT_NEAR(above.caustic / (2.25 * (2 * M_PI - reflected)), 1, 0.01);
+  EXPECT_NEAR(above.gone, above.emitted, 1e-6 * above.emitted);
+}
+
 /// A furnace wall and a cube of rough glass: for any roughness, the walls receive the flux that they emit. Walls of
 /// area 6 x 16 m^2 emit pi W/m^2 and absorb all light: stored flux = emitted flux.
 TEST(Caustics, RoughGlassLosesNoPhotons) {
