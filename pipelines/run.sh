@@ -75,6 +75,10 @@ else
   cp "$OUT/plan.mk" "$OUT/$plan" || exit
 fi
 [ "$goal" = plan ] && exit
+case $goal in frames/*)
+  [ -n "$dry" ] || grep -q "^${goal%.*}[.]exr:" "$OUT/plan.mk" ||
+    { echo "$goal: is none of FRAMES=$FRAMES" >&2; exit 2; };;
+esac
 if [ "$goal" = measure ] && [ -z "$dry" ]; then ending sh "$PIPELINES/measure.sh"; exit; fi
 if [ -n "$dry" ]; then (makes "$goal" -C "$folder"); exit; fi
 
@@ -106,6 +110,6 @@ if [ -s "$aside/commands" ]; then
 elif [ -z "$quiet" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
-[ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
+[ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
 [ "$goal" != report ] || echo "look at $OUT/report/index.html"
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }

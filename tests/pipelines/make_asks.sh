@@ -39,6 +39,8 @@ refuses '.32. is not WIDTHxHEIGHT\|--size' demo SIZE=32
 refuses 'my scene.glb' demo SCENE='my scene.glb'
 demo demo OUT="$work/o 4" && [ -s "$work/o 4/frames/0030.exr" ] || bad 'OUT with a blank'
 refuses 'frame 1 is none of --frames' report REPORT_FRAMES='0 1'
+refuses 'frames/0009.exr: is none of FRAMES=0,30' frames/0009.exr
+demo frames/0030.png || bad 'one picture'
 refuses 'BIN=/nowhere: holds no scene-plan; ' demo BIN=/nowhere
 # A make that fails reports whether another make runs in the same OUT.
 refuses 'nonsense' demo PIXELS='--spp nonsense' FRAMES=0

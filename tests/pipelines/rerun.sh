@@ -50,6 +50,7 @@ edit "$source" "$scene" camera-from 2
 make_runs 'camera edited from frame 2 on: no photons, no points, frames 2 and 3' "$(cache 0002 0003) $(frames 0002 0003) $sheet"
 cp "$source" "$scene"
 make_runs 'camera put back: what was made before is shown again' "$(same 0002 0003) $sheet"
+grep -q 'brightness steps.*look at' "$work/make.txt" || { echo 'FAILED: frames shown again: not said'; failed=1; }
 
 rm "$work/out/photons/0000-"*.photons "$work/out/cache/0001-"*.irradcache "$work/out/frames/0002.exr" "$work/out/frames/0003.png"
 make_runs 'files deleted: they come back, nothing else' "$(trace 0000) $(cache 0001) tempolux-info:frames/0003.png"
