@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "lib/core/parallel_each.h"
@@ -11,6 +12,8 @@ namespace tempolux {
 namespace {
 
 constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor, darker light counts as this much
+
+constexpr float kBelow = 0.999f;      ///< of the lower threshold: what a sum of floats may lose by rounding is less
 
 /// Dynamic photons are searched in a disc this much wider than the disc of k static photons. With k = 50 and an
 /// influence of .06, the lower threshold, the wide disc holds .06 x 50 x 7^2 = 150 dynamic photons. Their standard
@@ -58,7 +61,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const RecordChange> changes,
                                const InfluenceThresholds& thresholds)
-    : store_({.least_cosine = 0}), thresholds_(thresholds) {
+    : store_({.least_cosine = 0}), influenced_({.least_cosine = 0}), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {
@@ -72,6 +75,7 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
     pair.irradiance = {changes[i].influence, max_component(records[i].irradiance), 0};
     sum += double(pair.irradiance.g);
     pairs.push_back(pair);
+    if (!(pair.irradiance.r <= kBelow * thresholds_.low * pair.irradiance.g)) influenced_.add(pair);
   }
   if (!records.empty()) least_ = kLeastShare * float(sum / double(records.size()));
   store_.add(pairs);
@@ -80,6 +84,12 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
 float InfluenceField::relative(Rgb pair) const {
   if (!(pair.r > 0)) return pair.r;
   return pair.r / std::max({pair.g, least_, 1e-30f});
+}
+
+float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
+  constexpr float kAny = std::numeric_limits<float>::denorm_min();
+  if (!influenced_.covers(position, normal, kAny) && store_.covers(position, normal, kAny)) return 0;
+  return thresholds_.gathered_share(at(position, normal));
 }
 
 float InfluenceField::at(Vec3 position, Vec3 normal) const {

@@ -148,7 +148,8 @@ void AdaptiveFrame::spread() {
       frame_.mean.width, frame_.mean.height, parts_, counts_, brightest_, options_.mask, [&](double level) {
         return noise_.error_at(level);
       }};
-  const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels);
+  const std::vector<double> errors = allowed_errors(samples, pixels);
+  const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels, errors);
   std::vector<std::uint32_t> further_of(judged.empty() ? 0 : pixels.size(), kNone);
   std::vector<FurtherSamples> further(judged.size());
   frame_.rays += parallel_sum<RayCounts>(judged.size(), 64, [&](std::size_t i, RayCounts& rays) {
@@ -163,7 +164,7 @@ void AdaptiveFrame::spread() {
   samples.further = further;
   std::vector<Layers> before;
   for (const std::size_t pixel : judged) before.push_back(pixels[pixel]);
-  frame_.spread = spread_outliers(samples, pixels);
+  frame_.spread = spread_outliers(samples, errors, pixels);
   for (std::size_t i = 0; i < judged.size(); ++i) keep_confirmed(judged[i], before[i]);
 }
 

@@ -30,31 +30,6 @@ void for_each_near(const SampledPixels& samples, int x, int y, const Body& body)
   });
 }
 
-/// The error that each pixel may have, from the median of the radiance around it: the outliers themselves do not raise
-/// their limit. 0 for pixels without a surface and outside the mask: these neither give nor get light.
-std::vector<double> errors_of(const SampledPixels& samples, const std::vector<Layers>& pixels) {
-  std::vector<double> errors(pixels.size());
-  parallel_chunks(std::size_t(samples.height), 1, [&](std::size_t row, std::size_t) {
-    std::vector<double> near;
-    const auto note = [&](std::size_t p) {
-      const double radiance = radiance_of(pixels[p]);
-      near.push_back(std::isfinite(radiance) ? radiance : 0);
-    };
-    for (int x = 0, y = int(row); x < samples.width; ++x) {
-      const std::size_t pixel = row * std::size_t(samples.width) + std::size_t(x);
-      if (!(pixels[pixel].coverage > 0) || !samples.takes_part(pixel)) continue;
-      near.clear();
-      note(pixel);
-      for_each_near(samples, x, y, note);
-      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
-      std::nth_element(near.begin(), middle, near.end());
-      const double error = samples.error(*middle);
-      if (std::isfinite(error)) errors[pixel] = error;
-    }
-  });
-  return errors;
-}
-
 /// Level of the widest box that is no wider than the picture: three passes of it leave a nearly uniform result.
 int last_level(int width, int height) {
   int level = 0;
@@ -255,16 +230,39 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
   }
 }
 
-std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels) {
+std::vector<double> allowed_errors(const SampledPixels& samples, const std::vector<Layers>& pixels) {
+  std::vector<double> errors(pixels.size());
+  parallel_chunks(std::size_t(samples.height), 1, [&](std::size_t row, std::size_t) {
+    std::vector<double> near;
+    const auto note = [&](std::size_t p) {
+      const double radiance = radiance_of(pixels[p]);
+      near.push_back(std::isfinite(radiance) ? radiance : 0);
+    };
+    for (int x = 0, y = int(row); x < samples.width; ++x) {
+      const std::size_t pixel = row * std::size_t(samples.width) + std::size_t(x);
+      if (!(pixels[pixel].coverage > 0) || !samples.takes_part(pixel)) continue;
+      near.clear();
+      note(pixel);
+      for_each_near(samples, x, y, note);
+      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
+      std::nth_element(near.begin(), middle, near.end());
+      const double error = samples.error(*middle);
+      if (std::isfinite(error)) errors[pixel] = error;
+    }
+  });
+  return errors;
+}
+
+std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels,
+                                         const std::vector<double>& errors) {
   std::vector<std::size_t> found;
-  for (const Excess& excess : all_excess(samples, pixels, errors_of(samples, pixels)))
+  for (const Excess& excess : all_excess(samples, pixels, errors))
     if (excess.samples < kJudges && (found.empty() || found.back() != excess.pixel)) found.push_back(excess.pixel);
   return found;
 }
 
-double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
+double spread_outliers(const SampledPixels& samples, const std::vector<double>& errors, std::vector<Layers>& pixels) {
   const int last = last_level(samples.width, samples.height);
-  const std::vector<double> errors = errors_of(samples, pixels);
   std::vector<Excess> waiting = all_excess(samples, pixels, errors), taken;
   double light = 0, moved = 0;
   for (const Layers& pixel : pixels) light += radiance_of(pixel);

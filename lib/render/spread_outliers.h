@@ -55,6 +55,10 @@ struct SampledPixels {
   bool takes_part(std::size_t pixel) const { return mask.empty() || mask[pixel] != 0; }
 };
 
+/// The error that each pixel may have, from the median of the radiance around it: the outliers themselves do not raise
+/// their limit. 0 for pixels without a surface and outside the mask: these neither give nor get light.
+std::vector<double> allowed_errors(const SampledPixels& samples, const std::vector<Layers>& pixels);
+
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994],
 /// docs/methods/outliers.md.
 ///
@@ -67,11 +71,12 @@ struct SampledPixels {
 ///
 /// A pixel receives light in proportion to its allowed error; a pixel without a surface (coverage 0) neither gives nor
 /// receives. The sum of a layer over the picture stays the same up to rounding. Returns the share of the picture's
-/// light that was spread.
-double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
+/// light that was spread. errors: allowed_errors().
+double spread_outliers(const SampledPixels& samples, const std::vector<double>& errors, std::vector<Layers>& pixels);
 
 /// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.
-/// Ascending.
-std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels);
+/// Ascending. errors: allowed_errors().
+std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels,
+                                         const std::vector<double>& errors);
 
 }  // namespace tempolux

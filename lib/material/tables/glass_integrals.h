@@ -4,40 +4,47 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace tempolux::integrals {
 
 /// Exact Fresnel reflectance in double; eta = index on the side of the incident direction / index on the other side.
 inline double fresnel(double cos_o, double eta, double& cos_t) {
   const double sin2 = eta * eta * (1 - cos_o * cos_o);
-  cos_t = sin2 >= 1 ? 0 : std::sqrt(1 - sin2);
-  if (sin2 >= 1) return 1;
+  cos_t = std::sqrt(std::max(0.0, 1 - sin2));
   const double p = (cos_o - eta * cos_t) / (cos_o + eta * cos_t), s = (eta * cos_o - cos_t) / (eta * cos_o + cos_t);
-  return 0.5 * (p * p + s * s);
+  return sin2 >= 1 ? 1 : 0.5 * (p * p + s * s);
 }
 
 /// 1 - E: mean over n x n/2 visible normals (half of them: the others mirror these) of 1 - G2/G1, or 1 where the
-/// direction ends up on the wrong side.
+/// direction ends up on the wrong side. The inner loop has no branch and no sum, so vector lanes run it.
 inline double glass_loss(double cos_o, double alpha, double eta, int n) {
   const double sin_o = std::sqrt(std::max(0.0, 1 - cos_o * cos_o)), a2 = alpha * alpha;
-  const auto lambda = [&](double c) { return (std::sqrt(a2 + (1 - a2) * c * c) / c - 1) / 2; };
+  const auto lambda = [=](double c) { return (std::sqrt(a2 + (1 - a2) * c * c) / c - 1) / 2; };
   const double size = std::hypot(sin_o * alpha, cos_o), sx = sin_o * alpha / size, sz = cos_o / size;
   const double over = 1 + lambda(cos_o);
+  const std::size_t half = std::size_t(n / 2);
+  std::vector<double> cos_phi(half), sin_phi(half), reflected(half), passed(half);
+  for (std::size_t j = 0; j < half; ++j) {
+    const double phi = std::numbers::pi * (double(j) + 0.5) / double(half);
+    cos_phi[j] = std::cos(phi), sin_phi[j] = std::sin(phi);
+  }
   double kept = 0;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n / 2; ++j) {
-      const double phi = std::numbers::pi * (j + 0.5) / (n / 2), z = 1 - (i + 0.5) / n * (1 + sz);
-      const double r = std::sqrt(std::max(0.0, 1 - z * z));
-      double hx = (r * std::cos(phi) + sx) * alpha, hy = r * std::sin(phi) * alpha, hz = z + sz;
-      const double length = std::sqrt(hx * hx + hy * hy + hz * hz);
-      hx /= length, hy /= length, hz /= length;
-      const double oh = std::clamp(sin_o * hx + cos_o * hz, 0.0, 1.0);
+  for (int i = 0; i < n; ++i) {
+    const double z = 1 - (i + 0.5) / n * (1 + sz), r = std::sqrt(std::max(0.0, 1 - z * z));
+    for (std::size_t j = 0; j < half; ++j) {
+      const double x = (r * cos_phi[j] + sx) * alpha, y = r * sin_phi[j] * alpha, h = z + sz;
+      const double length = std::sqrt(x * x + y * y + h * h), hx = x / length, hz = h / length;
+      const double oh = std::min(std::max(sin_o * hx + cos_o * hz, 0.0), 1.0);
       double cos_t;
       const double f = fresnel(oh, eta, cos_t);
-      if (const double up = 2 * oh * hz - cos_o; up > 0) kept += f * over / (over + lambda(up));
-      if (const double down = -((eta * oh - cos_t) * hz - eta * cos_o); down > 0 && f < 1)
-        kept += (1 - f) * over / (over + lambda(down));
+      const double up = 2 * oh * hz - cos_o, down = eta * cos_o - (eta * oh - cos_t) * hz;
+      const double of_up = f * over / (over + lambda(up)), of_down = (1 - f) * over / (over + lambda(down));
+      reflected[j] = up > 0 ? of_up : 0;
+      passed[j] = down > 0 && f < 1 ? of_down : 0;
     }
+    for (std::size_t j = 0; j < half; ++j) kept += reflected[j], kept += passed[j];
+  }
   return 1 - kept / (double(n) * (n / 2));
 }
 

@@ -55,7 +55,8 @@ struct Even {
   }
   std::vector<Layers> spread() const {
     std::vector<Layers> pixels = sums();
-    spread_outliers({width, height, parts, counts, brightest, mask, error}, pixels);
+    const SampledPixels samples{width, height, parts, counts, brightest, mask, error};
+    spread_outliers(samples, allowed_errors(samples, pixels), pixels);
     return pixels;
   }
 };
@@ -296,7 +297,8 @@ TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
   const std::size_t claims = 20 * 64 + 30;
   even.set(claims, {Rgb(1.0f), Rgb(41.0f), Rgb(1.0f), Rgb(1.0f)});
   SampledPixels samples{even.width, even.height, even.parts, even.counts, even.brightest, even.mask, even.error};
-  EXPECT_EQ(pixels_to_judge(samples, even.sums()), std::vector<std::size_t>{claims});
+  const std::vector<double> errors = allowed_errors(samples, even.sums());
+  EXPECT_EQ(pixels_to_judge(samples, even.sums(), errors), std::vector<std::size_t>{claims});
   std::vector<std::uint32_t> further_of(even.parts.size(), kNone);
   further_of[claims] = 0;
   for (const auto& [mean, left] : {std::pair{11.0f, 11.0f}, std::pair{1.0f, 1.8f}}) {
@@ -306,12 +308,12 @@ TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
     samples.further_of = further_of;
     samples.further = {&further, 1};
     std::vector<Layers> pixels = even.sums();
-    spread_outliers(samples, pixels);
+    spread_outliers(samples, errors, pixels);
     EXPECT_NEAR(pixels[claims][Layer::indirect].g, left, mean > 1 ? 0 : kError + 1e-4) << mean;
   }
   samples.further_of = {};
   even.counts[claims] = {16, 16, 16};  // of which one brought 161
-  EXPECT_EQ(pixels_to_judge(samples, even.sums()), std::vector<std::size_t>{});
+  EXPECT_EQ(pixels_to_judge(samples, even.sums(), errors), std::vector<std::size_t>{});
 }
 
 /// Sheets of a quarter of a pixel, 50 times as bright as the ground under a sky of radiance 1, twelve pixels apart: one
