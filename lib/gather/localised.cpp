@@ -15,6 +15,8 @@ constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor,
 
 constexpr float kBelow = 0.999f;      ///< of the lower threshold: what a sum of floats may lose by rounding is less
 
+constexpr float kAnyWeight = std::numeric_limits<float>::denorm_min();
+
 /// Dynamic photons are searched in a disc this much wider than the disc of k static photons. With k = 50 and an
 /// influence of .06, the lower threshold, the wide disc holds .06 x 50 x 7^2 = 150 dynamic photons. Their standard
 /// deviation is sqrt(150) / (50 x 7^2) = .5 % of the static light, about the noise of gather rays. The narrow disc
@@ -86,9 +88,12 @@ float InfluenceField::relative(Rgb pair) const {
   return pair.r / std::max({pair.g, least_, 1e-30f});
 }
 
+bool InfluenceField::near_influenced(Vec3 position, Vec3 normal) const {
+  return influenced_.covers(position, normal, kAnyWeight);
+}
+
 float InfluenceField::gathered_share(Vec3 position, Vec3 normal) const {
-  constexpr float kAny = std::numeric_limits<float>::denorm_min();
-  if (!influenced_.covers(position, normal, kAny) && store_.covers(position, normal, kAny)) return 0;
+  if (!near_influenced(position, normal) && store_.covers(position, normal, kAnyWeight)) return 0;
   return thresholds_.gathered_share(at(position, normal));
 }
 

@@ -48,9 +48,11 @@ class InfluenceField {
   /// the static irradiance there. The static irradiance counts as at least a hundredth of the records' mean. Infinite
   /// where no record is valid.
   float at(Vec3 position, Vec3 normal) const;
-  /// Share of E_y there: InfluenceThresholds::gathered_share(at()). Most places are far from movers, where a look-up of
-  /// the few influenced records is enough.
+  /// Share of E_y there: InfluenceThresholds::gathered_share(at()).
   float gathered_share(Vec3 position, Vec3 normal) const;
+  /// False at most places: no record with an influence above the lower threshold is valid there. If another record is
+  /// valid, the share of E_y is 0.
+  bool near_influenced(Vec3 position, Vec3 normal) const;
   const InfluenceThresholds& thresholds() const { return thresholds_; }
 
  private:
@@ -58,8 +60,8 @@ class InfluenceField {
   float relative(Rgb pair) const;
 
   RecordStore store_;  ///< records whose irradiance holds such pairs
-  /// The records of store_ whose influence is not below thresholds_.low. Where none of them is valid but another record
-  /// is, the share of E_y is 0: a weighted mean of ratios below `low` is below `low`.
+  /// The records of store_ whose influence is not below thresholds_.low. A weighted mean of ratios below `low` is below
+  /// `low`.
   RecordStore influenced_;
   InfluenceThresholds thresholds_;
   float least_ = 0;  ///< W/m^2

@@ -21,6 +21,13 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
 }
 
 std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading, Rgb* noise) const {
+  if (!moving_.contains(surface.object) && !influence_.near_influenced(surface.position, shading)) {
+    const RecordStore::Interpolated found = updated_.interpolate(surface.position, shading);
+    if (found.weight > 0) {
+      if (noise) *noise = found.noise;
+      return found.irradiance;
+    }
+  }
   const float gathered = gathered_share(surface, shading);
   Rgb irradiance{0.0f}, records_noise{0.0f};
   for (const auto& [records, share] : {std::pair{&updated_, 1 - gathered}, std::pair{&gathered_, gathered}}) {
