@@ -86,25 +86,41 @@ struct SentOn {
   Rgb weight;  ///< factor of the radiance along the ray
 };
 
+/// Follows the camera rays of one pixel after another through the media of a frame.
+struct Marcher {
+  const RenderScene& scene;
+  const Media& media;
+  const MediaLight& light;
+  const ComposeOptions& options;
+  float step;  ///< m: longest slice
+  RayCounts counts{};
+  std::vector<Slice> slices{};    ///< of the ray
+  std::vector<SentOn> sent_on{};  ///< of the pixel: rays whose radiance is to be added
+
+  SmokePixel march(const Ray& ray, float end, const PixelRandom& random);
+
+ private:
+  void send_on(const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random);
+  Rgb sampled_light(const Ray& ray, float whole, const PixelRandom& random);
+};
+
 /// Adds a ray from a place in the medium, if rays take a share of its light.
-void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, float weight,
-             const PixelRandom& random, std::vector<SentOn>& rays) {
+void Marcher::send_on(const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random) {
   const PhaseShare& share = light.share(point.g);
   if (!share.has_rays()) return;
   const Vec3 travel = sample_hg(point.g, point.travel, random.get2(bounce, Purpose::phase));
   const float q = 4 * kPi * pdf_hg(point.g, point.travel, travel);
-  rays.push_back({{point.position, travel, 0, INFINITY},
-                  random.hashed().bits(bounce, Purpose::gather),
-                  point.albedo * (weight * share.of_rays(q))});
+  sent_on.push_back({{point.position, travel, 0, INFINITY},
+                     random.hashed().bits(bounce, Purpose::gather),
+                     point.albedo * (weight * share.of_rays(q))});
 }
 
 /// Radiance of the light that comes directly from lights and is scattered towards the eye. Places on the ray are drawn
 /// in proportion to extinction x transmittance, with the extinction that is linear within a slice. The weight of a
 /// place is the medium's extinction divided by this linear extinction. `whole`: share of the light behind the slices
-/// that the slices scatter or absorb. `sent_on`: receives the rays whose radiance the caller must add.
-Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray,
-                  const std::vector<Slice>& slices, float whole, int samples, const PixelRandom& random,
-                  std::vector<SentOn>& sent_on, RayCounts& counts) {
+/// that the slices scatter or absorb.
+Rgb Marcher::sampled_light(const Ray& ray, float whole, const PixelRandom& random) {
+  const int samples = options.light_samples;
   const std::size_t before = sent_on.size();
   Rgb sum{0.0f};
   std::size_t at = 0;
@@ -128,15 +144,13 @@ Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight
     sum += medium.albedo * weight *
            scattered_lamp_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
                                 {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
-    send_on(light, point, bounce, weight, random, sent_on);
+    send_on(point, bounce, weight, random);
   }
   for (std::size_t i = before; i < sent_on.size(); ++i) sent_on[i].weight *= whole / float(samples);
   return sum * (whole / float(samples));
 }
 
-SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, float end,
-                 float step, const ComposeOptions& options, const PixelRandom& random, std::vector<Slice>& slices,
-                 std::vector<SentOn>& sent_on, RayCounts& counts) {
+SmokePixel Marcher::march(const Ray& ray, float end, const PixelRandom& random) {
   SmokePixel pixel;
   cut(media, ray, end, step, slices);
   if (slices.empty()) return pixel;
@@ -148,9 +162,7 @@ SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight&
   }
   pixel.transmittance = float(std::exp(-tau));
   const auto whole = float(-std::expm1(-tau));  // 1 - transmittance has only two digits if tau is 1e-6
-  if (options.sample_lights && whole > 0)
-    pixel.light +=
-        sampled_light(scene, media, light, ray, slices, whole, options.light_samples, random, sent_on, counts);
+  if (options.sample_lights && whole > 0) pixel.light += sampled_light(ray, whole, random);
   return pixel;
 }
 
@@ -253,13 +265,11 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
   std::mutex joining;
   std::size_t done = 0;
   parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    std::vector<Slice> slices;
-    std::vector<SentOn> sent_on;
-    RayCounts own;
+    Marcher marcher{scene, *media, light, options, step};
     for (std::size_t p = first; p < last; ++p) {
       const auto x = float(p % std::size_t(view.width())), y = float(p / std::size_t(view.width()));
       SmokePixel sum{Rgb(0.0f), 0};
-      sent_on.clear();
+      marcher.sent_on.clear();
       for (int s = 0; s < options.samples; ++s) {
         const PixelRandom random(options.seed, p, std::uint32_t(s));
         const Vec2 within = options.surfaces_by_depth ? Vec2{0.5f, 0.5f} : random.get2(0, Purpose::pixel);
@@ -272,17 +282,17 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
         } else {
           Hit hit;
           if (scene.tracer.intersect(ray, hit)) end = hit.t;
-          ++own.camera;
+          ++marcher.counts.camera;
         }
-        const SmokePixel one = march(scene, *media, light, ray, end, step, options, random, slices, sent_on, own);
+        const SmokePixel one = marcher.march(ray, end, random);
         sum.light += one.light;
         sum.transmittance += one.transmittance;
       }
-      if (!sent_on.empty()) sum.light += brought(*options.incoming, sent_on, own);
+      if (!marcher.sent_on.empty()) sum.light += brought(*options.incoming, marcher.sent_on, marcher.counts);
       pixels[p] = {sum.light * (1 / float(options.samples)), sum.transmittance / float(options.samples)};
     }
     const std::scoped_lock lock(joining);
-    counts += own;
+    counts += marcher.counts;
     if (options.progress) options.progress(double(done += last - first) / double(pixels.size()));
   });
   return pixels;

@@ -2,6 +2,7 @@
 // points.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -25,7 +26,11 @@ struct GatherPoints {
 /// Points of divided light (photonmap-split): the whole light, and for each point the share of its high part.
 struct DividedGatherPoints {
   GatherPoints whole;
-  std::vector<float> high_shares;
+  std::vector<float> high_shares;  ///< empty: the light is not divided
+
+  bool any_high() const {
+    return std::ranges::any_of(high_shares, [](float share) { return share > 0; });
+  }
 };
 
 /// The whole photon map, equal to the undivided map bit by bit, and its high part.

@@ -72,15 +72,15 @@ void compare(const IrradianceRecord& once, const IrradianceRecord& again, Gather
 /// Adds records at points that none covers yet.
 class Placement {
  public:
-  Placement(const FinalGather& gather, const PixelView& view, const PlacementOptions& options, RecordStore& store,
-            GatherCounts& counts, const RecordSource* source)
+  Placement(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
+            RecordStore& store, GatherCounts& counts)
       : gather_(gather),
         again_(gather.with_seed(gather.seed() ^ 0x616761696eull)),
-        view_(view),
+        view_(picture.view),
         options_(options),
         store_(store),
         counts_(counts),
-        source_(source) {}
+        source_(picture.source) {}
 
   /// Covers the points of `pixels`, in a fixed shuffled order. look(pixel) is where to look, note(pixel, seen)
   /// receives the seen point. checked: every fourth point is gathered twice.
@@ -146,10 +146,6 @@ class Placement {
   const RecordSource* source_;
 };
 
-}  // namespace
-
-namespace {
-
 /// The radius [m] before min_radius_px is applied.
 float radius_by_distances(const IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   return std::isinf(record.radius_unclamped) ? options.unseen_radius_px * footprint
@@ -174,16 +170,16 @@ void limit_radius(IrradianceRecord& record, float footprint, const PlacementOpti
   for (Vec3& g : record.translational) g *= float(kept);
 }
 
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
-                          const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
-                          const std::function<void(double)>& progress, const RecordSource* source) {
+std::size_t place_records(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
+                          RecordStore& store, GatherCounts& counts) {
+  const int width = picture.width, height = picture.height;
   const std::size_t before = store.records().size();
-  Placement placement(gather, view, options, store, counts, source);
+  Placement placement(gather, picture, options, store, counts);
   std::vector<Glimpse> glimpses(std::size_t(width) * std::size_t(height));
   std::size_t done = 0;
   const auto advance = [&](std::size_t pixels) {
     done += pixels;
-    if (progress) progress(double(done) / (2 * double(width) * height));
+    if (picture.progress) picture.progress(double(done) / (2 * double(width) * height));
   };
   const auto look_at = [&](std::size_t pixel, Vec2 within) {
     return Look{float(pixel % std::size_t(width)) + within.x, float(pixel / std::size_t(width)) + within.y, {}};

@@ -49,6 +49,14 @@ struct RecordSource {
 };
 inline constexpr std::size_t kPlacedTogether = 256;
 
+/// A picture that needs records.
+struct RecordPicture {
+  PixelView view;
+  int width, height;                          ///< pixels
+  std::function<void(double)> progress = {};  ///< called with values in [0, 1]; may be empty
+  const RecordSource* source = nullptr;       ///< makes the records; null: FinalGather::gather does
+};
+
 /// Adds records until the point of every pixel is covered. Takes the points through the pixel centres of lattices with
 /// a stride of 16, 8, 4, 2 and 1 pixels, each in a fixed shuffled order and in batches of fixed size. A batch is tested
 /// and gathered in parallel, and its records are added in order. Then takes four more points in each pixel at an edge
@@ -59,9 +67,8 @@ inline constexpr std::size_t kPlacedTogether = 256;
 /// difference of the two is the variance of one. The `noise` of all added records is scaled by the root of that
 /// variance over the mean square of `noise`, both summed in `counts` over all calls. Records of a `source` are gathered
 /// once.
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
-                          const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
-                          const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
+std::size_t place_records(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
+                          RecordStore& store, GatherCounts& counts);
 
 /// Radius r [m] of a record from R, the harmonic mean distance of what it sees (FinalGather::distance) [Ward,
 /// Rubinstein and Clear 1988]: error_bound R, or unseen_radius_px footprints if R is infinite, but at least

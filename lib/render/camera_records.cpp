@@ -40,8 +40,9 @@ GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras,
     const CameraView view(frame.camera(cameras.camera_node), frame.origin, cameras.width, cameras.height);
     PlacementOptions options = place.options;
     if (number != cameras.frames.front()) options.min_weight *= kLaterWeight;
-    const std::size_t added = place_records(place.gather, looks_through(place, view), cameras.width, cameras.height,
-                                            options, store, counts, cameras.progress, place.source);
+    const std::size_t added = place_records(
+        place.gather, {looks_through(place, view), cameras.width, cameras.height, cameras.progress, place.source},
+        options, store, counts);
     cameras.added(number, added);
   }
   return counts;

@@ -270,8 +270,8 @@ RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   };
   const auto steps = [step](int size) { return std::max(1, size / step); };
   GatherCounts counts;
-  place_records(gather, view, steps(picture.view.width()), steps(picture.view.height()), options, store, counts, {},
-                &source);
+  place_records(gather, {view, steps(picture.view.width()), steps(picture.view.height()), {}, &source}, options, store,
+                counts);
   return store;
 }
 

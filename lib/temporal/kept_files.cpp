@@ -56,15 +56,14 @@ float sample_unit(const SceneFrame& frame) {
   return unit > 0 ? float(unit) : 1.0f;
 }
 
-FramePoints::FramePoints(DividedGatherPoints points, const SceneFrame& frame)
-    : read(std::move(points.whole)), high_shares(std::move(points.high_shares)) {
+FramePoints::FramePoints(DividedGatherPoints points, const SceneFrame& frame) : DividedGatherPoints(std::move(points)) {
   if (!high_shares.empty())
     high_hash = hash_hex({reinterpret_cast<const char*>(high_shares.data()), high_shares.size() * sizeof(float)});
-  anchored = anchored_points(frame, read.points);
+  anchored = anchored_points(frame, whole.points);
   Hasher hasher;
   for (std::size_t i = 0; i < anchored; ++i) {
-    hasher.add(read.points[i].position);
-    hasher.add(read.points[i].normal);
+    hasher.add(whole.points[i].position);
+    hasher.add(whole.points[i].normal);
   }
   places_hash = hasher.hex();
 }

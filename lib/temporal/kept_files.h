@@ -15,14 +15,12 @@
 namespace tempolux {
 
 /// The points of a frame, and the data that samples must agree with.
-struct FramePoints {
+struct FramePoints : DividedGatherPoints {
   FramePoints(DividedGatherPoints points, const SceneFrame& frame);
 
-  GatherPoints read;
-  std::size_t anchored = 0;        ///< number of first points on static surfaces
-  std::string places_hash;         ///< of those
-  std::vector<float> high_shares;  ///< by point, from photonmap-split; empty: points are not divided
-  std::string high_hash;           ///< hash of high_shares; "" without
+  std::size_t anchored = 0;  ///< number of first points on static surfaces
+  std::string places_hash;   ///< of those
+  std::string high_hash;     ///< hash of high_shares; "" without
 };
 
 /// Unit of stored distances in a segment, m: the diagonal of the scene over the segment.

@@ -311,8 +311,8 @@ void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCou
   }
 }
 
-void TemporalGather::place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store,
-                           TemporalCounts& counts, const std::function<void(double)>& progress) const {
+void TemporalGather::place(RecordPicture picture, KeptHemispheres& kept, RecordStore& store,
+                           TemporalCounts& counts) const {
   fill(kept, store, counts);
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
@@ -325,7 +325,8 @@ void TemporalGather::place(const PixelView& view, int width, int height, KeptHem
     kept.records.push_back(std::move(batch[slot]));
     batch[slot] = {};
   };
-  counts.born += place_records(gather_, view, width, height, placement_, store, counts.birth, progress, &source);
+  picture.source = &source;
+  counts.born += place_records(gather_, picture, placement_, store, counts.birth);
   counts.records = kept.records.size();
   for (std::size_t i = 0; i < scene_.anchored_points; ++i) kept.point_light.push_back(scene_.points[i].total());
   kept.high_hash = scene_.high_hash;

@@ -81,8 +81,7 @@ class TemporalGather {
   /// Puts the kept records into a store and places new records where the kept ones do not cover what the camera sees;
   /// new records are kept, too. After a change a record becomes superfluous if at its place the sum of the weights of
   /// all earlier records is larger by 1 than when the record was placed. It then fades out over four frames.
-  void place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store,
-             TemporalCounts& counts, const std::function<void(double)>& progress = {}) const;
+  void place(RecordPicture picture, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;
 
  private:
   struct Marked;

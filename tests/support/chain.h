@@ -65,7 +65,7 @@ struct Chain {
       if (!seen) return std::nullopt;
       return SeenPoint{seen->first, seen->second, footprint, false};
     });
-    place_records(gather, views, width, height, {}, store, counts);
+    place_records(gather, {views, width, height}, {}, store, counts);
     EXPECT_LT(counts.unanswered, counts.rays / 20);  // near walls and bends of a surface some hits have no point
   }
   /// The surface that a ray meets which starts h above `position` and runs against `normal`.

@@ -18,7 +18,7 @@ GatherPoints counted(Tool& tool, GatherPoints points) {
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
                                const PointOptions& options) {
   tool.stats().phase("read photons");
-  const formats::PhotonMap map = read_photons(tool, file, tracer.frame(), LightNeeded::all);
+  const formats::PhotonMap map = read_photons(tool, file, tracer.frame(), {});
   tool.stats().phase("points", true);
   return counted(tool, make_points(map, tracer, lights, options));
 }
@@ -43,8 +43,7 @@ void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& opti
   const Tracer tracer(frame);
   const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("read photons");
-  const formats::PhotonMap map =
-      read_photons(tool, frame_name(options.photons, number), frame, LightNeeded::all, "static");
+  const formats::PhotonMap map = read_photons(tool, frame_name(options.photons, number), frame, {.map = "static"});
   tool.stats().phase("points", true);
   const GatherPoints points = counted(tool, make_points(map, tracer, lights, options.points_of(frame)));
   tool.stats().phase("write");
@@ -63,10 +62,10 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   GatherPoints points = read_points(tool, frame_name(options.update, number), standing);
   tool.stats().phase("read photons");
   const std::string dynamic = frame_name(options.dynamic.front(), number);
-  const formats::PhotonMap moved = read_photons(tool, dynamic, frame, LightNeeded::all, "dynamic");
+  const formats::PhotonMap moved = read_photons(tool, dynamic, frame, {.map = "dynamic"});
   const formats::PhotonMap fixed =
-      read_photons(tool, frame_name(options.photons, number), standing, LightNeeded::all, "static",
-                   static_photons_read(frame, options.point, points.points, moved.photons));
+      read_photons(tool, frame_name(options.photons, number), standing,
+                   {.map = "static", .keep = static_photons_read(frame, options.point, points.points, moved.photons)});
   if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
     throw InputError(dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");

@@ -65,19 +65,11 @@ void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
   tool.stats().count("unanswered", double(counts.unanswered));
 }
 
-/// Points made from photons, or read from a file, or read as two parts. With two parts high_shares receives the high
-/// part's share of each point.
-GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights,
-                           std::vector<float>& high_shares) {
-  if (options.high.empty())
-    return options.points.empty()
-               ? points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame()))
-               : read_points(tool, options.points, tracer.frame());
-  DividedGatherPoints divided = options.points.empty()
-                                    ? points_of_parts(tool, options, tracer, lights)
-                                    : read_divided_points(tool, options.points, options.high, tracer.frame());
-  high_shares = std::move(divided.high_shares);
-  return std::move(divided.whole);
+/// Points made from photons, or read from a file, or read as two parts.
+DividedGatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights) {
+  if (!options.points.empty()) return read_divided_points(tool, options.points, options.high, tracer.frame());
+  if (!options.high.empty()) return points_of_parts(tool, options, tracer, lights);
+  return {points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame())), {}};
 }
 
 /// Dynamic maps of a frame (its own comes first) as densities over the static scene.
@@ -89,7 +81,7 @@ std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options,
     const std::string file = frame_name(name, frame.frame);
     const bool own = maps.empty();
     const formats::PhotonMap map =
-        own ? read_photons(tool, file, frame, LightNeeded::all, "dynamic") : read_earlier_change(tool, file, frame);
+        own ? read_photons(tool, file, frame, {.map = "dynamic"}) : read_earlier_change(tool, file, frame);
     maps.emplace_back(standing, map.photons, density, shift_of(map.header.origin, frame));
   }
   return maps;
@@ -107,14 +99,14 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   const Tracer tracer(first);
   const Lights lights(first, input.emission(first.frame));
   if (!options.points.empty()) tool.stats().phase("read points");
-  std::vector<float> high_shares;
-  const GatherPoints points = gather_points(tool, options, tracer, lights, high_shares);
+  const DividedGatherPoints divided = gather_points(tool, options, tracer, lights);
+  const GatherPoints& points = divided.whole;
   tool.stats().phase("prepare records");
   if (!options.keep_points.empty()) {
     Output keep(options.keep_points);
     write_points(tool, points, first, keep);
   }
-  const PointsRead read(tool, tracer, lights, points, std::move(high_shares), options.gather);
+  const PointsRead read(tool, tracer, lights, divided, options.gather);
   const Lights guided = guided_lights(tracer, lights, points.points);
   const FinalGather gather(tracer, guided, read.lookup, options.gather);
   RecordStore store;
@@ -141,7 +133,8 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const Tracer tracer(frame, tree), without(standing, tree);
   const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("read points");
-  const GatherPoints points = read_points(tool, frame_name(options.points, number), frame);
+  const DividedGatherPoints whole{read_points(tool, frame_name(options.points, number), frame), {}};
+  const GatherPoints& points = whole.whole;
   tool.stats().phase("read photons");
   const std::vector<SignedDensity> maps = read_changes(tool, options, without, frame);
   tool.stats().phase("prepare records");
@@ -153,7 +146,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
   GatherOptions gathering = options.gather;
-  const PointsRead read(tool, tracer, lights, points, {}, gathering);
+  const PointsRead read(tool, tracer, lights, whole, gathering);
   const Lights guided = guided_lights(tracer, lights, points.points);
   const FinalGather gather(tracer, guided, read.lookup, gathering);
 

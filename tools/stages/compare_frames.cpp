@@ -74,7 +74,7 @@ class FrameOutputs {
   }
   void write(const JudgedFrame& judged, const LoadedFrame& loaded, const VisionOptions& viewing,
              std::optional<int> frame) {
-    if (map_) write_map(tool_, judged, loaded, viewing, frame, std::move(*map_));
+    if (map_) write_map(judged, loaded, viewing, tool_.history_line(frame), std::move(*map_));
   }
   double scale = 0;  ///< of the PNG of differences, set by the first frame
 

@@ -22,22 +22,21 @@ FrameOutputs::FrameOutputs(const std::string& path, bool halves) {
   for (const char* half : {"_a", "_b"}) outputs_.emplace_back(name_with(path, half));
 }
 
-void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
-                         const FrameDescription& description, const ExrWriteOptions& options,
-                         const std::vector<std::uint8_t>& mask, const Image& base) {
+void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const FrameDescription& description,
+                         const BaseFrame& base) {
   const std::set<std::uint32_t> objects = objects_of(data, description);
   const LayerImage* parts[3] = {&rendered.mean, &rendered.half[0], &rendered.half[1]};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     Image image = data;
-    add_colour_channels(*parts[i], channels, image);
-    if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
+    add_colour_channels(*parts[i], description.channels, image);
+    if (!base.mask.empty()) keep_base_pixels(base.mask, base.base, data.channels.size(), image);
     describe_frame(image, description.identity, description.frame, description.fps, description.history,
                    description.camera);
     image.numbers["tempolux:samples"] = parts[i]->samples;
     set_object_names(image, objects, description.object_names);
     if (i == 0)  // of the mean of all samples
       for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;
-    save_exr(outputs_[i].temporary_path(), image, options);
+    save_exr(outputs_[i].temporary_path(), image, description.exr);
   }
   for (Output& output : outputs_) output.commit();
 }

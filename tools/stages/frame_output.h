@@ -10,10 +10,11 @@
 #include "lib/image/frame_identity.h"
 #include "lib/render/frame_renderer.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/base_frame.h"
 
 namespace tempolux::tools {
 
-/// The attributes of a frame (formats/frames/frames.md).
+/// The attributes of a frame (formats/frames/frames.md), and what is written of it.
 struct FrameDescription {
   formats::Identity identity;
   std::string history;
@@ -22,17 +23,18 @@ struct FrameDescription {
   CameraMatrices camera;
   std::map<std::string, double> account;  ///< account_of()
   std::vector<std::string> object_names;  ///< by id.object
+  std::vector<std::string> channels;      ///< groups
+  ExrWriteOptions exr;
 };
 
 class FrameOutputs {
  public:
   /// Creates the files at once, so that an unwritable place is reported before the work.
   FrameOutputs(const std::string& path, bool halves);
-  /// Writes and commits all files. `data` holds the data channels already; with a mask, pixels outside the mask are
-  /// copied from `base`.
-  void write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
-             const FrameDescription& description, const ExrWriteOptions& options, const std::vector<std::uint8_t>& mask,
-             const Image& base);
+  /// Writes and commits all files. `data` holds the data channels already; pixels that were not traced are copied from
+  /// `base`.
+  void write(const RenderedFrame& rendered, const Image& data, const FrameDescription& description,
+             const BaseFrame& base);
 
  private:
   std::vector<Output> outputs_;  ///< the mean, then half a and half b

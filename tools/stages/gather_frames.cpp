@@ -13,25 +13,33 @@
 namespace tempolux::tools {
 namespace {
 
-/// The previous frame, kept in memory: its records, and its scene.
-struct Chain {
-  KeptHemispheres kept;
-  std::optional<SceneFrame> before;  ///< empty: nothing is kept
-  std::string places_hash;           ///< of the points that anchors name
-  KeptFiles files;
+/// Gathers the frames of a run, each from the one before, which is kept in memory.
+class GatherRun {
+ public:
+  GatherRun(Tool& tool, SceneInput& input, const TemporalGatherOptions& options)
+      : tool_(tool), input_(input), options_(options) {}
+  void gather(int number);
 
-  void follow(SceneFrame frame, const FramePoints& points) {
-    before.emplace(std::move(frame));
-    places_hash = points.places_hash;
-  }
+ private:
+  void check_points(const std::string& file, const FramePoints& points) const;
+  void read_previous(const SceneFrame& now, const FramePoints& points);
+  void continue_chain(const SceneFrame& frame, const FramePoints& points);
+
+  Tool& tool_;
+  SceneInput& input_;
+  const TemporalGatherOptions& options_;
+  StaticTree standing_;
+  KeptHemispheres kept_;              ///< records of the previous frame
+  std::optional<SceneFrame> before_;  ///< the scene at the previous frame; empty: nothing is kept
+  std::string places_hash_;           ///< of the points that anchors name
+  KeptFiles files_;
 };
 
 /// Anchors are numbers of points, so each point must lie where the previous frame's point of that number lay.
-void check_points(const Chain& chain, const std::string& file, const FramePoints& points) {
-  if (!chain.before || chain.places_hash.empty() || chain.places_hash == points.places_hash) return;
+void GatherRun::check_points(const std::string& file, const FramePoints& points) const {
+  if (!before_ || places_hash_.empty() || places_hash_ == points.places_hash) return;
   throw InputError(file + ": its " + std::to_string(points.anchored) +
-                   " points on static surfaces lie elsewhere than those of frame " +
-                   std::to_string(chain.before->frame) +
+                   " points on static surfaces lie elsewhere than those of frame " + std::to_string(before_->frame) +
                    " before it; make the points of all frames of a segment with the same options");
 }
 
@@ -76,34 +84,27 @@ void count(Tool& tool, const TemporalCounts& counts, int frame, bool first) {
         double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
 }
 
-/// `high`: the high part, `file` then being the low part; "": `file` holds all light.
-FramePoints read_frame_points(Tool& tool, const std::string& file, const std::string& high, const SceneFrame& frame) {
-  if (high.empty()) return {{read_points(tool, file, frame), {}}, frame};
-  return {read_divided_points(tool, file, high, frame), frame};
-}
-
 /// Reads what the previous frame has kept, and that frame's scene.
-void read_previous(Tool& tool, SceneInput& input, const std::string& file, const SceneFrame& now,
-                   const FramePoints& points, Chain& chain) {
-  tool.depends_on(file, InputRole::replaceable);
-  const formats::RadsamplesHeader header = read_kept(file, now, chain.kept).header;
-  if (!header.base_name.empty()) tool.depends_on(formats::path_of_base(file, header.base_name));
-  check_kept(file, header, now, points, chain.kept);
-  chain.before.emplace(input.at(header.identity.first_frame, false));
-  check_identity(tool, file, header.identity, *chain.before);
+void GatherRun::read_previous(const SceneFrame& now, const FramePoints& points) {
+  const std::string& file = options_.previous;
+  tool_.depends_on(file, InputRole::replaceable);
+  const formats::RadsamplesHeader header = read_kept(file, now, kept_).header;
+  if (!header.base_name.empty()) tool_.depends_on(formats::path_of_base(file, header.base_name));
+  check_kept(file, header, now, points, kept_);
+  before_.emplace(input_.at(header.identity.first_frame, false));
+  check_identity(tool_, file, header.identity, *before_);
 }
 
-/// Prepares the chain for a frame: reads the previous frame where it is a file, and forgets it in a new segment.
-void continue_chain(Tool& tool, SceneInput& input, const TemporalGatherOptions& options, const SceneFrame& frame,
-                    const FramePoints& points, Chain& chain) {
-  if (!options.previous.empty() && !chain.before) {
-    tool.stats().phase("read samples");
-    chain.kept = {};
-    read_previous(tool, input, options.previous, frame, points, chain);
+/// Prepares for a frame: reads the previous frame where it is a file, and forgets it in a new segment.
+void GatherRun::continue_chain(const SceneFrame& frame, const FramePoints& points) {
+  if (!options_.previous.empty() && !before_) {
+    tool_.stats().phase("read samples");
+    kept_ = {};
+    read_previous(frame, points);
   }
-  if (chain.before && chain.before->segment.first != frame.segment.first) chain.before.reset();
-  check_points(chain, options.points, points);
-  if (!chain.before) chain.kept = {};
+  if (before_ && before_->segment.first != frame.segment.first) before_.reset();
+  check_points(frame_name(options_.points, frame.frame), points);
+  if (!before_) kept_ = {};
 }
 
 /// Direction towards the camera from a place that it sees, as TemporalScene::eye needs it.
@@ -113,59 +114,56 @@ std::optional<Vec3> eye_from(const CameraView& view, Vec3 place) {
   return view.ray(float((*at)[0]), float((*at)[1])).origin;
 }
 
-/// Gathers one frame from the previous one in `chain`, and stores it there.
-void gather_frame(Tool& tool, SceneInput& input, TemporalGatherOptions options, int number, StaticTree& standing,
-                  Chain& chain) {
-  for (std::string* name : {&options.output, &options.cache, &options.points, &options.high})
-    *name = frame_name(*name, number);
-  tool.stats().phase("evaluate");
-  SceneFrame frame = input.at(number);
-  tool.stats().phase("read points");
-  FramePoints points = read_frame_points(tool, options.points, options.high, frame);
-  const std::string history = points.read.history + tool.history_line(number);
-  Output kept_output(options.output), cache_output(options.cache);
-  continue_chain(tool, input, options, frame, points, chain);
-  tool.stats().phase("build");
-  const Tracer tracer(frame, standing);
-  const Lights lights(frame, input.emission(frame.frame));
-  GatherOptions rays = options.gather;
-  rays.seed = tool.common().seed_for_frame(number);
-  const PointsRead read(tool, tracer, lights, points.read, points.high_shares, rays);
-  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width,
-                        options.height);
+/// Gathers one frame from the previous one, and keeps it for the next.
+void GatherRun::gather(int number) {
+  const auto named = [&](const std::string& pattern) { return frame_name(pattern, number); };
+  tool_.stats().phase("evaluate");
+  SceneFrame frame = input_.at(number);
+  tool_.stats().phase("read points");
+  const FramePoints points(read_divided_points(tool_, named(options_.points), named(options_.high), frame), frame);
+  const std::string history = points.whole.history + tool_.history_line(number);
+  Output kept_output(named(options_.output)), cache_output(named(options_.cache));
+  continue_chain(frame, points);
+  tool_.stats().phase("build");
+  const Tracer tracer(frame, standing_);
+  const Lights lights(frame, input_.emission(frame.frame));
+  GatherOptions rays = options_.gather;
+  rays.seed = tool_.common().seed_for_frame(number);
+  const PointsRead read(tool_, tracer, lights, points, rays);
+  const CameraView view(frame.camera(input_.scene().camera_node(tool_.common().camera)), frame.origin, options_.width,
+                        options_.height);
   const TemporalScene scene{tracer,
                             lights,
                             read.lookup,
-                            points.read.points,
+                            points.whole.points,
                             points.anchored,
-                            chain.before ? &*chain.before : nullptr,
+                            before_ ? &*before_ : nullptr,
                             points.high_shares,
                             points.high_hash,
                             [&](Vec3 place) { return eye_from(view, place); }};
-  const TemporalGather gather(scene, rays, options.placement, options.temporal, sample_unit(frame));
-  const PixelView seen = [&](const Look& look) { return seen_through(tracer, view, look); };
-  tool.stats().phase("records", true);
+  const TemporalGather gather(scene, rays, options_.placement, options_.temporal, sample_unit(frame));
+  tool_.stats().phase("records", true);
   TemporalCounts counts;
-  if (chain.before) gather.advance(chain.kept, counts);
+  if (before_) gather.advance(kept_, counts);
   RecordStore store;
-  gather.place(seen, options.width, options.height, chain.kept, store, counts,
-               [&](double done) { tool.progress(done); });
-  tool.stats().phase("write");
-  write_cache(options, frame, store, history, cache_output);
-  chain.files.write(chain.kept, frame, points, history, kept_output.is_stdout() ? "" : kept_output.path(),
-                    kept_output.sink());
+  gather.place({[&](const Look& look) { return seen_through(tracer, view, look); }, options_.width, options_.height,
+                [&](double done) { tool_.progress(done); }},
+               kept_, store, counts);
+  tool_.stats().phase("write");
+  write_cache(options_, frame, store, history, cache_output);
+  files_.write(kept_, frame, points, history, kept_output.is_stdout() ? "" : kept_output.path(), kept_output.sink());
   kept_output.commit();
-  tool.stats().end_phase();
-  count(tool, counts, number, !chain.before);
-  chain.follow(std::move(frame), points);
+  tool_.stats().end_phase();
+  count(tool_, counts, number, !before_);
+  before_.emplace(std::move(frame));
+  places_hash_ = points.places_hash;
 }
 
 }  // namespace
 
 void gather_frames(Tool& tool, SceneInput& input, const TemporalGatherOptions& options) {
-  StaticTree standing;
-  Chain chain;
-  for (const int frame : tool.common().frames) gather_frame(tool, input, options, frame, standing, chain);
+  GatherRun run(tool, input, options);
+  for (const int frame : tool.common().frames) run.gather(frame);
 }
 
 }  // namespace tempolux::tools

@@ -34,15 +34,15 @@ void refuse_part(const std::string& file, const std::string& part) {
 }
 
 void check_photons(Tool& tool, const std::string& file, const formats::PhotonHeader& header, const SceneFrame& frame,
-                   LightNeeded needed, const std::string& wanted) {
-  if (header.map != wanted)
+                   const WantedPhotons& wanted) {
+  if (header.map != wanted.map)
     throw InputError(file + ": a " + header.map + " map" +
-                     (header.map == "global" ? "" : " is a part of the scene's light") + "; give a " + wanted +
-                     " one, as photon-trace writes it with --map " + wanted);
+                     (header.map == "global" ? "" : " is a part of the scene's light") + "; give a " + wanted.map +
+                     " one, as photon-trace writes it with --map " + wanted.map);
   refuse_part(file, header.part);
   check_identity(tool, file, header.identity, frame);
-  const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
-                                                                    : std::vector<std::string>{"caustic"};
+  std::vector<std::string> kinds{"caustic"};
+  if (wanted.needed == LightNeeded::all) kinds.insert(kinds.begin(), "indirect");
   check_kinds(tool, file, header.kinds, kinds, frame, "trace it with --kinds caustic,indirect");
 }
 
@@ -82,6 +82,7 @@ GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& 
 
 DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file, const std::string& high_file,
                                         const SceneFrame& frame) {
+  if (high_file.empty()) return {read_points(tool, low_file, frame), {}};
   formats::IrradpointsFile low = load_points(tool, low_file);
   require_part(low_file, low.header.part, "low", "--points");
   const formats::IrradpointsFile high = load_points(tool, high_file);
@@ -97,35 +98,29 @@ DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file,
   return divided;
 }
 
-PointsRead::PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const GatherPoints& points,
-                       std::vector<float> high_shares, GatherOptions& gather)
-    : lookup(points.points, points.spacing, point_clearance(tracer)),
+PointsRead::PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const DividedGatherPoints& points,
+                       GatherOptions& gather)
+    : lookup(points.whole.points, points.whole.spacing, point_clearance(tracer)),
       beside_lamps(note_lamps_beside(tracer, lights, lookup)) {
-  if (beside_lamps.empty() && std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
-  bright.emplace(tracer, lights, lookup, std::move(high_shares),
+  if (beside_lamps.empty() && !points.any_high()) return;
+  bright.emplace(tracer, lights, lookup, points.high_shares,
                  BrightOptions{.seed = gather.seed, .beside_lamps = beside_lamps});
   tool.stats().count("bright_points", double(bright->spot_count()));
   tool.stats().count("bright_sites", double(bright->site_count()));
   gather.bright = &*bright;
 }
 
-formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
-                                const std::string& wanted) {
-  formats::PhotonMap map = load_map(tool, file);
-  check_photons(tool, file, map.header, frame, needed, wanted);
-  return map;
-}
-
-formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
-                                const std::string& wanted,
-                                const std::function<bool(Vec3, const formats::Photon&)>& keep) {
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame,
+                                const WantedPhotons& wanted) {
   tool.depends_on(file);
   formats::PhotonMap map =
-      formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
-        const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
-        return keep(Vec3(place + shift_of(header.origin, frame)), photon);
-      });
-  check_photons(tool, file, map.header, frame, needed, wanted);
+      !wanted.keep
+          ? formats::load_photons(file)
+          : formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
+              const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
+              return wanted.keep(Vec3(place + shift_of(header.origin, frame)), photon);
+            });
+  check_photons(tool, file, map.header, frame, wanted);
   return map;
 }
 
@@ -142,7 +137,7 @@ DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const 
     throw InputError(high + ": its photons are not those of " + low + "; give the two parts of one file");
   check_identity(tool, high, other.identity, frame);
   join_parts(map.whole, map.high);
-  check_photons(tool, low, map.whole.header, frame, needed, "global");
+  check_photons(tool, low, map.whole.header, frame, {needed});
   return map;
 }
 

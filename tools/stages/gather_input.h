@@ -21,15 +21,19 @@ namespace tempolux::tools {
 /// Which light a reader needs from photons or points.
 enum class LightNeeded { all, caustic };
 
-/// Reads the photons of a map made for this state of the scene (else InputError, see check_identity). `map` names the
-/// kind of map; for a static map `frame` is the static scene. The map must hold the kinds that the scene's surfaces
-/// require: without indirect light it is refused, without caustic light there is a warning.
-formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
-                                const std::string& map = "global");
-/// The same, but keeps only photons for which `keep` returns true, called with the position in scene space and the
-/// photon.
-formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
-                                const std::string& map, const std::function<bool(Vec3, const formats::Photon&)>& keep);
+/// What a reader needs from a map of photons.
+struct WantedPhotons {
+  LightNeeded needed = LightNeeded::all;
+  std::string map = "global";  ///< kind of the map
+  /// Photons for which this returns false are left out; the position is in scene space. Empty: all are kept.
+  std::function<bool(Vec3, const formats::Photon&)> keep = {};
+};
+
+/// Reads the photons of a map made for this state of the scene (else InputError, see check_identity); for a static map
+/// `frame` is the static scene. The map must hold the kinds that the scene's surfaces require: without indirect light
+/// it is refused, without caustic light there is a warning.
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame,
+                                const WantedPhotons& wanted);
 
 /// Reads the two parts from photonmap-split, checked as read_photons checks a map. Throws InputError if the files are
 /// not the two parts of one map.
@@ -41,18 +45,19 @@ formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, cons
 
 /// Reads a .irradpoints file made for this state of the scene; checks its kinds of light as read_photons does.
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
-/// Reads the two parts of divided points as read_points; throws InputError if they are not the parts of one file.
+/// Reads the two parts of divided points as read_points; throws InputError if they are not the parts of one file. If
+/// `high` is "" the file `low` holds all light, and there are no shares.
 DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, const std::string& high,
                                         const SceneFrame& frame);
 /// Points as gather rays read them, with the light that records sample explicitly: that of lamps close to surfaces, and
-/// of points with a high share (photonmap-split). All arguments but high_shares must outlive this object.
+/// of points with a high share (photonmap-split). All arguments must outlive this object.
 struct PointsRead {
   PointLookup lookup;
   std::vector<LampPhoton> beside_lamps;
   std::optional<BrightPoints> bright;  ///< if light is to be sampled explicitly; `gather` then names them
 
-  PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const GatherPoints& points,
-             std::vector<float> high_shares, GatherOptions& gather);
+  PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const DividedGatherPoints& points,
+             GatherOptions& gather);
 };
 
 /// Writes points that are valid for the frame, or for the given first to last frame; adds counts to stats.

@@ -9,14 +9,14 @@
 
 namespace tempolux::tools {
 
-IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer,
-                             const Lights& lights, std::uint64_t seed, int number) {
-  const SceneFrame& frame = tracer.frame();
+IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const RenderScene& scene,
+                             std::uint64_t seed, int number) {
+  const SceneFrame& frame = scene.frame();
   known_.lights_are_met =
-      lights.has_environment() ||
+      scene.lights.has_environment() ||
       std::ranges::any_of(frame.materials, [](const Material& material) { return material.emissive(); });
-  if (!options.photons.empty()) read_maps(tool, options, tracer, number);
-  if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
+  if (!options.photons.empty()) read_maps(tool, options, scene.tracer, number);
+  if (!options.points.empty()) read_points(tool, options, scene, seed, number);
   if (!options.meshirrad.empty()) {
     tool.stats().phase("read light texture");
     read_mesh(tool, frame_name(options.meshirrad, number), frame);
@@ -27,26 +27,20 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   }
 }
 
-void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer,
-                                const Lights& lights, std::uint64_t seed, int number) {
+void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options, const RenderScene& scene,
+                                std::uint64_t seed, int number) {
   tool.stats().phase("read points");
-  const std::string name = frame_name(options.points, number);
-  std::vector<float> high_shares;
-  if (options.high.empty()) {
-    points_ = tools::read_points(tool, name, tracer.frame());
-  } else {
-    DividedGatherPoints divided = read_divided_points(tool, name, frame_name(options.high, number), tracer.frame());
-    points_ = std::move(divided.whole);
-    high_shares = std::move(divided.high_shares);
-  }
-  history_ = points_.history;
-  lookup_ = std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer));
-  note_lamps_beside(tracer, lights, *lookup_);
+  points_ =
+      read_divided_points(tool, frame_name(options.points, number), frame_name(options.high, number), scene.frame());
+  const GatherPoints& points = points_.whole;
+  history_ = points.history;
+  lookup_ = std::make_unique<PointLookup>(points.points, points.spacing, point_clearance(scene.tracer));
+  note_lamps_beside(scene.tracer, scene.lights, *lookup_);
   known_.points = lookup_.get();
-  if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
+  if (!points_.any_high()) return;
   tool.stats().phase("bright points", true);
-  bright_ =
-      std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed});
+  bright_ = std::make_unique<BrightPoints>(scene.tracer, scene.lights, *lookup_, points_.high_shares,
+                                           BrightOptions{.seed = seed});
   known_.bright = bright_.get();
   tool.stats().count("bright_points", double(bright_->spot_count()));
 }
@@ -67,15 +61,15 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
     map = read_divided_photons(tool, name, frame_name(options.high, number), frame, needed).whole;
     moved = shift(map);
   } else if (options.dynamic.empty()) {
-    map = read_photons(tool, name, frame, needed);
+    map = read_photons(tool, name, frame, {needed});
     moved = shift(map);
   } else {
     const auto wanted = [alone](Vec3, const formats::Photon& photon) {
       return alone || photon.kind == formats::PathKind::caustic;
     };
-    map = read_photons(tool, name, static_scene_of(frame), needed, "static", wanted);
+    map = read_photons(tool, name, static_scene_of(frame), {needed, "static", wanted});
     const formats::PhotonMap dynamic =
-        read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
+        read_photons(tool, frame_name(options.dynamic, number), frame, {needed, "dynamic", wanted});
     formats::PhotonBlock whole = whole_photons({map, dynamic, shift(map), shift(dynamic)}, wanted);
     map.photons = std::move(whole.photons);
     map.directions = std::move(whole.directions);

@@ -8,6 +8,7 @@
 #include "lib/gather/mesh_light.h"
 #include "lib/render/known_light.h"
 #include "lib/render/localised_light.h"
+#include "lib/render/path_tracer.h"
 #include "tools/stages/gather_input.h"
 
 namespace tempolux::tools {
@@ -26,16 +27,16 @@ struct IndirectLightOptions {
 /// Opens the files of the options, checks them against the frame's identity, and owns them while the frame is rendered.
 class IndirectLight {
  public:
-  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
-                std::uint64_t seed, int number);
+  IndirectLight(Tool& tool, const IndirectLightOptions& options, const RenderScene& scene, std::uint64_t seed,
+                int number);
 
   /// Empty without any file: camera paths find all light.
   const KnownLight& get() const { return known_; }
   const std::string& history() const { return history_; }
 
  private:
-  void read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
-                   std::uint64_t seed, int number);
+  void read_points(Tool& tool, const IndirectLightOptions& options, const RenderScene& scene, std::uint64_t seed,
+                   int number);
   void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
   void read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame);
   void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
@@ -43,7 +44,7 @@ class IndirectLight {
   std::string history_;
   std::unique_ptr<PhotonLight> photons_;
   std::unique_ptr<RecordStore> records_;
-  GatherPoints points_;
+  DividedGatherPoints points_;
   std::unique_ptr<PointLookup> lookup_;
   std::unique_ptr<BrightPoints> bright_;
   std::unique_ptr<LocalisedLight> localised_;

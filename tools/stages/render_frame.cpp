@@ -51,19 +51,31 @@ void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer)
   stats.set("spread", rendered.spread);
 }
 
+/// A rendered frame, and what it was rendered from.
+struct Shot {
+  const RenderScene& scene;
+  const EmissionTable& emission;
+  const CameraView& view;
+  const FrameOptions& options;
+  const RenderedFrame& rendered;
+
+  /// These lights, with distant light aimed at what the camera sees.
+  Lights aimed(Lights::Which which) const { return aimed_lights(scene.tracer, emission, view, which); }
+};
+
 /// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
 /// a reference any such light counts. Other frames may lack as much as an audit tolerates: photons of these lights
 /// measure the light.
-void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionTable& table, const CameraView& view,
-                           const KnownLight* known, const RenderedFrame& rendered) {
-  const SceneFrame& frame = scene.frame();
+void warn_of_missing_light(Tool& tool, const Shot& shot) {
+  const SceneFrame& frame = shot.scene.frame();
+  const KnownLight* const known = shot.options.known;
   if (!may_hide_light(frame) || (known && known->has_caustic())) return;
   const auto shines =
       std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
   char share[48] = "";
   if (known) {
-    const double missing = hidden_share(scene, aimed_lights(scene.tracer, table, view, Lights::Which::punctual), view,
-                                        mean_to_white(rendered.mean.pixels, {}));
+    const double missing = hidden_share(shot.scene, shot.aimed(Lights::Which::punctual), shot.view,
+                                        mean_to_white(shot.rendered.mean.pixels, {}));
     if (!(missing > 0)) return;
     std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing);
   }
@@ -79,28 +91,25 @@ void warn_of_missing_light(Tool& tool, const RenderScene& scene, const EmissionT
 /// view. If the scene has a sun and a mirror or smooth glass, photons estimate all light, because no camera path meets
 /// a sun via a smooth surface. Paths have nothing to audit in a frame by paths: `unbiased` is then set, and nothing is
 /// measured.
-std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const RenderScene& scene,
-                              const EmissionTable& table, const CameraView& view, const FrameOptions& frame_options,
-                              const RenderedFrame& rendered, bool& unbiased) {
+std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Shot& shot, bool& unbiased) {
   if (!(options.audit > 0)) return {};
-  const Lights& lights = scene.lights;
-  const bool hidden = lights.has_suns() && first_smooth_material(scene.frame()) != kNone,
-             paths = lights.has_distant() && !hidden, photons = hidden || lights.has_placed();
+  const RenderScene& scene = shot.scene;
+  const CameraView& view = shot.view;
+  const bool hidden = scene.lights.has_suns() && first_smooth_material(scene.frame()) != kNone,
+             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
   unbiased = paths && !photons && options.traces_paths();
   if (unbiased) return {};
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   const Tracer& tracer = scene.tracer;
-  AuditEffort effort = audit_effort(options.audit, rendered.rays, photons, paths,
-                                    mix64(frame_options.seed + std::uint64_t(tracer.frame().frame)));
+  AuditEffort effort = audit_effort(options.audit, shot.rendered.rays, photons, paths,
+                                    mix64(shot.options.seed + std::uint64_t(tracer.frame().frame)));
   const auto measure = [&] {
-    FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
-    if (photons)
-      audit.add_photons(tracer, aimed_lights(tracer, table, view, hidden ? Lights::Which::all : Lights::Which::placed),
-                        effort);
+    FrameAudit audit(view, shot.rendered, ids.channels.front().ids, shot.options.mask);
+    if (photons) audit.add_photons(tracer, shot.aimed(hidden ? Lights::Which::all : Lights::Which::placed), effort);
     if (paths) {
-      const Lights distant(tracer.frame(), table, Lights::Which::distant);
+      const Lights distant(tracer.frame(), shot.emission, Lights::Which::distant);
       audit.add_paths({tracer, distant, distant.has_suns()}, effort);
     }
     return audit.entries();
@@ -154,17 +163,16 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   const bool yardstick = options.integrator == "path";
   const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
   if (!yardstick && lights.has_environment()) lights = guided_lights(scene, view);
-  const IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
+  const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
 
   tool.stats().phase("render", true);
   if (!yardstick) frame_options.known = &light.get();
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
-  if (number == tool.common().frames.front())
-    warn_of_missing_light(tool, scene, input.emission(frame.frame), view, frame_options.known, rendered);
+  const Shot shot{scene, input.emission(frame.frame), view, frame_options, rendered};
+  if (number == tool.common().frames.front()) warn_of_missing_light(tool, shot);
   bool unbiased = false;
-  const std::vector<AuditEntry> audited =
-      audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered, unbiased);
+  const std::vector<AuditEntry> audited = audit(tool, options, shot, unbiased);
   std::map<std::string, double> account = account_of(rendered, audited);
   if (unbiased) {
     account["audit.unbiased"] = 1;
@@ -178,12 +186,16 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   add_seen_channels(scene, view, options.channels, image);
   add_influence_channels(scene, view, light.get().localised, options.channels, image);
   tool.stats().phase("write");
-  const ExrWriteOptions exr{options.half_float, options.compression == "zip"};
-  const FrameDescription description{
-      identity_of(frame),        light.history() + tool.history_line(number),   frame.frame,
-      input.time().fps,          {view.world_to_camera(), view.world_to_ndc()}, account,
-      input.scene().object_names};
-  outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
+  const FrameDescription description{identity_of(frame),
+                                     light.history() + tool.history_line(number),
+                                     frame.frame,
+                                     input.time().fps,
+                                     {view.world_to_camera(), view.world_to_ndc()},
+                                     account,
+                                     input.scene().object_names,
+                                     options.channels,
+                                     options.exr()};
+  outputs.write(rendered, image, description, base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
   report_account(tool, rendered, audited, frame_options, input.scene().object_names);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/image/exr_io.h"
 #include "lib/render/frame_renderer.h"
 #include "tools/common/scene_input.h"
 #include "tools/stages/indirect_light.h"
@@ -20,6 +21,7 @@ struct RenderOptions {
   int width = 640, height = 360;
   double audit = 0;  ///< share of the frame's camera rays
 
+  ExrWriteOptions exr() const { return {half_float, compression == "zip"}; }
   bool traces_paths() const {
     return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty();
   }

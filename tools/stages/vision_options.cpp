@@ -66,14 +66,14 @@ VisionOptions vision_options(const VisionWords& w, const LoadedFrame& first) {
   return options;
 }
 
-void write_map(Tool& tool, const JudgedFrame& judged, const LoadedFrame& frame, const VisionOptions& options,
-               std::optional<int> number, Output output) {
+void write_map(const JudgedFrame& judged, const LoadedFrame& frame, const VisionOptions& options,
+               const std::string& history, Output output) {
   const Image& shown = *frame.inputs().test.image;
   if (is_png(output.path())) {
     save_png(output.temporary_path(), heat_map(judged, shown, {frame.inputs().layer, options.exposure_stops}));
   } else {
     Image image = probability_image(judged, shown.width, shown.height);
-    image.text["tempolux:history"] = tool.history_line(number);
+    image.text["tempolux:history"] = history;
     save_exr(output.temporary_path(), image);
   }
   output.commit();

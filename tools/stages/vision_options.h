@@ -26,7 +26,7 @@ void check_vision(const VisionWords& words, bool several_frames);
 VisionOptions vision_options(const VisionWords& words, const LoadedFrame& first);
 
 /// Writes a frame's map: EXR, or PNG with the map over the frame.
-void write_map(Tool& tool, const JudgedFrame& judged, const LoadedFrame& frame, const VisionOptions& options,
-               std::optional<int> number, Output output);
+void write_map(const JudgedFrame& judged, const LoadedFrame& frame, const VisionOptions& options,
+               const std::string& history, Output output);
 
 }  // namespace tempolux::tools

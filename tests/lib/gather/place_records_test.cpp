@@ -65,7 +65,7 @@ struct Room {
                     const PlacementOptions& options = {}) const {
     const PixelView views =
         pixel_by_pixel([&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); });
-    return place_records(*gather, views, width, height, options, store, counts);
+    return place_records(*gather, {views, width, height}, options, store, counts);
   }
 };
 
@@ -81,7 +81,7 @@ TEST(PlaceRecords, TheirNoiseIsThatBetweenSeeds) {
     std::array<RecordStore, 2> stores;
     for (std::uint64_t i = 0; i < 2; ++i) {
       GatherCounts counts;
-      place_records(room.gather->with_seed(2 * seed + i), views, 128, 96, {}, stores[i], counts);
+      place_records(room.gather->with_seed(2 * seed + i), {views, 128, 96}, {}, stores[i], counts);
     }
     for (int y = 2; y < 96; y += 4)
       for (int x = 2; x < 128; x += 4) {
@@ -148,7 +148,7 @@ TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
     const FinalGather gather(tracer, lights, lookup, options);
     RecordStore store;
     GatherCounts counts;
-    place_records(gather, pixel_by_pixel(floor), kSize, kSize, {}, store, counts);
+    place_records(gather, {pixel_by_pixel(floor), kSize, kSize}, {}, store, counts);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const Vec3 at = floor(float(x) + 0.5f, float(y) + 0.5f, nullptr)->surface.position;
@@ -187,7 +187,7 @@ TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
   EXPECT_GE(room.place(1, 1, store, counts), 1u);
   RecordStore none;
   const PixelView nothing = pixel_by_pixel([](float, float, const PathRandom*) { return std::optional<SeenPoint>(); });
-  EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, {}, none, counts), 0u);
+  EXPECT_EQ(place_records(*room.gather, {nothing, 32, 32}, {}, none, counts), 0u);
 }
 
 /// Pixels that see by a choice (glass) are also tested at positions within the pixel, with random numbers for the
@@ -204,7 +204,7 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
     return seen;
   });
   const ThreadLimit limit(1);
-  place_records(*room.gather, view, 8, 8, {}, store, counts);
+  place_records(*room.gather, {view, 8, 8}, {}, store, counts);
   EXPECT_EQ(drawn, 4 * 64);
 }
 
@@ -221,7 +221,7 @@ TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
     seen.footprint = 1;
     return std::optional(seen);
   });
-  EXPECT_EQ(place_records(*room.gather, patch, 400, 400, {}, store, counts), 256u);
+  EXPECT_EQ(place_records(*room.gather, {patch, 400, 400}, {}, store, counts), 256u);
 }
 
 /// A step between two parallel planes of one object is an edge, whose pixels are tested within. A plane seen at a
@@ -243,7 +243,7 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
       return std::optional(seen);
     });
     const ThreadLimit limit(1);
-    place_records(*room.gather, view, kSize, kSize, {}, store, counts);
+    place_records(*room.gather, {view, kSize, kSize}, {}, store, counts);
     return within;
   };
   EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);  // the columns next to the step

@@ -278,7 +278,7 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   const CameraView view = RoomWithMirror::view(64, 36);
   GatherCounts gathered;
   const PixelView views = [&](const Look& look) { return seen_through(chain.tracer, view, look); };
-  place_records(chain.gather, views, 64, 36, {}, chain.store, gathered);
+  place_records(chain.gather, {views, 64, 36}, {}, chain.store, gathered);
   PhotonLightOptions caustics;
   caustics.caustic_only = true;
   const PhotonLight photons(chain.tracer, chain.traced.photons, {}, caustics);

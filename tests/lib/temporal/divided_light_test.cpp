@@ -70,13 +70,14 @@ KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres 
                               each_place_its_own(), {}, 8);
   if (before) gather.advance(kept, counts);
   RecordStore store;
-  gather.place(
-      [&](const Look& look) -> std::optional<SeenPoint> {
-        Hit hit;
-        if (before || !tracer.intersect({{0.02f * look.x, 0.1f, 0.02f * look.y}, {0, -1, 0}}, hit)) return std::nullopt;
-        return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-      },
-      10, 10, kept, store, counts);
+  gather.place({[&](const Look& look) -> std::optional<SeenPoint> {
+                  Hit hit;
+                  if (before || !tracer.intersect({{0.02f * look.x, 0.1f, 0.02f * look.y}, {0, -1, 0}}, hit))
+                    return std::nullopt;
+                  return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+                },
+                10, 10},
+               kept, store, counts);
   return kept;
 }
 
@@ -148,14 +149,14 @@ TEST(DividedLight, LampsBesideACeilingAreSampledInEachFrame) {
     TemporalCounts counts;
     if (before) gather.advance(kept, counts);
     RecordStore store;
-    gather.place(
-        [&](const Look& look) -> std::optional<SeenPoint> {
-          Hit hit;
-          if (before || !tracer.intersect({{0.01f * look.x, 0.1f, 0.01f * look.y}, {0, -1, 0}}, hit))
-            return std::nullopt;
-          return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-        },
-        10, 10, kept, store, counts);
+    gather.place({[&](const Look& look) -> std::optional<SeenPoint> {
+                    Hit hit;
+                    if (before || !tracer.intersect({{0.01f * look.x, 0.1f, 0.01f * look.y}, {0, -1, 0}}, hit))
+                      return std::nullopt;
+                    return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+                  },
+                  10, 10},
+                 kept, store, counts);
     ASSERT_EQ(kept.records.size(), 100u);
     double sum = 0, squares = 0;
     int anchored = 0;

@@ -107,7 +107,8 @@ TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
       if (before) gathering.gather.advance(kept, counts);
       if (f == 0 || f == kFrames) {
         RecordStore store;
-        gathering.gather.place(gathering.floor(1e-4f), f == 0 ? kWidth : 1, f == 0 ? kHeight : 1, kept, store, counts);
+        gathering.gather.place({gathering.floor(1e-4f), f == 0 ? kWidth : 1, f == 0 ? kHeight : 1}, kept, store,
+                               counts);
       }
       before = std::move(now);
       ASSERT_GE(kept.records.size(), std::size_t(kWidth * kHeight));
@@ -120,7 +121,7 @@ TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
     KeptHemispheres anew;
     RecordStore store;
     TemporalCounts counts;
-    fresh.gather.place(fresh.floor(1e-4f), kWidth, kHeight, anew, store, counts);
+    fresh.gather.place({fresh.floor(1e-4f), kWidth, kHeight}, anew, store, counts);
     const Mean a = mean_of(kept), b = mean_of(anew);
     EXPECT_NEAR(a.mean, b.mean, 3 * std::hypot(a.error, b.error)) << half;
     EXPECT_GT(aged, 0u);
@@ -149,12 +150,13 @@ KeptHemispheres kept_in(Room& room, TemporalCounts& counts) {
   KeptHemispheres kept;
   RecordStore store;
   gathering.gather.place(
-      [&](const Look& look) {
-        Hit hit;
-        gathering.tracer.intersect({{0.1f * look.x, 0, 0.1f * look.y}, {0, -1, 0}}, hit);
-        return std::optional(SeenPoint{gathering.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
-      },
-      4, 4, kept, store, counts);
+      {[&](const Look& look) {
+         Hit hit;
+         gathering.tracer.intersect({{0.1f * look.x, 0, 0.1f * look.y}, {0, -1, 0}}, hit);
+         return std::optional(SeenPoint{gathering.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
+       },
+       4, 4},
+      kept, store, counts);
   return kept;
 }
 
@@ -163,7 +165,7 @@ KeptHemispheres advanced(Room& before, Room& now, KeptHemispheres kept, Temporal
   const Gathering gathering(now.scene, now.points, &before.scene.frame(), {.rays = 200}, everywhere(), options);
   gathering.gather.advance(kept, counts);
   RecordStore store;
-  gathering.gather.place([](const Look&) { return std::optional<SeenPoint>(); }, 1, 1, kept, store, counts);
+  gathering.gather.place({[](const Look&) { return std::optional<SeenPoint>(); }, 1, 1}, kept, store, counts);
   return kept;
 }
 
@@ -327,13 +329,13 @@ TEST(TemporalGather, WhatIsHiddenAndCloseHasNoSmallestRadius) {
     TemporalCounts counts;
     RecordStore store;
     const Gathering start(*first, none, nullptr, {.rays = 200}, placement);
-    start.gather.place(
-        [&](const Look&) {
-          Hit hit;
-          EXPECT_TRUE(start.tracer.intersect({{0, 0.005f, 0}, {0, -1, 0}}, hit));
-          return std::optional(SeenPoint{start.tracer.surface_point(hit), {0, 1, 0}, 0.025f, false});
-        },
-        1, 1, kept, store, counts);
+    start.gather.place({[&](const Look&) {
+                          Hit hit;
+                          EXPECT_TRUE(start.tracer.intersect({{0, 0.005f, 0}, {0, -1, 0}}, hit));
+                          return std::optional(SeenPoint{start.tracer.surface_point(hit), {0, 1, 0}, 0.025f, false});
+                        },
+                        1, 1},
+                       kept, store, counts);
     std::function<std::optional<Vec3>(Vec3)> eye;
     if (eye_height > 0) eye = [eye_height](Vec3) { return std::optional<Vec3>({0.001f, eye_height, 0}); };
     const Gathering then(*second, none, &start.frame, {.rays = 200}, placement, {}, eye);
@@ -385,13 +387,13 @@ TEST(TemporalGather, RecordsRideOnWhatMoves) {
   KeptHemispheres kept;
   RecordStore store;
   TemporalCounts counts, later;
-  first.gather.place(
-      [&](const Look&) {
-        Hit hit;
-        first.tracer.intersect({{0.2f, 2, 0.1f}, {0, -1, 0}}, hit);
-        return std::optional(SeenPoint{first.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
-      },
-      1, 1, kept, store, counts);
+  first.gather.place({[&](const Look&) {
+                        Hit hit;
+                        first.tracer.intersect({{0.2f, 2, 0.1f}, {0, -1, 0}}, hit);
+                        return std::optional(SeenPoint{first.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false});
+                      },
+                      1, 1},
+                     kept, store, counts);
   ASSERT_EQ(kept.records.size(), 1u);
   const formats::RadsamplesRecord old = kept.records[0].record;
   EXPECT_EQ(old.set, formats::SurfaceSet::dynamic_set);
@@ -422,19 +424,19 @@ TEST(TemporalGather, WhatIsNotThereHasNoRecords) {
   KeptHemispheres kept;
   RecordStore store, second_store, third_store;
   TemporalCounts counts, second, third;
-  first.gather.place(on_the_square(first), 3, 3, kept, store, counts);
+  first.gather.place({on_the_square(first), 3, 3}, kept, store, counts);
   ASSERT_EQ(kept.records.size(), 9u);
   const Gathering away(gone.scene, gone.points, &there.scene.frame(), {.rays = 64}, everywhere());
   away.gather.advance(kept, second);
   EXPECT_EQ(second.removed, 9u);
   EXPECT_EQ(kept.records.size(), 0u);
-  away.gather.place(on_the_square(away), 3, 3, kept, second_store, second);  // on the floor
+  away.gather.place({on_the_square(away), 3, 3}, kept, second_store, second);  // on the floor
   ASSERT_EQ(kept.records.size(), 9u);
   const Gathering again(back.scene, back.points, &gone.scene.frame(), {.rays = 64}, everywhere());
   again.gather.advance(kept, third);
   EXPECT_EQ(third.removed, 0u);
   EXPECT_GT(third.moved, 0u);  // the square, which is back, blocks rays from the floor
-  again.gather.place(on_the_square(again), 3, 3, kept, third_store, third);
+  again.gather.place({on_the_square(again), 3, 3}, kept, third_store, third);
   EXPECT_GE(kept.records.size(), 18u);  // the records of the floor, and new ones
   for (const KeptHemisphere& k : kept.records)
     EXPECT_TRUE(std::isfinite(k.record.irradiance[1]) && std::isfinite(k.record.normal[0]));
