@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "lib/gather/mesh_elements.h"
 #include "lib/volume/majorants.h"
 
 namespace tempolux {
@@ -52,7 +53,7 @@ class FluenceSums {
   std::vector<std::uint8_t> open_;
 };
 
-inline constexpr float kPhotonsInFilter = 256;  ///< photons under a filter of automatic width: the noise is then 1/16
+inline constexpr auto kPhotonsInFilter = float(kPhotonsInKernel);  ///< photons under a filter of automatic width
 
 /// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same Gaussian, so that cells at the border of
 /// the lit region are not darkened. Trilinear between the cells' centres; 0 outside.

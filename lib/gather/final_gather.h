@@ -64,8 +64,11 @@ class FinalGather {
   /// numbers are keyed by `key` = gather_key() of the record's place and normal.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
 
+  /// Rays of distance(): the harmonic mean of fewer distances does not determine a record's radius.
+  static constexpr int kDistanceRays = 64;
+
  private:
-  static constexpr int kDistanceRays = 64, kEnoughMet = 8;
+  static constexpr int kEnoughMet = 8;
   static constexpr std::uint32_t kMostDraws = 8;
 
   const Tracer& tracer_;

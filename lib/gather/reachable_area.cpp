@@ -12,8 +12,8 @@
 namespace tempolux {
 namespace {
 
-constexpr int kRim = 16;         ///< places on the rim that are tested first
-constexpr int kMostProbes = 32;  ///< largest number of probes, in multiples of the probes that must arrive
+constexpr int kRim = Clearance::kSpokes;  ///< places on the rim that are tested first
+constexpr int kMostProbes = 32;           ///< largest number of probes, in multiples of the probes that must arrive
 constexpr int kMostBends = 4;
 constexpr int kMostInColumn = 8;  ///< largest number of surfaces on top of each other
 

@@ -5,14 +5,17 @@
 #include <vector>
 
 #include "lib/core/random.h"
+#include "lib/density/irradiance_estimate.h"
 #include "lib/irradcache/clearance.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
 
-inline constexpr float kFlattening = 10;  ///< of the ellipsoid around a place, along its normal
-inline constexpr float kFlat = 0.005f;    ///< share of the radius: largest distance of a flat disc's rim from the plane
-inline constexpr float kMinCos = 0.1f;    ///< smallest cosine between its normal and those of surfaces that count
+inline constexpr float kFlattening =
+    IrradianceOptions{}.flattening;     ///< of the ellipsoid around a place, along its normal
+inline constexpr float kFlat = 0.005f;  ///< share of the radius: largest distance of a flat disc's rim from the plane
+inline constexpr float kMinCos =
+    IrradianceOptions{}.min_cos;  ///< smallest cosine between its normal and those of surfaces that count
 
 /// Decides whether light that falls on one place of a surface may count as light at another place.
 class Reach {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "formats/photons/photons.h"
+#include "lib/core/statistics.h"
+#include "lib/density/irradiance_estimate.h"
 
 namespace tempolux {
 namespace {
@@ -18,12 +20,9 @@ constexpr float kCellsPerSpacing = 1.4f;
 constexpr int kCellBits = 19;          ///< bits of a cell's number along an axis
 constexpr float kRounding = 0x1p-20f;  ///< relative rounding of coordinates
 
-constexpr float kBeside = 1.5f;    ///< spacings: distance within which points count as neighbours
-constexpr double kPhotons = 50;    ///< photons of an estimate: the default of PointOptions::neighbours
-constexpr double kSure = 3;        ///< standard errors that count as certain
+constexpr float kBeside = 1.5f;  ///< spacings: distance within which points count as neighbours
+constexpr double kPhotons = IrradianceOptions{}.neighbours;  ///< photons of an estimate
 constexpr std::size_t kProof = 2;  ///< neighbours that a point needs; on a wide surface it has 7
-/// Least cosine between normals of neighbours: the light of other faces shows no shadow's edge
-constexpr float kOnePlane = 0.95f;
 
 /// Bin of a normal: 3 bits of each octahedral coordinate.
 std::uint32_t normal_bin(Vec3 n) {
@@ -150,12 +149,13 @@ bool PointLookup::apart(const IrradiancePoint& bright, const IrradiancePoint& da
   const double wider = double(dark.radius > 0 ? dark.radius : widest_) / double(bright.radius);
   const double one = there / (kPhotons * wider * wider), c = kContrastOfIndirect;
   const double beyond = there - c * here;
-  return beyond > 0 && beyond * beyond > kSure * kSure * (there * there / kPhotons + c * c * (here * one + one * one));
+  return beyond > 0 &&
+         beyond * beyond > kCertain * kCertain * (there * there / kPhotons + c * c * (here * one + one * one));
 }
 
 std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   thread_local NeighbourList found;
-  PhotonQuery query = facing(light.position, light.normal, kOnePlane);
+  PhotonQuery query = facing(light.position, light.normal, Clearance::kBend);
   query.max_radius = kBeside * spacing_;
   index_.find_within(query, found);
   struct Range {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lib/core/statistics.h"
 #include "lib/core/vec.h"
 
 namespace tempolux {
@@ -27,7 +28,7 @@ struct AimSphere {
 /// most 1 / kUniform times the flux without spheres, so badly placed spheres cost little.
 class Aim {
  public:
-  static constexpr double kUniform = 0.25, kAround = 0.25;  ///< derived in docs/methods/aim.md
+  static constexpr double kUniform = kUnguidedShare, kAround = kUnguidedShare;  ///< derived in docs/methods/aim.md
 
   Aim() = default;
   Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius);

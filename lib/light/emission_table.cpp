@@ -5,6 +5,7 @@
 #include "formats/hash.h"
 #include "lib/core/pi.h"
 #include "lib/core/check.h"
+#include "lib/core/statistics.h"
 #include "lib/light/lights.h"
 #include "lib/light/punctual.h"
 #include "lib/light/triangle_light.h"
@@ -12,7 +13,7 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLeastShare = 0.2;  ///< least share of the environment, and of all other lights together
+constexpr double kLeastShare = kUnguidedShare;  ///< least share of the environment, and of all other lights together
 
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lib/core/sampling.h"
+#include "lib/core/statistics.h"
 #include "lib/core/vec.h"
 #include "lib/light/aim.h"
 #include "lib/light/environment_light.h"
@@ -100,7 +101,7 @@ class Lights {
   /// grid with probability 1 - kUnguided, else by radiance. Densities are those of the mixture, so means do not change,
   /// and a guide that misleads costs at most 1 / kUnguided times the variance. Photons are emitted as without.
   Lights guided(std::shared_ptr<const SkyGuide> guide) const;
-  static constexpr double kUnguided = 0.25;
+  static constexpr double kUnguided = kUnguidedShare;
 
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }

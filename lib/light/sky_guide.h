@@ -28,7 +28,7 @@ class SkyGuide {
     Vec3 direction;    ///< unit, towards the environment
     float weight = 0;  ///< radiance [any unit], above 0
   };
-  static constexpr int kRows = 32, kColumns = 64;
+  static constexpr int kRows = 32, kColumns = 2 * kRows;
   static constexpr std::size_t kLeastHits = 64;
   static constexpr double kMostSeen = 0.1;
 

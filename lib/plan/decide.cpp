@@ -45,8 +45,6 @@ std::vector<int> spread(const std::vector<int>& frames) {
   return some;
 }
 
-constexpr int kPlaces = 2048;  ///< number of places in all rough frames of a segment together
-
 /// True if the user and the scene allow this way to light. Media exclude paths, because photons light media.
 bool is_allowed(const Way& way, const Wish& wish, bool media) {
   return !(media && way.method == IndirectMethod::paths) &&
@@ -155,7 +153,7 @@ std::optional<Way> best_of(const std::vector<Way>& ways, const Wish& wish, bool 
 std::vector<Look> look_at(const std::vector<int>& frames, const Wish& wish, bool media,
                           const std::function<std::unique_ptr<FramePilot>(int)>& pilot_of,
                           std::unique_ptr<FramePilot>& middle) {
-  const int places = (kPlaces + int(frames.size()) - 1) / int(frames.size());
+  const int places = (kPilotPlaces + int(frames.size()) - 1) / int(frames.size());
   std::vector<Look> looks;
   for (const int frame : frames) {
     std::unique_ptr<FramePilot> pilot = pilot_of(frame);

@@ -191,11 +191,10 @@ double AdaptiveFrame::noise_goal() const {
 }
 
 /// Adds passes of samples until noise_left() is below noise_goal(). After each pass the noise is measured, and the
-/// noise that remains decides the size of the next pass. The error falls as the number of samples to the power of -1/2
-/// to -5/6; the exponent -.6 makes the passes approach the goal from above. How much a pass gains is only known after
-/// it, so no pass takes more than four times the samples taken so far.
+/// noise that remains decides the size of the next pass, by error_exponent(). How much a pass gains is only known after
+/// the pass, so no pass takes more than four times the samples taken so far.
 void AdaptiveFrame::reach_seen_error() {
-  constexpr double kSteepness = 0.6, kMostTimes = 4, kLeastTimes = 1.1;
+  constexpr double kMostTimes = 4, kLeastTimes = 1.1;
   constexpr int kMostIdle = 8;  // passes without a sample: all pixels are at their limit, or show no noise
   put_together();
   double times = 0.25;
@@ -210,7 +209,7 @@ void AdaptiveFrame::reach_seen_error() {
     } else {
       ++idle;
     }
-    times *= std::clamp(std::pow(noise_left() / noise_goal(), 1 / kSteepness), kLeastTimes, kMostTimes);
+    times *= std::clamp(std::pow(noise_left() / noise_goal(), 1 / error_exponent()), kLeastTimes, kMostTimes);
   }
 }
 

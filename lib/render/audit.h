@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/core/statistics.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/photon_splats.h"
 
@@ -106,7 +107,7 @@ class FrameAudit {
 /// True if the entry is to be reported: a layer's bias over the picture above 2 % of the picture's light and above
 /// three standard errors.
 bool is_biased(const AuditEntry& entry);
-inline constexpr double kAuditLimit = 0.02, kAuditErrors = 3;
+inline constexpr double kAuditLimit = 0.02, kAuditErrors = kCertain;
 /// A second, independent audit decides whether a biased entry is reported; it has this many times the effort.
 inline constexpr int kAuditAgain = 4;
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/render/pixel_noise.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
 /// Rays of a record: distances along fewer do not determine its radius; irradcache-build --rays takes no more.
-constexpr double kFewestRays = 64, kMostRays = 1 << 20;
+constexpr double kFewestRays = FinalGather::kDistanceRays, kMostRays = 1 << 20;
 constexpr double kLeastError = 1e-12;
 /// Squared error of a raw frame over that of the filtered frame, for ways without records: geometric mean of seven
 /// scenes (docs/pixels.md).

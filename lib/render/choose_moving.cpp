@@ -10,14 +10,13 @@
 #include "lib/density/photon_index.h"
 #include "lib/gather/localised.h"
 #include "lib/photon/dynamic_map.h"
+#include "lib/render/pilot_photons.h"
 #include "lib/render/places_seen.h"
 #include "lib/scene/static_scene.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kPlaces = 2048;
-constexpr std::uint64_t kPaths = 1 << 16;
 /// Static photons in a disc in which influence is measured: at the lower threshold the disc holds .06 x 200 = 12
 /// dynamic photons.
 constexpr int kNeighbours = 200;
@@ -45,7 +44,7 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, co
                      std::uint64_t seed) {
   PhotonOptions options;
   options.seed = seed;
-  options.photon_count = kPaths;
+  options.photon_count = kPilotPaths;
   options.group_count = 1;
   options.set_kinds("indirect");
   const Tracer whole_tracer(frame), fixed_tracer(static_scene);
@@ -84,9 +83,9 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
       dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
-  const SeenPlaces seen = places_seen({tracer, lights}, view, kPlaces, seed);
-  std::vector<std::uint8_t> gathered(kPlaces, 0);
-  parallel_chunks(kPlaces, 64, [&](std::size_t first, std::size_t last) {
+  const SeenPlaces seen = places_seen({tracer, lights}, view, kPilotPlaces, seed);
+  std::vector<std::uint8_t> gathered(kPilotPlaces, 0);
+  parallel_chunks(kPilotPlaces, 64, [&](std::size_t first, std::size_t last) {
     NeighbourList found;
     for (std::size_t i = first; i < last; ++i) {
       const SeenPlace& place = seen.places[i];
@@ -102,11 +101,11 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
     }
   });
   std::size_t places = 0, near = 0;
-  for (std::size_t i = 0; i < kPlaces; ++i) {
+  for (std::size_t i = 0; i < kPilotPlaces; ++i) {
     places += seen.places[i].exists();
     near += gathered[i];
   }
-  return {double(maps.touched) / double(kPaths), places > 0 ? double(near) / double(places) : 0};
+  return {double(maps.touched) / double(kPilotPaths), places > 0 ? double(near) / double(places) : 0};
 }
 
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double static_records) {

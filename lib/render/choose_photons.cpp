@@ -6,15 +6,13 @@
 namespace tempolux {
 namespace {
 
-constexpr double kPathsAPhoton = 70;
-/// With this many times the usual photons, photons cost about as much as all other stages: 16 x .25 s.
-constexpr double kMost = 16;
+constexpr double kPathsAPhoton = 70;  ///< derived in choose_photons.h
 
 }  // namespace
 
 std::uint64_t photon_paths(double photons_per_path, std::uint64_t usual) {
-  const double times = photons_per_path > 0 ? 1 / (kPathsAPhoton * photons_per_path) : kMost;
-  return usual << int(std::ceil(std::log2(std::clamp(times, 1.0, kMost))));
+  const double times = photons_per_path > 0 ? 1 / (kPathsAPhoton * photons_per_path) : kMostTimesPhotons;
+  return usual << int(std::ceil(std::log2(std::clamp(times, 1.0, kMostTimesPhotons))));
 }
 
 }  // namespace tempolux

@@ -6,17 +6,15 @@
 #include <vector>
 
 #include "lib/gather/mesh_elements.h"
+#include "lib/render/choose_photons.h"
 #include "lib/render/pilot_photons.h"
 
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kPaths = 1 << 15;  ///< light paths of the pilot
-constexpr double kMostPaths = 16;          ///< largest number of paths, in multiples of the number of photons asked for
-
 /// Candidates for the number of photons under the Gaussian. From one to the next the Gaussian's width doubles.
 constexpr std::array<double, 5> kKernels{64, 256, 1024, 4096, 16384};
-constexpr std::size_t kWeights = 2;  ///< index of the candidate by which errors are weighted
+constexpr std::size_t kWeights = kKernels.size() / 2;  ///< the candidate by which errors are weighted: the middle one
 
 /// Luminance that arrives in each element: r from the photons of one map, g from the other's.
 std::vector<Rgbd> flux_of(const Tracer& tracer, const std::array<std::span<const formats::Photon>, 2>& maps,
@@ -85,15 +83,15 @@ double best_kernel(const Tracer& tracer, std::span<const formats::Photon> a, std
 
 double pilot_kernel(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {
   const auto map = [&](std::uint64_t of) {
-    return pilot_photons(scene.tracer, scene.lights, kinds, kKernelPaths, seed ^ of).photons;
+    return pilot_photons(scene.tracer, scene.lights, kinds, kPilotPaths, seed ^ of).photons;
   };
   return best_kernel(scene.tracer, map(0x6b65726e656c31ull), map(0x6b65726e656c32ull));
 }
 
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {
   const std::size_t photons =
-      pilot_photons(scene.tracer, scene.lights, kinds, kPaths, seed ^ 0x61727269766564ull).photons.size();
-  return {double(photons) / double(kPaths), surface_area(scene.tracer.frame())};
+      pilot_photons(scene.tracer, scene.lights, kinds, kPilotPaths, seed ^ 0x61727269766564ull).photons.size();
+  return {double(photons) / double(kPilotPaths), surface_area(scene.tracer.frame())};
 }
 
 PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel, std::uint64_t photons, int frames) {
@@ -102,11 +100,11 @@ PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel
     mean.photons += pilot.photons / double(pilots.size());
     mean.area += pilot.area / double(pilots.size());
   }
-  const double more = mean.photons > 0 ? std::clamp(1 / mean.photons, 1.0, kMostPaths) : 1;
+  const double more = mean.photons > 0 ? std::clamp(1 / mean.photons, 1.0, kMostTimesPhotons) : 1;
   const auto paths = std::uint64_t(std::llround(double(photons) * more));
   // N photons filtered by a Gaussian of deviation s have the squared error v / (N s^2) + b s^2: noise plus bias. It is
   // least at s^4 = v / (b N). The number of photons below the Gaussian, N s^2, then grows as sqrt(N).
-  const double growth = std::sqrt(double(paths) * frames / double(kKernelPaths));
+  const double growth = std::sqrt(double(paths) * frames / double(kPilotPaths));
   return {paths, window_widths(mean.area, mean.photons * double(paths) * frames, kernel * growth).filter.width};
 }
 

@@ -16,8 +16,8 @@ struct PreviewPilot {
   double photons = 0;  ///< photons that a light path leaves, mean
   double area = 0;     ///< area of all surfaces, one side [m^2]
 };
-/// Traces 32768 light paths and counts the photons of these kinds (photon-trace --kinds). Same result for any number of
-/// threads.
+/// Traces kPilotPaths light paths and counts the photons of these kinds (photon-trace --kinds). Same result for any
+/// number of threads.
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
 /// Number of photons under the Gaussian that smooths one of two equal photon maps with the least error. Maps a and b
@@ -30,8 +30,7 @@ PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, s
 /// nearly the squared slope of a display's tone curve. Positions are in scene space. 256 if a map is empty.
 double best_kernel(const Tracer& tracer, std::span<const formats::Photon> a, std::span<const formats::Photon> b);
 
-inline constexpr std::uint64_t kKernelPaths = 1 << 16;  ///< light paths of each of the two maps of pilot_kernel()
-/// best_kernel() of two maps of kKernelPaths light paths.
+/// best_kernel() of two maps of kPilotPaths light paths.
 double pilot_kernel(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
 struct PreviewChoice {

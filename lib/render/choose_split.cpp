@@ -15,8 +15,6 @@
 namespace tempolux {
 namespace {
 
-constexpr int kPlaces = 2048;
-constexpr std::uint64_t kPaths = 1 << 16;
 constexpr double kPays = 2;  ///< a split pays above this variance_ratio
 
 /// Mean and variance of a sequence of numbers.
@@ -37,7 +35,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
   const Lights lights(frame, emission);
   const RenderScene scene{tracer, lights};
   const std::vector<formats::Photon> photons =
-      pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed).photons;
+      pilot_photons(tracer, lights, "direct,caustic,indirect", kPilotPaths, seed).photons;
   CellEdge edge;
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
   FluxCells cells(edge.edge(), 0);
@@ -45,9 +43,9 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
   cells.close(kBrightLimit);
   if (cells.bright_count() == 0) return {};
   const PhotonIndex index(photons);
-  const SeenPlaces seen = places_seen(scene, view, kPlaces, seed ^ 0x73706c6974ull);
-  std::vector<double> all(kPlaces, -1), low(kPlaces, 0);
-  parallel_chunks(kPlaces, 64, [&](std::size_t first, std::size_t last) {
+  const SeenPlaces seen = places_seen(scene, view, kPilotPlaces, seed ^ 0x73706c6974ull);
+  std::vector<double> all(kPilotPlaces, -1), low(kPilotPlaces, 0);
+  parallel_chunks(kPilotPlaces, 64, [&](std::size_t first, std::size_t last) {
     NeighbourList found;
     for (std::size_t i = first; i < last; ++i) {
       if (!seen.places[i].exists()) continue;
@@ -63,7 +61,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
     }
   });
   Moments whole, rest;
-  for (std::size_t i = 0; i < kPlaces; ++i)
+  for (std::size_t i = 0; i < kPilotPlaces; ++i)
     if (all[i] >= 0) whole.add(all[i]), rest.add(low[i]);
   if (!(whole.variance() > 0)) return {};
   return {rest.variance() > 0 ? whole.variance() / rest.variance() : 1e6, 1 - rest.sum / whole.sum};

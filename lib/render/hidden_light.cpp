@@ -15,8 +15,7 @@ bool may_hide_light(const SceneFrame& frame) {
 }
 
 double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture) {
-  constexpr std::uint64_t kPaths = 1 << 15;
-  const formats::PhotonBlock photons = pilot_photons(scene.tracer, without_extent, "caustic", kPaths, 0);
+  const formats::PhotonBlock photons = pilot_photons(scene.tracer, without_extent, "caustic", kPilotPaths, 0);
   const SeenPhotons hidden = see_photons(scene, view, photons).caustic;
   const bool sure = hidden.mean - kAuditErrors * hidden.mean_error > kAuditLimit * picture;
   return sure ? hidden.mean / (picture > 0 ? picture : hidden.mean) : 0;

@@ -6,11 +6,7 @@
 #include "lib/render/shading.h"
 
 namespace tempolux {
-namespace {
-
-constexpr std::uint32_t kMirrorsInARow = 16;
-
-}  // namespace
+namespace {}  // namespace
 
 std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise) const {
   if (mesh) return mesh->irradiance(surface, geometric);
@@ -58,7 +54,7 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
       const float step = view.pixel_size(distance);
       return SeenPoint{point, shading.normal, step, mirrors > 0, passed};
     }
-    if (mirrors + 1 == kMirrorsInARow) break;
+    if (mirrors + 1 == kMostMirrors) break;
     // u = 0.5 chooses the lobe that has more than half of the light.
     const float lobe = look.random ? look.random->get1(mirrors, Purpose::lobe) : 0.5f;
     const Vec2 within = look.random ? look.random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};

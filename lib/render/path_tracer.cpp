@@ -2,6 +2,7 @@
 
 #include "lib/core/sampling.h"
 #include "lib/material/inside.h"
+#include "lib/photon/photon_path.h"
 #include "lib/render/known_light.h"
 #include "lib/render/shading.h"
 #include "lib/scene/texture_lookup.h"
@@ -13,8 +14,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kRouletteFrom = 3;  ///< number of bounces that always survive
-/// Below 1, so that paths in a lossless box end, after 500 bounces in the mean.
-constexpr float kLargestSurvival = 0.998f;
+constexpr float kLargestSurvival = kLargestPhotonSurvival;
 
 /// The state of a path on its way: the ray from the last vertex, and the light that must not be added again. An event D
 /// is a Lambert lobe or a collision in a medium.

@@ -12,7 +12,6 @@ namespace {
 constexpr int kAsked = 8;               ///< FootprintOptions::asked
 constexpr std::size_t kRemembered = 4;  ///< places per pixel: a pixel may see several surfaces
 constexpr float kAlike = 0.999f;        ///< cosine between normals of a smooth surface within a pixel
-constexpr float kAlikeCoat = 0.01f;     ///< difference in the transmittance of coats that separates two materials
 
 /// Caustic irradiance that was looked up at a place.
 struct Remembered {
@@ -25,7 +24,7 @@ struct Remembered {
   bool holds_at(const PhotonLight* map, Vec3 place, const LitSurface& surface) const {
     return of == map && length2(place - position) < light.alike_within * light.alike_within &&
            dot(surface.geometric, geometric) > kAlike && dot(surface.shading, shading) > kAlike &&
-           std::abs(let_in_by(surface) - let_in) < kAlikeCoat;
+           let_in_by(surface) == let_in;
   }
 };
 

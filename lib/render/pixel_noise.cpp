@@ -11,10 +11,10 @@ namespace {
 // Shares of the variance between pixels, and between pixels at edges: each sample takes two stratified random numbers,
 // so further samples reduce the variance by more than their number.
 constexpr double kBetween = 0.1, kSharp = 0.125;
-constexpr double kStratified = 0.875, kTypical = 12;
-/// Costs in shadow rays: a typical whole sample; a camera ray with its surface; a light sample; the smallest cost
-/// assumed for a ray onward.
-constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
+constexpr double kStratified = 0.875;
+/// Samples of a part that costs a shadow ray, if one sample has the standard deviation of the allowed error.
+constexpr double kAtError = 2.5;
+constexpr double kOwn = 1.2;  ///< cost of a camera ray with its surface, in shadow rays
 
 /// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.
 int first_onward(const FrameOptions& options) {
@@ -33,10 +33,12 @@ double allowed_error(double level, double picture, double pixel_error) {
 }
 
 double wanted_samples(double sigma, double cost, double error) {
-  return error > 0 ? kTypical * std::pow(sigma / (kTypical * error) * std::sqrt(kWhole / cost), kStratified) : 0;
+  return error > 0 ? kAtError * std::pow(sigma / (error * std::sqrt(cost)), kStratified) : 0;
 }
 
-double error_for_variance(double times) { return std::pow(times, -(1 - kStratified / 2) / kStratified); }
+double error_exponent() { return (1 - kStratified / 2) / kStratified; }
+
+double error_for_variance(double times) { return std::pow(times, -error_exponent()); }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
     : view_(view),
@@ -89,7 +91,7 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
 /// pixel's first samples may then miss the bright part or overestimate it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
-  for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {
+  for_each_around(view_.width(), view_.height(), x, y, kNearPixels, [&](std::size_t at, int, int) {
     const Pixel& pixel = pixels_[at];
     ++n;
     within += pixel.seen_variance;
@@ -128,7 +130,7 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   Around near, wide;
   for_each_around(view_.width(), view_.height(), x, y, kWide, [&](std::size_t at, int i, int j) {
     wide.add(pixels_[at]);
-    if (std::abs(i - x) <= kNear && std::abs(j - y) <= kNear) near.add(pixels_[at]);
+    if (std::abs(i - x) <= kNearPixels && std::abs(j - y) <= kNearPixels) near.add(pixels_[at]);
   });
   if (near.n == 0) return first_;
   const auto variance = [&](const auto& of) { return (of(near) + of(wide)) / 2; };
@@ -143,8 +145,8 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
     const double wanted = times * wanted_samples(std::sqrt(squared), cost, error);
     return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
   };
-  PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
-                  further(onward_variance, std::max(kLeastOnward, near.rays / near.n), first_.onward)};
+  PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, 1, first_.lit),
+                  further(onward_variance, std::max(1.0, near.rays / near.n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
   return {first_.own + more.own, first_.lit + more.lit, first_.onward + more.onward};
 }

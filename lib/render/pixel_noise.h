@@ -6,6 +6,7 @@
 
 #include "lib/core/parallel_array.h"
 #include "lib/render/pixel_samples.h"
+#include "lib/render/pixels_around.h"
 
 namespace tempolux {
 
@@ -17,6 +18,8 @@ double allowed_error(double level, double picture, double pixel_error);
 /// Number of samples of one part with which a pixel reaches the error e, if one sample has the standard deviation sigma
 /// and costs `cost` rays (docs/pixels.md). 0 if e is 0.
 double wanted_samples(double sigma, double cost, double error);
+/// x: if all parts take f times their samples, the error of a frame falls by f^-x. wanted_samples() assumes this x.
+double error_exponent();
 /// Factor for `error` with which wanted_samples() leaves the same noise for a light whose variance is `times` as large:
 /// variance / samples ~ variance^(1 - k/2) error^k.
 double error_for_variance(double times);
@@ -61,10 +64,8 @@ class PixelNoise {
   };
   /// Approximate number of lattice pixels: their mean has an error of 1 % if single pixels differ by 60 %.
   static constexpr double kOnLattice = 4096;
-  // Radii in pixels. Noise is estimated from the 24 pixels and from the 80 pixels around a pixel. For light with
-  // edges it is estimated from 8 pixels, because edges are narrow and all pixels that see an edge take further
-  // samples.
-  static constexpr int kNear = 2, kWide = 4, kNearSharp = 1;
+  // Pixels. Noise is also estimated from the 80 pixels around a pixel: docs/pixels.md.
+  static constexpr int kWide = 4;
   struct Around;
 
   double own_variance(int x, int y) const;

@@ -6,6 +6,9 @@
 
 namespace tempolux {
 
+/// Pixels: the 24 pixels within this distance are the surroundings of a pixel.
+inline constexpr int kNearPixels = 2;
+
 /// Calls body(pixel, i, j) for the pixels (i, j) of the picture at most `reach` columns and rows away from (x, y), row
 /// by row, without (x, y) itself. `pixel` is j * width + i.
 template <class Body>

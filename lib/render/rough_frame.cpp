@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "lib/core/statistics.h"
 #include "lib/core/parallel.h"
 #include "lib/core/parallel_each.h"
 #include "lib/core/sobol.h"
@@ -27,16 +28,16 @@ namespace tempolux {
 namespace {
 
 constexpr int kSamples = 4;
-constexpr double kFirst = 4;               ///< fewest samples of a pixel of a frame
-constexpr int kRecords = 64;               ///< places with two records each
-constexpr int kColumns = 16, kRows = 9;    ///< parts of the picture; each part has its own allowed error
-constexpr std::uint64_t kPaths = 1 << 15;  ///< light paths
-constexpr std::uint32_t kPoints = 500;     ///< irradiance points per side
-constexpr int kRays = 62;                  ///< gather rays of a rough record
+constexpr double kFirst = kSamples;                          ///< fewest samples of a pixel of a frame
+constexpr int kRecords = 64;                                 ///< places with two records each
+constexpr int kColumns = kPilotColumns, kRows = kPilotRows;  ///< each part of the picture has its own allowed error
+constexpr std::uint64_t kPaths = kPilotPaths;
+constexpr std::uint32_t kPoints = 500;             ///< irradiance points per side
+constexpr int kRays = FinalGather::kDistanceRays;  ///< gather rays of a rough record
 /// Largest number of pixels at which the need for records is tested. The test takes a tenth of a second. In a picture
 /// with more pixels, the tested pixels form a lattice.
 constexpr double kLooks = 320 * 180;
-constexpr double kSure = 3;  ///< standard errors
+constexpr double kSure = kCertain;  ///< standard errors
 constexpr double kMapError2 =
     1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
 

@@ -11,6 +11,7 @@
 #include "lib/light/aim.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
+#include "lib/render/places_seen.h"
 
 namespace tempolux {
 
@@ -80,7 +81,7 @@ struct RoughOptions {
   std::uint64_t photons = 700'000;       ///< light paths of the map if enough of them leave photons
   std::span<const AimSphere> seen = {};  ///< spheres in which points lie; empty: everywhere
   std::uint64_t seed = 0;
-  int places = 2048;  ///< number of measured places of the picture
+  int places = kPilotPlaces;  ///< number of measured places of the picture
   /// Called before gathering and before records are measured, with the frame so far. True: the frame is returned as
   /// it is, without the rest. Empty: everything is measured.
   std::function<bool(const RoughFrame&)> enough = {};

@@ -13,12 +13,13 @@
 #include "lib/gather/footprint_density.h"
 #include "lib/render/known_light.h"
 #include "lib/render/photon_splats.h"
+#include "lib/render/places_seen.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 32, kRows = 18;  ///< parts of the picture for the mean square of one kind of light
-constexpr std::size_t kLooks = 4096;      ///< camera rays that follow mirrors and glass
+constexpr int kColumns = kPilotColumns, kRows = kPilotRows;  ///< each part has its own mean square of a kind of light
+constexpr std::size_t kLooks = kPilotPlaces;                 ///< camera rays that follow mirrors and glass
 
 /// A photon's contribution to the mean radiance of the picture, and its position in the picture.
 struct SeenFlux {

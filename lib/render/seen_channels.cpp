@@ -8,12 +8,11 @@
 #include "lib/core/parallel_each.h"
 #include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
+#include "lib/render/known_light.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
 namespace {
-
-constexpr int kMostMirrors = 16;
 
 struct Shown {
   float depth = 0;

@@ -5,24 +5,24 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
+#include "lib/core/sobol.h"
 #include "lib/light/aim.h"
 #include "lib/render/known_light.h"
+#include "lib/render/places_seen.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 24,
-              /// Grid of positions in each camera's picture. Eight cameras have 2688 positions, so the share of a cell
-              /// that holds half of the weight has a standard error of sqrt(1/4 / 2688) = 1 %.
-    kRows = 14;
+constexpr std::uint32_t kLooks = kPilotPlaces / 8;  ///< of each eye: the eyes around a camera share the pilot's places
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;
-constexpr double kSplitShare = 1.0 / 32, kLeastShare = 1.0 / 512;
-constexpr double kRadiusOfCell = 0.875;  ///< radius over cell size: half a cell's diagonal is .866
-constexpr double kLeastGain = 1;         ///< log2 of the least gain in density: twice as dense
+constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres), kLeastShare = 1.0 / 512;
+constexpr double kRadiusOfCell = std::numbers::sqrt3 / 2;  ///< radius over cell size: the sphere holds the cell
+constexpr double kLeastGain = 1;                           ///< log2 of the least gain in density: twice as dense
 
 struct Cell {
   int level = 0;                  // size 2^level m
@@ -103,11 +103,10 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
   const auto add = [&](Vec3 position, double weight, double distance) {
     places.push_back({Vec3d(position) + origin, weight, distance});
   };
-  for (std::uint32_t i = 0; i < kColumns * kRows; ++i) {
+  for (std::uint32_t i = 0; i < kLooks; ++i) {
     const PathRandom random(number, i);
-    const Vec2 within = random.get2(0, Purpose::place);
-    const Look look{(float(i % kColumns) + within.x) * float(view.width()) / kColumns,
-                    (float(i / kColumns) + within.y) * float(view.height()) / kRows, random};
+    const Vec2 where = sobol_owen_2d(i, number);
+    const Look look{where.x * float(view.width()), where.y * float(view.height()), random};
     const std::optional<SeenPoint> seen = seen_through(tracer, view, look);
     if (!seen) continue;
     add(seen->surface.position, 1, length(Vec3d(seen->surface.position) - Vec3d(view.eye())));

@@ -9,7 +9,6 @@
 namespace tempolux {
 namespace {
 
-constexpr int kNear = 2;            ///< pixels: the 24 pixels within this distance give the local light
 constexpr double kConfirmed = 0.5;  ///< share of the outlier that other samples must find to confirm it
 
 /// Light that a pixel may give away.
@@ -25,7 +24,7 @@ struct Excess {
 /// Calls body(pixel) for the pixels around (x, y), without (x, y) itself, that take part.
 template <class Body>
 void for_each_near(const SampledPixels& samples, int x, int y, const Body& body) {
-  for_each_around(samples.width, samples.height, x, y, kNear, [&](std::size_t pixel, int, int) {
+  for_each_around(samples.width, samples.height, x, y, kNearPixels, [&](std::size_t pixel, int, int) {
     if (samples.takes_part(pixel)) body(pixel);
   });
 }

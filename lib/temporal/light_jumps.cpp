@@ -11,7 +11,6 @@ constexpr double kLeast = 1.0 / 16;  ///< smaller steps are hidden in the noise 
 /// A jump is a step larger than this many times the sum of the neighbouring steps. Where motion starts or ends, one
 /// neighbouring step has the same size, so the start of a motion is no jump.
 constexpr double kLeastOverNeighbours = 2;
-constexpr std::uint32_t kLooked = 64;  ///< vertices of a surface that are compared
 
 /// Power of all lights, without textures, to compare two frames. Unit: W for lights given in W/sr or W/m^2/sr;
 /// directional lights count with their irradiance.
@@ -38,10 +37,10 @@ double step_of_lamps(const SceneFrame& a, const SceneFrame& b) {
 
 /// Largest distance that a vertex of the surface moves, over the diagonal of the surface's box.
 double step_of_surface(const Surface& a, const Surface& b) {
-  const std::uint32_t count = std::uint32_t(a.primitive->positions.size()), stride = std::max(1u, count / kLooked);
+  const std::uint32_t count = std::uint32_t(a.primitive->positions.size());
   Box3 box_a, box_b;
   double furthest = 0;
-  for (std::uint32_t v = 0; v < count; v += stride) {
+  for (std::uint32_t v = 0; v < count; ++v) {
     const Vec3 from = a.position(v), to = b.position(v);
     box_a.add(from);
     box_b.add(to);

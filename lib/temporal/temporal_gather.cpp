@@ -7,6 +7,7 @@
 
 #include "lib/core/check.h"
 #include "lib/core/parallel.h"
+#include "lib/core/statistics.h"
 #include "lib/gather/cache_files.h"
 #include "lib/scene/deform.h"
 #include "lib/scene/moving_objects.h"
@@ -19,7 +20,7 @@ constexpr int kFadingFrames = 4;
 constexpr float kLeastOfHidden = 1.0f / 64;  ///< share of the smallest radius, so that radii stay above 0
 constexpr std::uint32_t kAhead = 12;         ///< cells whose light is prefetched into the processor's cache
 /// Share of `refresh` that is always drawn by age, however many cells are traced for another reason.
-constexpr float kLeastAged = 0.25f;
+constexpr auto kLeastAged = float(kUnguidedShare);
 
 /// Unit vectors along a triangle's first edge, across it in its plane, and along its normal.
 std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {

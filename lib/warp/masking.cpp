@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/core/parallel_each.h"
+#include "lib/core/statistics.h"
 
 namespace tempolux {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 // Number of standard errors above which a difference is not noise. The factor 1.5 on the usual 3 is for interpolated
 // pixels: linear interpolation leaves each pixel (2/3)^2 of its variance on average, while the variance of a mean
 // over many pixels stays, because neighbouring pixels share noise.
-constexpr double kStandardErrors = 3 * 1.5;
+constexpr double kStandardErrors = kCertain * 1.5;
 constexpr int kReach = 2;  // pixels on each side over which light is averaged
 
 std::array<int, 3> place_of(const std::vector<std::string>& names, const std::string& prefix) {

@@ -8,6 +8,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/image/image.h"
+#include "lib/image/pixel_surfaces.h"
 #include "lib/warp/frame_camera.h"
 
 namespace tempolux {
@@ -43,7 +44,7 @@ inline float depth_tolerance(float pixel_angle, float facing) {
 }
 
 /// Cosine below which two normals belong to two faces: their irradiance differs (docs/methods/formulas.md).
-inline constexpr float kSameFace = 0.9f;
+inline constexpr float kSameFace = PixelSurfaces::kSameNormal;
 
 /// True if two objects may be the same one; an unknown object may be any.
 inline bool may_be_same(std::uint32_t a, std::uint32_t b) { return a == b || a == kAnyObject || b == kAnyObject; }
