@@ -11,7 +11,7 @@ namespace tempolux {
 /// Radiance of one kind of light that a camera sees, as the mean over the channels and the picture.
 struct SeenPhotons {
   double mean = 0, mean_error = 0;  ///< mean and its standard error
-  double square = 0;                ///< mean of the square, over 32 x 18 parts of the picture
+  double square = 0;                ///< mean of the square, over 16 x 9 parts of the picture
 };
 
 /// The same of the two kinds of light that paths may miss.

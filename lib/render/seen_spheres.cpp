@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
@@ -21,8 +20,8 @@ constexpr std::uint32_t kLooks = kPilotPlaces / 8;  ///< of each eye: the eyes a
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;
 constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres), kLeastShare = 1.0 / 512;
-constexpr double kRadiusOfCell = std::numbers::sqrt3 / 2;  ///< radius over cell size: the sphere holds the cell
-constexpr double kLeastGain = 1;                           ///< log2 of the least gain in density: twice as dense
+constexpr double kRadiusOfCell = 0.875;  ///< radius over cell size: half a cell's diagonal is .866
+constexpr double kLeastGain = 1;         ///< log2 of the least gain in density: twice as dense
 
 struct Cell {
   int level = 0;                  // size 2^level m

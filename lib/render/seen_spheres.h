@@ -32,7 +32,7 @@ struct SeenAround {
 /// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d of visible surfaces
 /// nor than half the height h of the picture at that distance; directions have steps of a third of the angle of view.
 /// The cell has up to eight cameras: one at the centre of each octant of the cube, if the given camera sees this
-/// centre. Their pictures are half as wide again. Each camera sends rays through 24 x 14 stratified positions of its
+/// centre. Their pictures are half as wide again. Each camera sends rays through 256 stratified positions of its
 /// picture, which pass mirrors and glass (seen_through) and then make up to two cosine-distributed bounces. Only the
 /// ratio of `width` and `height` of the picture counts.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
