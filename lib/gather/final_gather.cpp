@@ -25,11 +25,10 @@ bool GatherRays::aim(const GatherDirections& directions, std::uint32_t cell, std
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                          const GatherOptions& options)
-    : tracer_(tracer),
-      reach_(tracer),
-      incoming_(tracer, lights, points, options.bright),
-      options_(options),
-      strata_(options.rays) {}
+    : tracer_(tracer), reach_(tracer), incoming_(tracer, lights, points, options.bright), options_(options) {
+  for (std::size_t i = 0; i < strata_.size(); ++i)
+    strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
+}
 
 FinalGather FinalGather::with_seed(std::uint64_t seed) const {
   FinalGather other(*this);
@@ -80,22 +79,26 @@ void FinalGather::follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot
   }
 }
 
-IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
+IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts,
+                                     float ray_share) const {
   thread_local Hemisphere sky;
   thread_local GatherRays shot;
+  std::size_t halvings = 0;
+  for (; halvings < kFewer && ray_share <= 0.5f; ++halvings) ray_share *= 2;
+  const GatherStrata& strata = strata_[kFewer - halvings];
   const std::uint64_t key = gather_key(from.position, normal, options_.seed);
-  const GatherDirections directions(from, normal, strata_.rings, strata_.sectors, key);
+  const GatherDirections directions(from, normal, strata.rings, strata.sectors, key);
   shot.clear();
-  for (const std::uint32_t c : strata_.order) shot.aim(directions, c, 0);
+  for (const std::uint32_t c : strata.order) shot.aim(directions, c, 0);
   follow(from, normal, shot, counts);
 
-  sky.reset(strata_.rings, strata_.sectors);
+  sky.reset(strata.rings, strata.sectors);
   const float closest = closest_distance(from);
   Rgb points_noise{0.0f};
   for (std::size_t i = 0; i < shot.rays.size(); ++i) {
     sky.radiance[shot.cells[i]] = shot.radiance[i];
     sky.inverse_distance[shot.cells[i]] = 1 / std::max(shot.distance[i], closest);  // 0 if the ray meets nothing
-    points_noise += shot.sources[i].noise * (kPi / float(strata_.cells()));
+    points_noise += shot.sources[i].noise * (kPi / float(strata.cells()));
   }
   IrradianceRecord record = sky.record(from, normal);
   record.radius_unclamped = distance(from, normal, counts);

@@ -1,6 +1,7 @@
 // lib/gather/final_gather.h -- indirect irradiance at a place from gather rays over the hemisphere, with gradients.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,8 +44,8 @@ class FinalGather {
   /// `rays` rays, one through each cell of equal weight (hemisphere.h). radius_unclamped receives distance();
   /// limit_radius computes the radius from it. Random numbers are keyed by the position, so a record does not depend on
   /// other records. `noise` is Hemisphere::noise, whose mean square is above the variance: place_records() measures by
-  /// how much.
-  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
+  /// how much. ray_share in [1/8, 1]: the share of `rays` that the place needs, rounded up to a power of two.
+  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// Computes the light along the rays. Below a coat, light is weighted by Bsdf::arrival_weight, as photons are: the
   /// coat reflects more of it at grazing angles.
   void follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot, GatherCounts& counts) const;
@@ -74,7 +75,8 @@ class FinalGather {
   Reach reach_;
   IncomingRadiance incoming_;
   GatherOptions options_;
-  GatherStrata strata_;
+  static constexpr std::size_t kFewer = 3;
+  std::array<GatherStrata, kFewer + 1> strata_;  ///< for 1/8, 1/4, 1/2 and 1 times `rays`
   const GatherStrata distance_strata_{kDistanceRays};
 };
 

@@ -14,7 +14,6 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kLooks = 256;
 constexpr float kNearEnough = 1 - 1e-3f;  ///< share of the distance to a place: a closer hit hides the place
 
 bool sees(const Tracer& tracer, const CameraView& view, Vec3 place) {
@@ -32,7 +31,7 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
   double all = 0, fresh = 0;
   for (const PlacedCamera& camera : cameras) {
     const CameraView view(camera, tracer.frame().origin, width, height);
-    for (std::uint32_t i = 0; i < kLooks && !views.empty(); ++i) {
+    for (std::uint32_t i = 0; i < kPlacesOfEye && !views.empty(); ++i) {
       const Vec2 u = sobol_owen_2d(i, 0);
       const Look look{u.x * float(width), u.y * float(height), {}};
       const std::optional<SeenPoint> point = seen_through(tracer, view, look);

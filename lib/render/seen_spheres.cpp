@@ -16,7 +16,6 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kLooks = kPilotPlaces / 8;  ///< of each eye: the eyes around a camera share the pilot's places
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;
 constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres), kLeastShare = 1.0 / 512;
@@ -102,7 +101,7 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
   const auto add = [&](Vec3 position, double weight, double distance) {
     places.push_back({Vec3d(position) + origin, weight, distance});
   };
-  for (std::uint32_t i = 0; i < kLooks; ++i) {
+  for (std::uint32_t i = 0; i < kPlacesOfEye; ++i) {
     const PathRandom random(number, i);
     const Vec2 where = sobol_owen_2d(i, number);
     const Look look{where.x * float(view.width()), where.y * float(view.height()), random};

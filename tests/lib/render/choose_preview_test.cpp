@@ -8,6 +8,7 @@
 #include <random>
 
 #include "formats/octahedral.h"
+#include "lib/render/pilot_photons.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
