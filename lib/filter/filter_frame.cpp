@@ -130,8 +130,12 @@ struct FrameFilter::State {
       if (candidates.of(l).empty() || group.raw[0].layers[l][0].empty()) continue;
       const Halves raw = raw_halves(image, group, l), chosen = choose(raw, candidates.of(l), around, picture);
       remaining.add(raw, chosen);
-      for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t c = 0; c < 3; ++c) {
         put_mean(chosen, c, float_channel(image, channel_name(group.layers[l], c))->values);
+        if (Channel* noise = float_channel(image, channel_name(group.layers[l] + ".noise", c)))
+          std::transform(chosen.a[c].begin(), chosen.a[c].end(), chosen.b[c].begin(), noise->values.begin(),
+                         [](float a, float b) { return (a - b) / 2; });
+      }
     }
   }
 
@@ -245,10 +249,11 @@ Image filter_alone(Image image) {
                       std::min(kWide, image.width - left), row_of(to, y % rows) + left);
       };
       for (const Channel& channel : tile.channels)
-        if (!channel.values.empty() && (is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA")))
+        if (!channel.values.empty() && (is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA") ||
+                                        channel.name.find(".noise.") != std::string::npos))
           copy(channel.values, waiting[channel.name], waiting_rows);
       const RemainingError of_this = filter.remaining_error();
-      for (const auto part : {&RemainingError::whole, &RemainingError::noise, &RemainingError::known})
+      for (const auto part : {&RemainingError::whole, &RemainingError::noise})
         for (std::size_t c = 0; c < 3 && !(of_this.*part)[c].empty(); ++c)
           copy((of_this.*part)[c], (remaining_error.*part)[c], image.height);
     }

@@ -29,7 +29,8 @@ struct WindowLight {
 /// (fit.h), once with its own light alone and once with the light collected along the flow (collect.h); the other half
 /// decides the weights. Where `image` has coverage, edges are composed from their surfaces (unmix.h, resolve.h). Each
 /// candidate is multiplied by albedo, and choose() mixes the candidates with the raw layer. R G B becomes the sum of
-/// the layers plus any light it held besides them. Other channels and all attributes stay.
+/// the layers plus any light it held besides them. LAYER.noise becomes
+/// half the difference of the layer's filtered halves. Other channels and all attributes stay.
 class FrameFilter {
  public:
   /// `middle` is made from the image; middle and flow must outlive this object. `before` and `after` are the numbers of

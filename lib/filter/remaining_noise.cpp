@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "lib/filter/picture.h"
 #include "lib/image/srgb.h"
@@ -12,6 +14,7 @@ namespace {
 
 constexpr int kBlock = 32;  ///< pixels: edge of the blocks from which the standard error is estimated
 const std::string kNoise = "tempolux:noise.";
+using Numbers = std::map<std::string, double>;
 
 double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
   std::vector<double> means(picture[0]->size());
@@ -49,50 +52,60 @@ class Mean {
   double sum_ = 0, count_ = 0, squares_ = 0, products_ = 0, counts_ = 0;
 };
 
-/// Squared errors in one unit.
+/// Squared errors of the picture or of a layer.
 struct Errors {
-  std::string name;
-  double most;         ///< largest possible error
-  double unknown = 0;  ///< lower bound of the raw frame's measured noise
-  Mean whole, noise, known;
+  Mean whole, noise;
 
-  Errors(const char* unit, double most_possible, const Image& frame) : name(kNoise + unit), most(most_possible) {
-    const auto said = frame.numbers.find(name), error = frame.numbers.find(name + "_error");
-    if (said != frame.numbers.end() && error != frame.numbers.end())
-      unknown = std::max(0.0, said->second - error->second);
-  }
-  void write(Image& frame) const {
-    const double missed = std::max(0.0, unknown * unknown - known.value());
-    const double square = std::max({whole.value(), noise.value(), 0.0}) + missed,
-                 root = std::min(most, std::sqrt(square)), error = whole.error();
-    frame.numbers[name] = root;
-    frame.numbers[name + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
+  /// Writes NAME.UNIT, and the part NAME.kept.UNIT that halves do not know, if the raw frame has it.
+  void write(const std::string& name, const std::string& unit, double most, const Numbers& raw, Image& frame) const {
+    const auto kept = raw.find(name + "kept." + unit);
+    const double known = kept != raw.end() ? kept->second * kept->second : 0;
+    const Mean& larger = whole.value() > noise.value() ? whole : noise;
+    const double root = std::min(most, std::sqrt(std::max(0.0, larger.value()) + known)), error = larger.error();
+    frame.numbers[name + unit] = root;
+    frame.numbers[name + unit + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
+    if (kept != raw.end()) frame.numbers.insert(*kept);
   }
 };
 
-/// Adds the block whose first pixel is (left, top).
-void add_block(const RemainingError& error, const Image& frame, int left, int top, double exposure, Errors& linear,
-               Errors& codes) {
-  const auto picture = frame.rgb("");
-  std::array<double, 3> sums{}, in_codes{};
-  double count = 0;
-  for (int y = top; y < std::min(frame.height, top + kBlock); ++y)
-    for (int x = left; x < std::min(frame.width, left + kBlock); ++x)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
-        const std::array<float, 3> squares{error.whole[c][p], error.noise[c][p], error.known[c][p]};
-        if (!std::ranges::all_of(squares, [](float v) { return std::isfinite(v); })) continue;
-        const double exposed2 = exposure * exposure, largest = std::max({squares[0], squares[1], squares[2]}),
-                     factor = exposed2 * codes_for_square(exposure * double((*picture[c])[p]), exposed2 * largest);
-        for (std::size_t i = 0; i < squares.size(); ++i)
-          sums[i] += double(squares[i]), in_codes[i] += factor * double(squares[i]);
-        ++count;
-      }
-  const auto add = [&](const std::array<double, 3>& to_add, Errors& errors) {
-    errors.whole.add(to_add[0], count), errors.noise.add(to_add[1], count), errors.known.add(to_add[2], count);
-  };
-  add(sums, linear);
-  add(in_codes, codes);
+struct BothUnits {
+  Errors linear, codes;
+  void write(const std::string& name, const Numbers& raw, Image& frame) const {
+    linear.write(name, "linear", HUGE_VAL, raw, frame);
+    codes.write(name, "codes", kWhite, raw, frame);
+  }
+};
+
+/// Squared error in codes of a value that exceeds the true one by `noise`.
+double codes_above(double value, double noise) {
+  const double off = srgb_code(value) - srgb_code(value - noise);
+  return off * off;
+}
+
+/// Sums over the blocks of a picture or layer; squares(c, p) are `whole` and the square of the noise.
+template <class Square>
+BothUnits sum_blocks(const Image& frame, const PicturePlanes& picture, double exposure, const Square& square_of) {
+  BothUnits errors;
+  for (int top = 0; top < frame.height; top += kBlock)
+    for (int left = 0; left < frame.width; left += kBlock) {
+      double count = 0, whole = 0, noise = 0, whole_codes = 0, noise_codes = 0;
+      for (int y = top; y < std::min(frame.height, top + kBlock); ++y)
+        for (int x = left; x < std::min(frame.width, left + kBlock); ++x)
+          for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
+            const auto [of_whole, of_noise] = square_of(c, p);
+            if (!std::isfinite(of_whole) || !std::isfinite(of_noise)) continue;
+            const double value = exposure * double((*picture[c])[p]), square = exposure * exposure * of_whole;
+            whole += of_whole;
+            noise += of_noise;
+            whole_codes += square * codes_for_square(value, std::abs(square));
+            noise_codes += codes_above(value, exposure * std::sqrt(of_noise));
+            ++count;
+          }
+      errors.linear.whole.add(whole, count), errors.linear.noise.add(noise, count);
+      errors.codes.whole.add(whole_codes, count), errors.codes.noise.add(noise_codes, count);
+    }
+  return errors;
 }
 
 }  // namespace
@@ -110,26 +123,32 @@ void RemainingNoise::add(const Halves& raw, const Halves& filtered) {
 }
 
 RemainingError RemainingNoise::error() const {
-  RemainingError error{change_, filtered_, raw_};
+  RemainingError error{change_, filtered_};
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t p = 0; p < change_[c].size(); ++p) {
       const float n = raw_[c][p], k = filtered_[c][p], off = change_[c][p];
       error.whole[c][p] = off * off + n * (2 * k - n);
       error.noise[c][p] = k * k;
-      error.known[c][p] = n * n;
     }
   return error;
 }
 
 void write_remaining_noise(const RemainingError& error, Image& frame) {
-  Errors linear("linear", HUGE_VAL, frame), codes("codes", kWhite, frame);
+  const Numbers raw = frame.numbers;
   std::erase_if(frame.numbers, [](const auto& number) { return number.first.starts_with(kNoise); });
   if (error.whole[0].empty() || !holds(frame, "R") || !holds(frame, "G") || !holds(frame, "B")) return;
   const double exposure = exposure_of(frame.rgb(""));
-  for (int top = 0; top < frame.height; top += kBlock)
-    for (int left = 0; left < frame.width; left += kBlock) add_block(error, frame, left, top, exposure, linear, codes);
-  linear.write(frame);
-  codes.write(frame);
+  sum_blocks(frame, frame.rgb(""), exposure, [&](std::size_t c, std::size_t p) {
+    return std::pair(double(error.whole[c][p]), double(error.noise[c][p]));
+  }).write(kNoise, raw, frame);
+  for (const std::string layer : {"emission", "specular", "direct", "caustic", "indirect", "volume"}) {
+    if (!holds(frame, layer + ".R") || !holds(frame, layer + ".noise.R")) continue;
+    const auto noise = frame.rgb(layer + ".noise");
+    const BothUnits errors = sum_blocks(frame, frame.rgb(layer), exposure, [&](std::size_t c, std::size_t p) {
+      return std::pair(0.0, double((*noise[c])[p]) * double((*noise[c])[p]));
+    });
+    if (errors.linear.noise.value() > 0) errors.write(kNoise + layer + ".", raw, frame);
+  }
   frame.numbers[kNoise + "exposure"] = exposure;
 }
 

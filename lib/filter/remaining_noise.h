@@ -14,7 +14,6 @@ namespace tempolux {
 struct RemainingError {
   Colours whole;  ///< remaining noise and blur; may be negative
   Colours noise;  ///< remaining noise alone
-  Colours known;  ///< variance of the raw picture, estimated from its halves
 };
 
 /// Sums the error over layers. Let M be the raw picture, G the filtered one, and n and k half the differences of their
@@ -32,18 +31,19 @@ class RemainingNoise {
 };
 
 /// Writes the root mean square of the remaining error over pixels and colours, in W/m^2/sr and in sRGB codes, to the
-/// frame's attributes tempolux:noise.*, in place of the raw frame's (formats/frames/frames.md 3).
+/// frame's attributes tempolux:noise.*, in place of the raw frame's (formats/frames/frames.md 3); and that of each
+/// layer with a channel LAYER.noise, which holds half the difference of the filtered halves.
 ///
-/// The squared error is the sum of two terms. The first is the mean of `whole`, or of `noise` if that is larger:
+/// The squared error is the sum of two terms. The first is the mean of `noise`, or of `whole` if that is larger:
 /// choose() takes the candidate with the least `whole`, so its `whole` is too small, most of all if few pixels hold
-/// most of the noise. The second is the error that halves cannot show: samples met or missed an object smaller than a
-/// pixel, and both halves agree. It is the square of the raw frame's noise, measured with pixels that were rendered
-/// twice, less one standard error, minus the mean of `known`.
+/// most of the noise. Layers have no `whole`. The second is the noise that halves do not show: that of confirmed
+/// outliers, which stay (tempolux:noise.kept.*, KeptNoise).
 ///
 /// The error in codes is the difference of the sRGB codes, clipped at 0 and 255, of the filtered value and of the value
-/// with the error added or subtracted: the curve's slope times a small error, and never above 255. All three squares of
-/// a pixel are converted at the largest of them. The standard error comes from blocks of 32 x 32 pixels, because errors
-/// of neighbouring pixels are correlated.
+/// without the error. `whole` may have both signs, so the mean over both is taken. Noise k is subtracted: where it is
+/// not small beside the light, a few bright samples made most of the value, so that the true value is below. Light of
+/// samples that find L or nothing has |k| = L in the pixels that found L, and errs by c(L) - c(0) there. The standard
+/// error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are correlated.
 ///
 /// If nothing was filtered or R, G and B are missing, the attributes are removed.
 void write_remaining_noise(const RemainingError& error, Image& frame);

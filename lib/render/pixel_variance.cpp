@@ -89,11 +89,11 @@ namespace {
 
 /// The channel LAYER.noise of a pixel whose value is `shown`.
 Rgb noise_of(const SampleHalves& halves, std::size_t l, float share, const Rgb& shown) {
-  Rgb noise = halves.difference(l) * std::sqrt(share);
+  Rgb difference = halves.difference(l);
   const Rgb taken = halves.mean(l) - shown;
   for (int c = 0; c < 3 && channel_sum(taken) > 0; ++c)
-    noise[c] = std::copysign(std::max(0.0f, std::abs(noise[c]) - std::max(0.0f, taken[c])), noise[c]);
-  return noise;
+    difference[c] = std::copysign(std::max(0.0f, std::abs(difference[c]) - std::max(0.0f, taken[c])), difference[c]);
+  return difference * std::sqrt(share);
 }
 
 }  // namespace

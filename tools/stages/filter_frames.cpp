@@ -64,12 +64,17 @@ class FilterRun {
  private:
   /// Adds the frame's noise to the statistics, which report the root mean square over all frames.
   void say_noise(const Image& image) {
-    for (const std::string name : {"noise.codes", "noise.linear"})
-      if (const auto found = image.numbers.find("tempolux:" + name); found != image.numbers.end()) {
-        auto& [squares, frames] = noise_[name];
-        squares += found->second * found->second;
-        tool_.stats().set(name, std::sqrt(squares / ++frames));
-      }
+    const std::string prefix = "tempolux:";
+    if (!image.numbers.contains(prefix + "noise.codes")) return;
+    for (const auto& [attribute, value] : image.numbers) {
+      if (!attribute.starts_with(prefix + "noise.") ||
+          !(attribute.ends_with(".codes") || attribute.ends_with(".linear")))
+        continue;
+      const std::string name = attribute.substr(prefix.size());
+      noise_[name] += value * value;
+    }
+    ++filtered_;
+    for (const auto& [name, squares] : noise_) tool_.stats().set(name, std::sqrt(squares / filtered_));
   }
 
   Image filter_window(std::size_t first, std::size_t at, std::size_t last, LoadedFrame& middle) {
@@ -161,7 +166,8 @@ class FilterRun {
   bool sequence_, windowed_;
   std::map<std::size_t, LoadedFrame> loaded_;  ///< frames of the current window
   std::map<std::string, bool> warned_;
-  std::map<std::string, std::pair<double, int>> noise_;  ///< by name: sum of squares, frames
+  std::map<std::string, double> noise_;  ///< by name: sum of squares
+  int filtered_ = 0;                     ///< frames
 };
 
 void filter_files(Tool& tool, const FilterFramesOptions& options) {

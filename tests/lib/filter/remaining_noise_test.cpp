@@ -62,7 +62,6 @@ TEST(RemainingNoise, CodesAreTheSlopeOfTheCurve) {
   RemainingError error;
   for (auto& plane : error.whole) plane.assign(frame.pixel_count(), 1e-4f);
   for (auto& plane : error.noise) plane.assign(frame.pixel_count(), 5e-5f);
-  for (auto& plane : error.known) plane.assign(frame.pixel_count(), 4e-4f);
   frame.numbers["tempolux:noise.direct.codes"] = 7;  // from the raw frame
   write_remaining_noise(error, frame);
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), 0.01, 1e-7);
@@ -78,15 +77,14 @@ TEST(RemainingNoise, AnErrorBeyondWhiteIsWhite) {
   Image frame = wall(8, 4);
   grey(frame, "", test::everywhere(1e-8f));
   RemainingError error;
-  for (auto* colours : {&error.whole, &error.noise, &error.known})
+  for (auto* colours : {&error.whole, &error.noise})
     for (auto& plane : *colours) plane.assign(frame.pixel_count(), 1e-4f);
   write_remaining_noise(error, frame);
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), 0.01, 1e-6);
   const double code = 255 * (1.055 * std::pow(0.18, 1 / 2.4) - 0.055);  // the error: up to white, or down to black
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.codes"), std::sqrt((code * code + (255 - code) * (255 - code)) / 2),
               0.1);
-  frame.numbers["tempolux:noise.codes"] = 400;
-  frame.numbers["tempolux:noise.codes_error"] = 1;
+  frame.numbers["tempolux:noise.kept.codes"] = 400;
   write_remaining_noise(error, frame);
   EXPECT_EQ(frame.numbers.at("tempolux:noise.codes"), 255);
 }
@@ -99,18 +97,60 @@ TEST(RemainingNoise, NoiseAloneIsSaid) {
   EXPECT_LT(said, is * 1.3);
 }
 
-/// The raw frame reports a noise of .6 +- .1, its halves show .2: .5^2 - .2^2 remains whatever the filter does.
+/// The raw frame reports confirmed outliers with a noise of .4: these stay, and st-filter of its result knows them.
 TEST(RemainingNoise, NoiseThatHalvesDoNotKnowStays) {
   Image frame = wall(8, 4);
   grey(frame, "", test::everywhere(3));
   RemainingError error;
   for (auto* colours : {&error.whole, &error.noise})
     for (auto& plane : *colours) plane.assign(frame.pixel_count(), 0.01f);
-  for (auto& plane : error.known) plane.assign(frame.pixel_count(), 0.04f);
   frame.numbers["tempolux:noise.linear"] = 0.6;
-  frame.numbers["tempolux:noise.linear_error"] = 0.1;
+  frame.numbers["tempolux:noise.kept.linear"] = 0.4;
   write_remaining_noise(error, frame);
-  EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), std::sqrt(0.01 + 0.25 - 0.04), 1e-6);
+  EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), std::sqrt(0.01 + 0.16), 1e-6);
+  EXPECT_EQ(frame.numbers.at("tempolux:noise.kept.linear"), 0.4);
+}
+
+/// One pixel of 32 holds all light, from one half: its halves are L + L and L - L. The samples of this pixel found what
+/// they mostly miss, so the pixel errs by its whole light, .18 after the exposure: 118 codes. The slope of the curve or
+/// the mean over both signs would say less.
+TEST(RemainingNoise, ARareBrightSampleIsAllError) {
+  Image frame = wall(8, 4);
+  const auto spot = [](int x, int y) { return x == 3 && y == 2 ? 1.0f : 0.0f; };
+  grey(frame, "", spot);
+  grey(frame, "indirect", spot);
+  test::set_noise(frame, "indirect", spot);
+  RemainingError error;
+  for (auto* colours : {&error.whole, &error.noise})
+    for (auto& plane : *colours) plane.assign(frame.pixel_count(), 0.0f);
+  for (auto& plane : error.noise) plane[2 * 8 + 3] = 1;
+  const double code = 255 * (1.055 * std::pow(0.18, 1 / 2.4) - 0.055);
+  write_remaining_noise(error, frame);
+  for (const char* of : {"", "indirect."}) {
+    const std::string name = std::string("tempolux:noise.") + of;
+    EXPECT_NEAR(frame.numbers.at(name + "codes"), code / std::sqrt(32.0), 1e-3) << of;
+    EXPECT_NEAR(frame.numbers.at(name + "linear"), 1 / std::sqrt(32.0), 1e-6) << of;
+  }
+}
+
+/// Each layer reports its own noise, and LAYER.noise is half the difference of its filtered halves: its mean square is
+/// the reported one.
+TEST(RemainingNoise, LayersSayTheirNoise) {
+  const Image out = test::filtered({waves(20, 0.1f)});
+  for (const std::string layer : {"direct", "indirect"}) {
+    double is = 0, halves = 0;
+    for (const std::string c : {"R", "G", "B"})
+      for (int y = 0; y < kHigh; ++y)
+        for (int x = 0; x < kWide; ++x) {
+          is += std::pow(double(at(out, layer + "." + c, x, y) - truth(x, y, 20) / 2), 2) / (3 * kWide * kHigh);
+          halves += std::pow(double(at(out, layer + ".noise." + c, x, y)), 2) / (3 * kWide * kHigh);
+        }
+    const double said = out.numbers.at("tempolux:noise." + layer + ".linear");
+    EXPECT_NEAR(said, std::sqrt(halves), 1e-6) << layer;
+    EXPECT_GT(said, std::sqrt(is) / 1.3) << layer;
+    EXPECT_LT(said, std::sqrt(is) * 1.3) << layer;
+    EXPECT_GT(out.numbers.at("tempolux:noise." + layer + ".codes"), 0) << layer;
+  }
 }
 
 TEST(RemainingNoise, WhatIsNotFilteredSaysNothing) {
