@@ -83,6 +83,8 @@ ways() {
 
 begin() {
   echo "$(of "$(count frames)" frame) of $SIZE, $QUALITY: $(of "$TOTAL" command) to run (V=1 shows them)$(ways)"
+  [ "$METHOD" != walkthrough ] || grep -q '"walkthrough": true' plan.json ||
+    sed -n '/"ibr-warp": "/ { s/.*: "\(.*\)",*$/METHOD=walkthrough: no frame is warped: \1/; p; q; }' plan.json
 }
 
 # The largest share of the pixels in which a viewer sees noise, in percent, if `make measure` has measured pictures of

@@ -10,6 +10,8 @@ run() { make -f Makefile.example "$@" BIN="$bin" FRAMES=0,3 SIZE=32x18 QUALITY=d
 run demo OUT="$work/a" && run demo OUT="$work/b & <b>" PIXELS='--spp 1 --pixel-error 0' || bad "two runs: $(tail -3 "$work/log")"
 grep -q '^\[1/[0-9]*\] 0:0' "$work/log" && grep -q ', pixels$' "$work/log" || bad "no words of progress: $(cat "$work/log")"
 grep -q '^2 frames of 32x18.* CPU s' "$work/log" || bad "no last line: $(tail -3 "$work/log")"
+run demo OUT="$work/w" METHOD=walkthrough || bad "a walkthrough of two frames: $(tail -3 "$work/log")"
+grep -q '^METHOD=walkthrough: no frame is warped: light transport differs' "$work/log" || bad "a walkthrough that warps nothing: $(head -3 "$work/log")"
 # Of measured pictures those of this plan count: 25 %, not the 90 % of a picture of another wish.
 picture=$(sed -n 's/^ *"0003": "\([^"]*\)",*$/\1/p' "$work/a/plan.json")
 printf '%s\n' "{\"picture\": \"pictures/0003-0.exr\", \"tried\": [{\"photons\": 0, \"aqm\": 0.9}]}," \
