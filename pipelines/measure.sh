@@ -2,7 +2,7 @@
 # measure.sh -- measures how much of the noise a viewer sees, before a long run: `make measure`. run.sh runs it after
 # scene-plan; it has make's variables.
 #
-# The middle frame of each segment is rendered twice with independent random numbers. AQM estimates the share of the
+# Of each segment the wished frame closest to the middle is rendered twice with independent random numbers. AQM estimates the share of the
 # pixels in which a viewer sees the noise of one rendering (aqm-compare --either).
 # With METHOD=preview it chooses the number of photons: a frame of n photons is compared with one of 2 n. The difference
 # is noise, and blur that more photons remove. n starts at 3125 and is doubled until the share is at most AQM, or until
@@ -38,7 +38,10 @@ goes_on() {   # goes_on PERCENT: true if it is above AQM and one of the last two
 }
 
 segment() {   # segment FIRST LAST: prints its line of the table
-  frame=$((($1 + $2) / 2)) tried=
+  frame=$(sed -n 's/^frames := //p' "$OUT/plan.mk" | tr ' ' '\n' | sed 's|^frames/0*\([0-9]\)|\1|; s|[.]exr$||' |
+    awk -v a="$1" -v b="$2" '$1 >= a && $1 <= b { d = $1 - int((a + b) / 2); d = d < 0 ? -d : d
+                                                  if (best == "" || d < least) { best = $1; least = d } } END { print best }')
+  tried=
   if [ "$METHOD" = preview ] && [ -z "$PHOTONS" ]; then
     n=$least one=1 two=2 best=101 worse=0
     render $one "$frame" "$n"

@@ -99,7 +99,7 @@ measured() {
 # Adds up the statistics of all commands that led to the frames, also those of earlier makes, but not the comparison
 # with path tracing. Noise is printed in brightness steps of a screen, of which white has 255: the root mean square over
 # the frames. The audit is the bias that frames report of their own light. A warning follows if a
-# frame has ten times the noise that is asked for (pipelines/look.md).
+# frame has ten times the noise that is asked for (pipelines/look.md), or if all frames are black.
 end() {
   asked=$ERROR
   [ -n "$asked" ] || [ -n "$PIXELS" ] || case $QUALITY in draft) asked=.05;; *) asked=.016;; esac   # as stages.cpp
@@ -117,6 +117,7 @@ end() {
         folder = $0; sub("/.*", "", folder); whole = 1
         while ((getline line < $0) > 0) {
           if (whole && line ~ /"cpu_s":/) { cpu += value(line); whole = 0 }   # the first is of the whole command
+          if (line ~ /"mean_radiance":/) { seen_all++; seen_black += value(line) == 0 }
           if (line ~ /"noise.codes":/) {
             one = value(line); noise[folder] += one ^ 2; counted[folder]++
             if (one > most[folder]) {
@@ -134,6 +135,9 @@ end() {
         if (last == "raw") printf " before the filter"
         if (seen != "") printf "; a viewer sees noise in %s %% of the pixels (make measure)", seen
         printf "; %s; look at %s/sheet.png\n", audit, out
+        if (seen_all && seen_black == seen_all)
+          printf "warning: all is black: the camera sees neither a lamp nor a lit surface; CAMERA=NAME takes another " \
+            "camera, SKY=1,1,1 adds light from all directions\n"
         # A pixel error e leaves about 305 x .18 e codes (lib/render/frame_noise.h).
         promised = 305 * .18 * asked
         if (promised > 0 && most[last] > 10 * promised)

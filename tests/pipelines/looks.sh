@@ -27,6 +27,13 @@ case $last in *'noise, without bias, 19.7 of 255'*) ;; *) bad "not the root mean
 case $last in *warning*) bad "a warning in a draft with the noise of one: $last";; esac
 case $last in *'; audit: '* | *'; no bias, '* | *'; not audited, '*) ;; *) bad "no audit, and no reason: $last";; esac
 case $(ends final) in *'warning: noise is seen: frame 3 has 26 brightness steps of noise, 0.9 are asked for'*) ;; *) bad "no warning: $(ends final)";; esac
+# A warning if all frames are black, none if one of them is.
+case $(ends final) in *'all is black'*) bad "bright frames are said to be black";; esac
+black() { for file in "$work/a"/raw/"$1"-*.json; do sed 's/"mean_radiance": [^,]*/"mean_radiance": 0/' "$file" > "$work/said" && cp "$work/said" "$file"; done; }
+black 0000
+case $(ends final) in *'all is black'*) bad "one black frame of two";; esac
+black 0003
+case $(ends final) in *'warning: all is black: the camera sees neither'*'SKY=1,1,1'*) ;; *) bad "nothing says that all is black: $(ends final)";; esac
 run compare OUT="$work/a" OTHER="$work/b & <b>" && [ -s "$work/a/compare.html" ] || bad "compare: $(cat "$work/log")"
 grep -o 'src=.\{9\}\|href=.\{9\}\|https\{0,1\}:\|url(' "$work/a/compare.html" | grep -v '^src="data:ima' | head -3 | grep . && bad 'the page asks for something outside'
 run compare OUT="$work/a" OTHER="$work/none" && bad 'compare with nothing'

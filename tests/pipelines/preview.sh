@@ -55,6 +55,7 @@ assert segment["first"] == 0 and len(tried) >= 1 and tried[0]["photons"] == 3125
 assert all(b["photons"] == 2 * a["photons"] for a, b in zip(tried, tried[1:])) and all(0 <= t["aqm"] <= 1 for t in tried), tried
 assert tried[0]["aqm"] > 0, tried
 END
+run SCENE=$scene FRAMES=5 OUT="$work/one" && grep -q '"frame": 5' "$work/one/measured.json" || bad "not the wished frame is measured: $(cat "$work/one/measured.json")"
 goal=plan
 echo '{"format": "tempolux measured", "version": "1.0", "segments": [{"first": 0, "frame": 2, "tried": [{"photons": 1000, "aqm": 0.3}, {"photons": 2000, "aqm": 0.1}, {"photons": 4000, "aqm": 0.05}]}]}' > "$work/measured.json"
 for case in '20% 2000 10' '1% 4000 5'; do
