@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "formats/octahedral.h"
+#include "lib/core/arrays.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/transport/media.h"
@@ -209,13 +210,12 @@ void MediaLight::add(const formats::PhotonBlock& block, Vec3 offset, int times) 
   for (std::size_t i = 0; i < block.photons.size(); ++i) {
     const formats::Photon& photon = block.photons[i];
     if (photon.kind != formats::PathKind::tentative || (photon.bounce == 0 && !options_.direct)) continue;
-    const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
-    const Rgb contribution{photon.flux[0], photon.flux[1], photon.flux[2]};
+    const Vec3 position = vec_of(photon.position) + offset;
+    const Rgb contribution = rgb_of(photon.flux);
     for (std::size_t g = 0; g < gs_.size(); ++g) {
       float factor = 1;
       if (gs_[g] != 0 && !block.directions.empty()) {
-        const auto wi = formats::decode_normal(block.directions[i]);
-        const Vec3 travel{-float(wi[0]), -float(wi[1]), -float(wi[2])};
+        const Vec3 travel = -vec_of(formats::decode_normal(block.directions[i]));
         factor = 4 * kPi * pdf_hg(gs_[g], travel, normalize(eye_ - position));
         factor *= shares_[g].of_photons(factor);
       }

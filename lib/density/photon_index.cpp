@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "formats/large_pages.h"
+#include "lib/core/arrays.h"
 #include "lib/core/parallel.h"
 #include "lib/core/parallel_each.h"
 
@@ -128,10 +129,8 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
     std::size_t place = places[first / kChunk];
     for (std::size_t i = first; i < last; ++i) {
       if (!is_wanted(photons[i])) continue;
-      const auto& at = photons[i].position;
-      const Vec3 p(Vec3d{at[0], at[1], at[2]} + shift);
-      const Rgb flux{photons[i].flux[0], photons[i].flux[1], photons[i].flux[2]};
-      if (!is_finite(p) || !is_finite(flux))
+      const Vec3 p = moved(photons[i].position, shift);
+      if (!is_finite(p) || !is_finite(rgb_of(photons[i].flux)))
         throw std::invalid_argument("PhotonIndex: a position or flux is not finite");
       items[place++] = {{p.x, p.y, p.z}, std::uint32_t(i)};
       largest[first / kChunk] = std::max(largest[first / kChunk], max_component(abs(p)));
@@ -160,7 +159,7 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
     const formats::Photon* photon = used ? &photons[items[i].source] : nullptr;
     filters_[i / kLeafSize].code[lane] = photon ? filter_code(*photon) : 0;
     if (!photon) return;
-    flux_[i] = {photon->flux[0], photon->flux[1], photon->flux[2]};
+    flux_[i] = rgb_of(photon->flux);
     source_[i] = items[i].source;
     object_[i] = photon->object;
   });

@@ -3,10 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "formats/octahedral.h"
 #include "formats/photons/photons.h"
+#include "lib/core/arrays.h"
 
 namespace tempolux {
 
@@ -24,6 +27,11 @@ struct PhotonView {
   PhotonView(const formats::PhotonMap& map) : photons(map.photons), directions(map.directions) {}
 
   bool directed() const { return !directions.empty(); }
+  /// wi of photon i, if directions are stored.
+  std::optional<Vec3> direction(std::size_t i) const {
+    if (!directed()) return std::nullopt;
+    return vec_of(formats::decode_normal(directions[i]));
+  }
 };
 
 /// Appends photon i of `from` as `photon`, with its direction.

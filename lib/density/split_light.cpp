@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include "lib/core/arrays.h"
 
 namespace tempolux {
 namespace {
@@ -14,7 +15,6 @@ using formats::PhotonBlock;
 
 constexpr float kLeastDivided = 0x1p-100f;
 
-Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 bool is_zero(const std::array<float, 3>& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
 /// Appends photon i of a block, as `photon`, with the block's columns.
@@ -51,11 +51,11 @@ DividedValue divide(float value, double share) {
 }
 
 CellPlace place_of(const Photon& photon) {
-  return {vec(photon.position), vec(formats::decode_normal(photon.normal)), photon.object};
+  return {vec_of(photon.position), vec_of(formats::decode_normal(photon.normal)), photon.object};
 }
 
 CellPlace place_of(const IrradiancePointRecord& point) {
-  return {vec(point.position), vec(formats::decode_normal(point.normal)), point.object};
+  return {vec_of(point.position), vec_of(formats::decode_normal(point.normal)), point.object};
 }
 
 void add_flux(const PhotonBlock& block, FluxCells& cells) {

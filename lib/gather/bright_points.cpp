@@ -65,7 +65,7 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   for (std::uint32_t i = 0; i < high_.size(); ++i) {
     if (!(high_[i] > 0)) continue;
     const Vec3 position = points.points()[i].position;
-    bright.emplace_back().position = {position.x, position.y, position.z};
+    bright.emplace_back().position = array_of(position);
     box.add(position);
     objects.push_back(points.points()[i].object);
   }

@@ -9,10 +9,6 @@
 namespace tempolux {
 namespace {
 
-Vec3 moved(const std::array<float, 3>& p, Vec3d shift) {
-  return Vec3(Vec3d{double(p[0]) + shift.x, double(p[1]) + shift.y, double(p[2]) + shift.z});
-}
-
 formats::SurfaceSet set_of(const MovingObjects& moving, std::uint32_t object) {
   return moving.contains(object) ? formats::SurfaceSet::dynamic_set : formats::SurfaceSet::static_set;
 }

@@ -8,16 +8,12 @@
 
 #include "formats/irradcache/irradcache.h"
 #include "formats/irradpoints/irradpoints.h"
+#include "lib/core/arrays.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
-
-inline std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
-inline std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
-inline Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
-inline Rgb rgb_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// Copies a record's place, light, radii and clearance to a record of a file, .irradcache or .radsamples.
 template <class FileRecord>

@@ -58,15 +58,12 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
         continue;
       }
       const Vec3 position = index_.position(i);
-      const auto n = formats::decode_normal(photons.photons[index_.source(i)].normal);
-      const float radius = radius_of(i, {n[0], n[1], n[2]}, found);
+      const Vec3 n = vec_of(formats::decode_normal(photons.photons[index_.source(i)].normal));
+      const float radius = radius_of(i, n, found);
       leaf.x[lane] = position.x, leaf.y[lane] = position.y, leaf.z[lane] = position.z;
-      leaf.nx[lane] = n[0], leaf.ny[lane] = n[1], leaf.nz[lane] = n[2];
+      leaf.nx[lane] = n.x, leaf.ny[lane] = n.y, leaf.nz[lane] = n.z;
       leaf.inverse_r2[lane] = 1 / (radius * radius);
-      if (directed_) {
-        const auto w = formats::decode_normal(photons.directions[index_.source(i)]);
-        arriving_from_[i] = {w[0], w[1], w[2]};
-      }
+      if (directed_) arriving_from_[i] = *photons.direction(index_.source(i));
       const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
       leaf.flat[lane] = flattening * flattening - 1;
     }

@@ -34,9 +34,7 @@ std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights,
 
 }  // namespace
 
-Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
-  return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;
-}
+Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) { return vec_of(origin) - frame.origin; }
 
 bool holds_kind(const std::string& kinds, const std::string& kind) {
   return ("," + kinds + ",").find("," + kind + ",") != std::string::npos;

@@ -12,9 +12,7 @@ constexpr std::uint32_t kColumns = formats::column_influence | formats::column_u
 bool is_localised(const formats::IrradcacheFile& file) { return (file.header.columns & kColumns) == kColumns; }
 
 LocalisedRecords localised_records(const formats::IrradcacheFile& file, const SceneFrame& frame) {
-  const std::array<double, 3>& origin = file.header.origin;
-  const std::vector<IrradianceRecord> records =
-      from_file(file.records, Vec3d{origin[0], origin[1], origin[2]} - frame.origin);
+  const std::vector<IrradianceRecord> records = from_file(file.records, vec_of(file.header.origin) - frame.origin);
   LocalisedRecords cache;
   cache.least_cosine = float(file.header.least_cosine);
   cache.history = file.header.history;
@@ -25,7 +23,7 @@ LocalisedRecords localised_records(const formats::IrradcacheFile& file, const Sc
       continue;
     }
     cache.standing.push_back(records[i]);
-    cache.changes.push_back({Rgb(record.update[0], record.update[1], record.update[2]), record.influence});
+    cache.changes.push_back({rgb_of(record.update), record.influence});
   }
   return cache;
 }
@@ -36,7 +34,7 @@ std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cach
     const RecordChange& change = cache.changes[i];
     records[i].set = formats::SurfaceSet::static_set;
     records[i].influence = change.influence;
-    records[i].update = {change.update.r, change.update.g, change.update.b};
+    records[i].update = array_of(change.update);
   }
   for (formats::IrradianceCacheRecord& record : to_file(cache.gathered, frame)) {
     record.set = formats::SurfaceSet::dynamic_set;

@@ -7,6 +7,7 @@
 
 #include "formats/error.h"
 #include "formats/octahedral.h"
+#include "lib/core/arrays.h"
 #include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 
@@ -123,7 +124,7 @@ Joined join(const std::vector<Sample>& samples, float edge) {
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
   Joined joined;
   for (const Sample& s : samples) {
-    const auto code = formats::encode_normal({s.normal.x, s.normal.y, s.normal.z});
+    const auto code = formats::encode_normal(array_of(s.normal));
     std::uint64_t key = mix64(std::uint64_t(s.group) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 |
                               std::uint64_t(code[1] >> kNormalBits));
     for (int c = 0; c < 3; ++c)
@@ -213,8 +214,7 @@ std::vector<Sample> samples_of(const Tracer& tracer, std::span<const Rgbd> flux,
   std::vector<Sample> samples(elements.size());
   parallel_each(samples.size(), kAtOnce, [&](std::size_t i) {
     const formats::MeshElement& e = elements[i];
-    const auto n = formats::decode_normal(e.normal);
-    const Vec3 position{e.position[0], e.position[1], e.position[2]}, normal{float(n[0]), float(n[1]), float(n[2])};
+    const Vec3 position = vec_of(e.position), normal = vec_of(formats::decode_normal(e.normal));
     const std::uint32_t material = tracer.frame().surfaces[e.surface].material;
     samples[i] = {position,
                   normal,
@@ -281,9 +281,7 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
   std::vector<Place> places(photons.size());
   parallel_each(photons.size(), kAtOnce, [&](std::size_t i) {
     const formats::Photon& photon = photons[i];
-    const auto decoded = formats::decode_normal(photon.normal);
-    const Vec3 normal{float(decoded[0]), float(decoded[1]), float(decoded[2])};
-    const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
+    const Vec3 normal = vec_of(formats::decode_normal(photon.normal)), position = vec_of(photon.position) + offset;
     // start of the ray above the surface: the largest rounding error, or a thousandth of a cell
     const float above = std::max(float(cuts_.cell()) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
     Hit hit;
@@ -334,9 +332,8 @@ std::vector<formats::MeshElement> all_elements(const SceneFrame& frame, const Me
           e.cuts = std::uint16_t(n);
           e.side = side;
           const auto [u, v] = formats::mesh_cell_centre(n, cell);
-          const Vec3 p = corners.at(u, v);
-          e.position = {p.x, p.y, p.z};
-          e.normal = formats::encode_normal({normal.x, normal.y, normal.z});
+          e.position = array_of(corners.at(u, v));
+          e.normal = formats::encode_normal(array_of(normal));
           e.area = 0.5f * doubled / float(n) / float(n);
           e.object = std::uint16_t(frame.surfaces[s].object);
         }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/octahedral.h"
+#include "lib/core/arrays.h"
 #include "lib/core/random.h"
 #include "lib/gather/mesh_elements.h"
 
@@ -68,10 +69,7 @@ void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::
                      const SceneFrame& frame) {
   std::sort(meetings.begin(), meetings.end());
   const auto material = [&](const Meeting& m) { return frame.surfaces[elements[m.element].surface].material; };
-  const auto normal = [&](const Meeting& m) {
-    const auto d = formats::decode_normal(elements[m.element].normal);
-    return Vec3{float(d[0]), float(d[1]), float(d[2])};
-  };
+  const auto normal = [&](const Meeting& m) { return vec_of(formats::decode_normal(elements[m.element].normal)); };
   for (std::size_t first = 0, last = 0; first < meetings.size(); first = last) {
     while (last < meetings.size() && meetings[last].place == meetings[first].place) ++last;
     for (std::size_t m = first; m < last; ++m) {
@@ -81,7 +79,7 @@ void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::
         const formats::MeshElement& e = elements[meetings[k].element];
         if (material(meetings[m]) != material(meetings[k]) || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay)
           continue;
-        sum += Rgbd(double(e.irradiance[0]), double(e.irradiance[1]), double(e.irradiance[2])) * double(e.area);
+        sum += Rgbd(rgb_of(e.irradiance)) * double(e.area);
         area += double(e.area);
       }
       if (area > 0) corners_[meetings[m].corner] = Rgb(sum * (1 / area));

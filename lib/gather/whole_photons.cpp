@@ -11,10 +11,6 @@ namespace {
 
 using formats::Photon;
 
-Vec3 placed(const Photon& photon, Vec3d shift) {
-  return Vec3(Vec3d{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])} + shift);
-}
-
 bool is_negative(const Photon& photon) { return photon.flux[0] < 0 || photon.flux[1] < 0 || photon.flux[2] < 0; }
 
 struct PhotonHash {
@@ -34,12 +30,12 @@ formats::PhotonBlock whole_photons(const PhotonMaps& maps, const std::function<b
   formats::PhotonBlock whole;
   const auto take = [&](const PhotonView& map, std::size_t i, Vec3 place) {
     Photon photon = map.photons[i];
-    photon.position = {place.x, place.y, place.z};
+    photon.position = array_of(place);
     append(map, i, photon, whole);
   };
   for (std::size_t i = 0; i < maps.dynamic.photons.size(); ++i) {
     Photon photon = maps.dynamic.photons[i];
-    const Vec3 place = placed(photon, maps.dynamic_shift);
+    const Vec3 place = moved(photon.position, maps.dynamic_shift);
     if (!wanted(place, photon)) continue;
     if (!is_negative(photon)) {
       take(maps.dynamic, i, place);
@@ -50,7 +46,7 @@ formats::PhotonBlock whole_photons(const PhotonMaps& maps, const std::function<b
   }
   for (std::size_t i = 0; i < maps.fixed.photons.size(); ++i) {
     const Photon& photon = maps.fixed.photons[i];
-    const Vec3 place = placed(photon, maps.fixed_shift);
+    const Vec3 place = moved(photon.position, maps.fixed_shift);
     if (!wanted(place, photon)) continue;
     if (const auto found = gone.find(photon); found != gone.end() && found->second > 0) --found->second;
     else take(maps.fixed, i, place);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/photons/photons.h"
+#include "lib/core/arrays.h"
 #include "lib/core/statistics.h"
 #include "lib/density/irradiance_estimate.h"
 
@@ -71,8 +72,8 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, float spacing,
   for (std::size_t i = 0; i < points.size(); ++i) {
     const IrradiancePoint& p = points[i];
     widest_ = std::max(widest_, p.radius);
-    as_photons[i].position = {p.position.x, p.position.y, p.position.z};
-    as_photons[i].normal = formats::encode_normal({p.normal.x, p.normal.y, p.normal.z});
+    as_photons[i].position = array_of(p.position);
+    as_photons[i].normal = formats::encode_normal(array_of(p.normal));
     lights_[i].position = p.position;
     lights_[i].normal = p.normal;
     lights_[i].all = p.total();

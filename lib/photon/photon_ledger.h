@@ -11,12 +11,11 @@
 #include <string>
 
 #include "formats/photons/photons.h"
+#include "lib/core/arrays.h"
 #include "lib/core/parallel.h"
 #include "lib/photon/photon_map.h"
 
 namespace tempolux {
-
-inline std::array<double, 3> as_array(const Rgbd& c) { return {c.r, c.g, c.b}; }
 
 /// Adds a batch to its group's entry.
 inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats::GroupFlux& group) {
@@ -94,9 +93,9 @@ class BatchWriter {
           take(batch);
           if (progress_) progress_(double(i + 1) / double(count));
         });
-    result.totals.emitted_flux = as_array(sum.emitted);
-    result.totals.escaped_flux = as_array(sum.escaped);
-    result.totals.absorbed_flux = as_array(sum.absorbed);
+    result.totals.emitted_flux = array_of(sum.emitted);
+    result.totals.escaped_flux = array_of(sum.escaped);
+    result.totals.absorbed_flux = array_of(sum.absorbed);
     return result;
   }
   /// PhotonWriter::finish.

@@ -53,8 +53,8 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
                             t.majorant);  // the last bit of the word, which FlightNumbers does not use
     if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share) {
       const Rgb stored = flux * (1 / (t.majorant * options_.volume_share));
-      batch.block.photons.push_back({.position = {position.x, position.y, position.z},
-                                     .flux = {stored.r, stored.g, stored.b},
+      batch.block.photons.push_back({.position = array_of(position),
+                                     .flux = array_of(stored),
                                      .normal = encode_likelihood(extinction, t.majorant),
                                      .kind = formats::PathKind::tentative,
                                      .bounce = std::uint8_t(std::min(bounce, 255u))});

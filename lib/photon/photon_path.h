@@ -1,6 +1,7 @@
 // lib/photon/photon_path.h -- the state of a photon on its path, for the parts of PhotonTracer.
 #pragma once
 
+#include "lib/core/arrays.h"
 #include "lib/core/random.h"
 #include "lib/material/inside.h"
 #include "lib/photon/photon_trace.h"
@@ -11,7 +12,7 @@ inline constexpr float kLargestPhotonSurvival = 0.9995f;  ///< in a lossless box
 
 /// Stores the direction of the photon that was stored last.
 inline void record_direction(Vec3 wi, PhotonBatch& batch) {
-  batch.block.directions.push_back(formats::encode_normal({wi.x, wi.y, wi.z}));
+  batch.block.directions.push_back(formats::encode_normal(array_of(wi)));
 }
 
 struct PhotonTracer::Path {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "formats/error.h"
+#include "lib/core/arrays.h"
 #include "lib/core/halton.h"
 #include "lib/core/parallel.h"
 #include "lib/photon/photon_ledger.h"
@@ -119,7 +120,7 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   while (reader.read_block(block))
     for (const formats::Photon& photon : block.photons) {
       if (photon.kind != formats::PathKind::tentative) continue;
-      const Vec3 position{photon.position[0], photon.position[1], photon.position[2]};
+      const Vec3 position = vec_of(photon.position);
       const double collides = double((photon.flux[0] + photon.flux[1] + photon.flux[2]) / 3) *
                               double(tracer.media() ? tracer.media()->extinction(position) : 0);
       squares[block.group] += collides * collides;

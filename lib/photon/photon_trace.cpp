@@ -193,8 +193,7 @@ PhotonBatch PhotonTracer::trace_members(std::uint32_t group, std::uint64_t first
     }
   if (!lights_.aim().empty())
     for (const formats::Photon& photon : batch.block.photons)
-      batch.seen_count += photon.kind != PathKind::tentative &&
-                          lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
+      batch.seen_count += photon.kind != PathKind::tentative && lights_.aim().holds(vec_of(photon.position));
   return batch;
 }
 
@@ -414,9 +413,9 @@ void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uin
   if (at.coverage != 1) stored *= 1 / at.coverage;
   // Field by field: copying a record of 32 bytes that was just assembled would stall.
   formats::Photon& photon = batch.block.photons.emplace_back();
-  photon.position = {at.point.position.x, at.point.position.y, at.point.position.z};
-  photon.flux = {stored.r, stored.g, stored.b};
-  photon.normal = formats::encode_normal({at.normal_geometric.x, at.normal_geometric.y, at.normal_geometric.z});
+  photon.position = array_of(at.point.position);
+  photon.flux = array_of(stored);
+  photon.normal = formats::encode_normal(array_of(at.normal_geometric));
   photon.object = std::uint16_t(at.point.object);
   photon.kind = kind;
   photon.bounce = std::uint8_t(std::min(bounce, 255u));

@@ -6,6 +6,7 @@
 
 #include "formats/error.h"
 #include "formats/photons/file_reader.h"
+#include "lib/core/arrays.h"
 #include "lib/core/parallel_each.h"
 #include "lib/photon/photon_ledger.h"
 
@@ -55,7 +56,7 @@ class Census {
     double sum = 0;
     for (const formats::Photon& photon : block.photons) {
       if (photon.kind != formats::PathKind::tentative) continue;
-      const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset_;
+      const Vec3 position = vec_of(photon.position) + offset_;
       const std::size_t cell = now_.index_of(position);
       if (cell == now_.values().size()) continue;
       const float now = now_.values()[cell] > 0 ? tracer_.media()->extinction(position) : 0;
@@ -72,9 +73,7 @@ class Census {
   MajorantGrid now_;  ///< greatest extinction of this frame, by cell
 };
 
-Vec3 offset_of(const formats::PhotonHeader& header, Vec3d origin) {
-  return Vec3(Vec3d{header.origin[0], header.origin[1], header.origin[2]} - origin);
-}
+Vec3 offset_of(const formats::PhotonHeader& header, Vec3d origin) { return Vec3(vec_of(header.origin) - origin); }
 
 void need_pilots(const std::string& path, const PreviousMap& previous, UpdateStrategy strategy) {
   if (sends_pilots(strategy) && previous.header.pilots == 0)

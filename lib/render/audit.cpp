@@ -5,8 +5,10 @@
 #include <map>
 
 #include "formats/octahedral.h"
+#include "lib/core/arrays.h"
 #include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
+#include "lib/density/photon_view.h"
 #include "lib/photon/photon_trace.h"
 
 namespace tempolux {
@@ -94,14 +96,8 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
     for (std::size_t b = 0; b < photons.batch_count(); ++b) {
       const formats::PhotonBlock block = photons.trace(b).block;
       for (std::size_t i = 0; i < block.photons.size(); ++i) {
-        std::optional<Vec3> wi;
-        if (!block.directions.empty()) {
-          const std::array<float, 3> decoded = formats::decode_normal(block.directions[i]);
-          wi = Vec3{decoded[0], decoded[1], decoded[2]};
-        }
-        const std::array<float, 3>& flux = block.photons[i].flux;
-        if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, wi))
-          seen[k].push_back({*splat, channel_mean(Rgbd(Rgb{flux[0], flux[1], flux[2]}))});
+        if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, PhotonView(block).direction(i)))
+          seen[k].push_back({*splat, channel_mean(Rgbd(rgb_of(block.photons[i].flux)))});
       }
     }
   });
@@ -133,9 +129,9 @@ void FrameAudit::expect(const Tracer& tracer, const PhotonSplats& camera, const 
     const SurfacePoint place = tracer.surface_point(hit);
     const Vec3 normal =
         dot(place.normal_geometric, ray.direction) < 0 ? place.normal_geometric : -place.normal_geometric;
-    const formats::Photon photon{.position = {place.position.x, place.position.y, place.position.z},
+    const formats::Photon photon{.position = array_of(place.position),
                                  .flux = {1, 1, 1},
-                                 .normal = formats::encode_normal({normal.x, normal.y, normal.z}),
+                                 .normal = formats::encode_normal(array_of(normal)),
                                  .kind = formats::PathKind::indirect};
     if (const std::optional<Splat> splat = camera.splat(photon, {}, {})) unit[i] = channel_mean(Rgbd(splat->radiance));
   });

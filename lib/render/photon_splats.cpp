@@ -46,13 +46,12 @@ bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& dist
 std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d shift, std::optional<Vec3> wi) const {
   const std::optional<Layer> layer = layer_of(photon.kind);
   if (!layer) return std::nullopt;
-  const Vec3 place(Vec3d{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])} + shift);
+  const Vec3 place = moved(photon.position, shift);
   const std::optional<std::array<double, 2>> raster = view_.project(place);
   if (!raster ||
       !((*raster)[0] >= 0 && (*raster)[1] >= 0 && (*raster)[0] < view_.width() && (*raster)[1] < view_.height()))
     return std::nullopt;
-  const std::array<float, 3> decoded = formats::decode_normal(photon.normal);
-  const Vec3 normal{decoded[0], decoded[1], decoded[2]};
+  const Vec3 normal = vec_of(formats::decode_normal(photon.normal));
   Hit hit;
   Ray ray;
   float distance = 0;
@@ -71,8 +70,7 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   if (material.values().unlit) return std::nullopt;
   const ShadingPoint x(point, wo, material);
   if (!x.bsdf.has_diffuse()) return std::nullopt;
-  Rgb radiance =
-      x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi * Rgb{photon.flux[0], photon.flux[1], photon.flux[2]};
+  Rgb radiance = x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi * rgb_of(photon.flux);
   if (wi && photon.kind == formats::PathKind::caustic)
     radiance *= received_share(*wi, normal, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
   const double pixel = double(view_.pixel_size(1)), depth = view_.depth(place);

@@ -36,12 +36,7 @@ std::size_t cell_at(double x, double y) {
 
 /// Contribution of photon i, if the camera sees the photon. Nothing is blurred, so the sum over photons is unbiased.
 SeenFlux seen_flux(const PhotonSplats& splats, const CameraView& view, const PhotonView& photons, std::size_t i) {
-  std::optional<Vec3> wi;
-  if (photons.directed()) {
-    const auto w = formats::decode_normal(photons.directions[i]);
-    wi = {w[0], w[1], w[2]};
-  }
-  const std::optional<Splat> splat = splats.splat(photons.photons[i], {}, wi);
+  const std::optional<Splat> splat = splats.splat(photons.photons[i], {}, photons.direction(i));
   if (!splat) return {};
   const auto width = std::uint32_t(view.width()), height = std::uint32_t(view.height());
   return {double(channel_mean(splat->radiance)) / (double(width) * height),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "lib/core/arrays.h"
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
@@ -254,8 +255,7 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
   std::vector<AimSphere> spheres;
   for (const formats::ViewSphere& sphere : view)
-    spheres.push_back(
-        {Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
+    spheres.push_back({vec_of(sphere.centre) - origin, sphere.radius, sphere.weight});
   return spheres;
 }
 

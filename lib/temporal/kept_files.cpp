@@ -7,12 +7,11 @@
 #include "formats/base_file.h"
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/arrays.h"
 #include "lib/temporal/temporal_gather.h"
 
 namespace tempolux {
 namespace {
-
-Vec3d vec_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 bool same_segment(const formats::RadsamplesHeader& header, const SceneFrame& frame) {
   return header.segment[0] == frame.segment.first && header.segment[1] == frame.segment.last &&
@@ -106,7 +105,7 @@ void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, cons
   formats::RadsamplesFile file = head_of(kept);
   file.header.history = history;
   file.header.identity = identity_of(frame);
-  file.header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  file.header.origin = array_of(frame.origin);
   file.header.diagonal = double(sample_unit(frame));
   file.header.segment = {frame.segment.first, frame.segment.last};
   file.header.anchors = true;

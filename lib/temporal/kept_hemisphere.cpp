@@ -21,8 +21,7 @@ void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance) {
 }
 
 void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
-  const std::array<float, 3> old = formats::decode_rgbe(kept.samples[cell].rgbe);
-  keep_radiance(kept, cell, Rgb(old[0], old[1], old[2]) * ratio);
+  keep_radiance(kept, cell, rgb_of(formats::decode_rgbe(kept.samples[cell].rgbe)) * ratio);
 }
 
 void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
@@ -64,7 +63,7 @@ void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenS
   kept.records.resize(head.records.size());
   KeptHemisphere& k = kept.records[record];
   k.record = head.records[record];
-  k.record.position = array_of(Vec3(Vec3d(vec_of(k.record.position)) + shift));
+  k.record.position = array_of(moved(k.record.position, shift));
   k.samples.assign(samples.samples.begin(), samples.samples.end());
   if (samples.anchors.empty()) k.anchors.assign(k.samples.size(), kNone);
   else k.anchors.assign(samples.anchors.begin(), samples.anchors.end());

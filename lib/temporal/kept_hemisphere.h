@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/radsamples/radsamples.h"
+#include "lib/core/arrays.h"
 #include "lib/gather/final_gather.h"
 #include "lib/irradcache/records.h"
 
@@ -18,8 +19,8 @@ struct KeptHemisphere {
   std::vector<formats::RadianceSample> samples;
   std::vector<std::uint32_t> anchors;  ///< kNone: none
 
-  Vec3 position() const { return {record.position[0], record.position[1], record.position[2]}; }
-  Vec3 normal() const { return {record.normal[0], record.normal[1], record.normal[2]}; }
+  Vec3 position() const { return vec_of(record.position); }
+  Vec3 normal() const { return vec_of(record.normal); }
   /// Number of a cell's present ray, from which its random direction follows (GatherDirections::aim).
   std::uint32_t draw_of(std::uint32_t cell) const { return record.updates + 1 - formats::age_of(samples[cell]); }
 };

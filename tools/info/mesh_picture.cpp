@@ -8,6 +8,7 @@
 #include "formats/error.h"
 #include "formats/meshirrad/meshirrad.h"
 #include "formats/octahedral.h"
+#include "lib/core/arrays.h"
 #include "lib/core/vec.h"
 #include "lib/image/image.h"
 #include "tools/info/info_facts.h"
@@ -26,7 +27,7 @@ constexpr double kOverlap = 1.4;  ///< radius of a drawn disc, divided by the ra
 Rgb shown(const MeshElement& e, const std::string& layer) {
   if (layer == "age") return Rgb((float(e.after) - float(e.before)) / 2 / 16);
   if (layer == "window") return Rgb(float(e.before + 1 + e.after) / 33);
-  return {e.irradiance[0], e.irradiance[1], e.irradiance[2]};
+  return rgb_of(e.irradiance);
 }
 
 /// An orthographic view along -(1, 1, 1): x to the right, y up in the picture, depth towards the eye.
@@ -35,8 +36,6 @@ struct View {
       towards{std::sqrt(1 / 3.), std::sqrt(1 / 3.), std::sqrt(1 / 3.)};
   Vec3d of(const Vec3d& p) const { return {dot(p, right), dot(p, up), dot(p, towards)}; }
 };
-
-Vec3d as_vec(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// The picture while it is drawn.
 struct Canvas {
@@ -48,9 +47,9 @@ struct Canvas {
 };
 
 void draw(const MeshElement& e, const View& view, Canvas& canvas) {
-  const Vec3d n = view.of(as_vec(formats::decode_normal(e.normal)));
+  const Vec3d n = view.of(Vec3d(vec_of(formats::decode_normal(e.normal))));
   if (e.photons == 0 || n[2] < 0.05) return;
-  const Vec3d p = view.of(as_vec(e.position));
+  const Vec3d p = view.of(Vec3d(vec_of(e.position)));
   const double radius = kOverlap * std::sqrt(double(e.area) / 3.14159265358979), reach = radius * canvas.scale + 1;
   const double x0 = (p[0] - canvas.left) * canvas.scale, y0 = (canvas.top - p[1]) * canvas.scale;
   const Rgb value = shown(e, canvas.layer);
@@ -84,7 +83,7 @@ Image mesh_picture(const std::string& path, const std::string& layer) {
   Vec3d lower(infinity), upper(-infinity);
   for (const MeshElement& e : file.elements)
     if (e.photons > 0) {
-      const Vec3d p = view.of(as_vec(e.position));
+      const Vec3d p = view.of(Vec3d(vec_of(e.position)));
       for (int c = 0; c < 3; ++c) lower[c] = std::min(lower[c], p[c]), upper[c] = std::max(upper[c], p[c]);
     }
   if (!(lower[0] <= upper[0])) throw InputError(path + ": no photon arrived, so there is nothing to see");

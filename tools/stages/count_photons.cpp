@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "lib/core/arrays.h"
 #include "lib/gather/gather_points.h"
 #include "lib/temporal/light_jumps.h"
 #include "tools/common/cli.h"
@@ -121,7 +122,7 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
   put_sums(sums, file.elements);
   file.header.history = map.header.history;
   file.header.identity = identity_of(frame);
-  file.header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  file.header.origin = array_of(frame.origin);
   file.header.cell = mesh.cell;
   file.header.unit = sums.unit();
   file.header.kinds = kinds_text(options);

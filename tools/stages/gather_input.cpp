@@ -117,8 +117,7 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
       !wanted.keep
           ? formats::load_photons(file)
           : formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
-              const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
-              return wanted.keep(Vec3(place + shift_of(header.origin, frame)), photon);
+              return wanted.keep(moved(photon.position, shift_of(header.origin, frame)), photon);
             });
   check_photons(tool, file, map.header, frame, wanted);
   return map;
@@ -156,7 +155,7 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   header.history = points.history + tool.history_line(frame.frame);
   header.identity = identity_of(frame);
   if (frames) header.identity.first_frame = (*frames)[0], header.identity.last_frame = (*frames)[1];
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.origin = array_of(frame.origin);
   header.spacing = double(points.spacing);
   header.emitted_count = points.emitted_count;
   header.kinds = points.kinds;
@@ -172,7 +171,7 @@ formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<cons
                                          const PlacementOptions& placement) {
   formats::IrradcacheHeader header;
   header.identity = identity_of(frame);
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.origin = array_of(frame.origin);
   header.columns = formats::column_clearance;
   header.rays = std::uint32_t(gather.rays);
   header.error_bound = double(placement.error_bound);

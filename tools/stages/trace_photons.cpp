@@ -9,6 +9,7 @@
 #include "formats/error.h"
 #include "formats/hash.h"
 #include "formats/photons/layout.h"
+#include "lib/core/arrays.h"
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
 #include "lib/render/seen_spheres.h"
@@ -95,7 +96,7 @@ formats::PhotonHeader PhotonTracing::header_of(const SceneFrame& frame, const Em
   header.history = tool_.history_line(frame_number);
   header.identity = identity_of(frame);
   header.identity.emission = emission_hash(emission, frame.segment);
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.origin = array_of(frame.origin);
   return header;
 }
 
