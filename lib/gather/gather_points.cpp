@@ -43,7 +43,7 @@ bool holds_kind(const std::string& kinds, const std::string& kind) {
 Lights guided_lights(const Tracer& tracer, const Lights& lights, std::span<const IrradiancePoint> points) {
   if (!lights.has_environment()) return lights;
   const float offset = Reach(tracer).offset();
-  std::vector<SkyPlace> places;
+  std::vector<SeenPlace> places;
   for (std::size_t i = 0; i < points.size(); i += points.size() / kSkyPlaces + 1) {
     const Vec3 normal = points[i].normal;
     places.push_back({surface_of(points[i], offset), normal, normal});

@@ -54,6 +54,22 @@ struct IncomingRadiance::Further {
   bool specular = false;
   float leg = 0;  ///< m: length of the ray's last straight part before the pane that the ray has passed; else 0
 
+  /// The ray that goes on straight behind a pane. `before`: length of the part that ends at the pane [m].
+  Further behind_pane(Rgb passed, float before) const {
+    Further after = *this;
+    after.key = mix64(key + 2);
+    after.weight *= passed;
+    after.leg = before;
+    return after;
+  }
+  /// The ray after another event S. `lobe`: its sampled_lobe.
+  Further after_specular(Rgb scattered, float lobe) const {
+    Further after = behind_pane(scattered, 0);
+    after.sampled_lobe = lobe;
+    after.phase = 0;
+    after.specular = true;
+    return after;
+  }
   LastScatter scattering() const { return {phase > 0, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
 
@@ -234,15 +250,9 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   Rgb weight = next.weight;
   if (!survives(weight, kLargestSurvival, random.get1(2, Purpose::roulette))) return result;
-  Further after = from;
-  after.key = mix64(from.key + 2);
-  after.weight *= weight;
-  after.leg = next.straight ? met.leg : 0;
-  if (!next.straight) {
-    after.sampled_lobe = sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0;
-    after.phase = 0;
-    after.specular = true;
-  }
+  const Further after = next.straight
+                            ? from.behind_pane(weight, met.leg)
+                            : from.after_specular(weight, sampled ? BrightPoints::lobe_width(bsdf, next.wi, wo) : 0);
   if (source) source->partial = true;
   return result + weight * radiance_after_specular(met.hit, travel, met.distance, after, depth + 1, to,
                                                    solid && front == next.transmitted ? &material : nullptr);

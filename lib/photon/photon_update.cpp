@@ -129,17 +129,13 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, formats::PhotonHea
   PhotonMapResult result;
   formats::PhotonWriter writer(sink, header);
   KeptPhotons kept(update, overlay, overlay && !upon_overlay);
-  const auto write = [&](const formats::PhotonBlock& block, bool& any) {
-    writer.write(block);
-    any = true;
-  };
   std::vector<formats::GroupFlux> ledger;
   std::uint32_t next = 0;
   const auto keep_until = [&](std::uint32_t end) {
     for (; next < end; ++next) {
       if (overlay && !differing.contains(next)) continue;
       bool any = false;
-      kept.of(next, [&](const formats::PhotonBlock& block) { write(block, any); });
+      kept.of(next, [&](const formats::PhotonBlock& block) { writer.write(block), any = true; });
       if (overlay && !any) writer.write({next, {}, {}, {}});
       ledger.push_back(previous.ledger[next]);
     }
@@ -158,7 +154,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, formats::PhotonHea
           add_to_ledger(batch, header.identity.first_frame, entry);
           add_counts(batch, result);
           if (batch.block.photons.empty()) continue;
-          write(batch.block, any);
+          writer.write(batch.block), any = true;
           if (previous.is_kept()) previous.photons[groups[i]].push_back(std::move(batch.block));
         }
         if (overlay && !any) writer.write({groups[i], {}, {}, {}});
@@ -170,11 +166,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, formats::PhotonHea
   kept.finish();
   result.totals = writer.finish({}, ledger);
   if (!overlay) previous.photons.clear();  // kept in memory only for overlays, whose reader needs the base
-  if (previous.is_kept()) {
-    for (const formats::GroupFlux& entry : ledger) previous.ledger[entry.group] = entry;
-    previous.header = header;
-    previous.own = std::move(differing);
-  }
+  if (previous.is_kept()) previous.become(header, ledger, std::move(differing));
   return result;
 }
 

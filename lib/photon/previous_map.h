@@ -45,6 +45,13 @@ struct PreviousMap {
   std::vector<std::vector<formats::PhotonBlock>> photons;
   std::set<std::uint32_t> own;
   bool is_kept() const { return !photons.empty(); }
+  /// Makes this the map kept in memory that has been updated. `updated`: entries of the groups that it holds itself.
+  void become(const formats::PhotonHeader& now, std::span<const formats::GroupFlux> updated,
+              std::set<std::uint32_t> groups) {
+    header = now;
+    for (const formats::GroupFlux& entry : updated) ledger[entry.group] = entry;
+    own = std::move(groups);
+  }
 };
 
 /// Reads the whole map and computes PreviousMap::change against the tracer's scene; `origin` is the scene's. With

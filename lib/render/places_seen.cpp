@@ -56,14 +56,14 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
     if (!point) return;
     SeenPlace& place = seen.places[i];
     const Vec3 front = point->surface.normal_geometric;
-    place = {point->surface, point->normal, dot(front, point->normal) < 0 ? -front : front};
+    place = {point->surface, dot(front, point->normal) < 0 ? -front : front, point->normal};
     const Vec3 travel = Frame(place.normal).to_world(sample_hemisphere_cos(random.get2(0, Purpose::test)));
     if (!(dot(travel, place.geometric) > 0)) return;
     Hit hit;
     if (!scene.tracer.intersect(spawn_ray(place.surface, travel), hit)) return;
     const SurfacePoint met = scene.tracer.surface_point(hit);
     const SeenSide side(met, -travel);
-    seen.next_places[i] = {met, side.normal, side.normal_geometric};
+    seen.next_places[i] = {met, side.normal_geometric, side.normal};
   });
   return seen;
 }
@@ -71,10 +71,10 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
 Lights guided_lights(const RenderScene& scene, const CameraView& view) {
   if (!scene.lights.has_environment()) return scene.lights;
   const SeenPlaces seen = places_seen(scene, view, int(kSkyPlaces / 2), 0);
-  std::vector<SkyPlace> places;
+  std::vector<SeenPlace> places;
   for (const std::vector<SeenPlace>* some : {&seen.places, &seen.next_places})
     for (const SeenPlace& place : *some)
-      if (place.exists()) places.push_back({place.surface, place.geometric, place.normal});
+      if (place.exists()) places.push_back(place);
   return scene.lights.guided(learn_sky(scene.tracer, scene.lights, places));
 }
 

@@ -7,6 +7,7 @@
 
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
+#include "lib/transport/learn_sky.h"
 
 namespace tempolux {
 
@@ -14,16 +15,8 @@ namespace tempolux {
 inline constexpr int kPilotPlaces = 2048;
 /// Places of a pilot that looks from many eyes: eight eyes together look at kPilotPlaces.
 inline constexpr std::uint32_t kPlacesOfEye = kPilotPlaces / 8;
-/// Parts of the picture that a pilot tells apart: 14 of its places lie in each.
+/// Parts of the picture that a pilot measures apart: 14 of its places lie in each.
 inline constexpr int kPilotColumns = 16, kPilotRows = 9;
-
-/// A place with a Lambert lobe, or none.
-struct SeenPlace {
-  SurfacePoint surface;
-  Vec3 normal, geometric;  ///< on the side that is seen; zero vectors: there is no place
-
-  bool exists() const { return normal != Vec3{}; }
-};
 
 struct SeenPlaces {
   std::vector<SeenPlace> places;  ///< by index of the camera ray: its first Lambert lobe, through mirrors and glass

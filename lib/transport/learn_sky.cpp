@@ -16,9 +16,9 @@ namespace {
 constexpr std::uint32_t kRays = 4;
 constexpr std::uint64_t kSeed = 0x736b79;
 
-void add_hits(const Tracer& tracer, const Lights& lights, const SkyPlace& from, std::uint32_t number,
+void add_hits(const Tracer& tracer, const Lights& lights, const SeenPlace& from, std::uint32_t number,
               std::vector<SkyGuide::Hit>& hits) {
-  const Frame axes(from.shading);
+  const Frame axes(from.normal);
   const PathRandom random(kSeed, number);
   for (std::uint32_t i = 0; i < kRays; ++i) {
     const Vec3 travel = axes.to_world(sample_hemisphere_cos(random.get2(i, Purpose::scatter)));
@@ -32,14 +32,14 @@ void add_hits(const Tracer& tracer, const Lights& lights, const SkyPlace& from, 
 }  // namespace
 
 std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
-                                          std::span<const SkyPlace> places) {
+                                          std::span<const SeenPlace> places) {
   if (!lights.has_environment()) return nullptr;
   std::vector<SkyGuide::Hit> hits =
       parallel_found<SkyGuide::Hit>(places.size(), 64, [&](std::size_t i, std::vector<SkyGuide::Hit>& found) {
         add_hits(tracer, lights, places[i], std::uint32_t(i), found);
       });
   std::vector<SkyGuide::Place> senders;
-  for (const SkyPlace& place : places) senders.push_back({place.surface.position, place.shading});
+  for (const SeenPlace& place : places) senders.push_back({place.surface.position, place.normal});
   auto guide = std::make_shared<const SkyGuide>(senders, std::move(hits), int(kRays));
   return guide->empty() ? nullptr : guide;
 }

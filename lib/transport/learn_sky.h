@@ -10,10 +10,12 @@
 
 namespace tempolux {
 
-/// A place that will sample lights.
-struct SkyPlace {
+/// A place with a Lambert lobe, which will sample lights; or none.
+struct SeenPlace {
   SurfacePoint surface;
-  Vec3 geometric, shading;  ///< unit, on the lit side
+  Vec3 geometric, normal;  ///< unit, on the side that is seen; zero vectors: there is no place
+
+  bool exists() const { return normal != Vec3{}; }
 };
 
 /// Number of places that suffice: where one ray in fifty finds a window their rays make 1300 hits, enough for 10 to 20
@@ -22,6 +24,7 @@ inline constexpr std::size_t kSkyPlaces = 16384;
 
 /// Sends four rays from each place, with the density cos / pi about the shading normal. Null if there is no environment
 /// or no part of the places profits from a guide. Same result for any number of threads.
-std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights, std::span<const SkyPlace> places);
+std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
+                                          std::span<const SeenPlace> places);
 
 }  // namespace tempolux

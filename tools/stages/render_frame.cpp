@@ -141,12 +141,6 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   FrameOutputs outputs(frame_name(options.output, number), options.frame.halves);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  if (options.integrator == "path" && number == tool.common().frames.front()) {
-    // With photons or a cache, the tools that made them have given this warning.
-    if (const std::string doubt = doubt_of_light_units(input.scene());
-        tool.common().light_units == "raw" && !doubt.empty())
-      tool.warn(doubt);
-  }
   const int camera = input.scene().camera_node(tool.common().camera);
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
@@ -199,6 +193,12 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
   report_account(tool, rendered, audited, frame_options, input.scene().object_names);
+}
+
+/// With photons or a cache, the tools that made them have given this warning.
+void warn_of_light_units(Tool& tool, const Scene& scene) {
+  if (const std::string doubt = doubt_of_light_units(scene); tool.common().light_units == "raw" && !doubt.empty())
+    tool.warn(doubt);
 }
 
 /// A scene without light may be intended (unlit materials, depth only), but a black frame needs an explanation.
@@ -267,6 +267,7 @@ void check(const Tool& tool, RenderOptions& options) {
 
 void render_frames(Tool& tool, SceneInput& input, const RenderOptions& options) {
   warn_of_darkness(tool, input.scene());
+  if (options.integrator == "path") warn_of_light_units(tool, input.scene());
   StaticTree standing;
   for (const int frame : tool.common().frames) render(tool, input, options, frame, standing);
 }

@@ -45,8 +45,8 @@ struct Room {
     if (pane) scene.add_quad({4, 2.5f, 4}, {-4, 2.5f, 4}, {-4, 3, 4}, {4, 3, 4}, test::glass(0, true));
     return scene;
   }
-  static std::vector<SkyPlace> floor() {
-    std::vector<SkyPlace> places;
+  static std::vector<SeenPlace> floor() {
+    std::vector<SeenPlace> places;
     for (int i = 0; i < 4096; ++i)
       places.push_back({place_at({float(i % 64) / 9 - 3.5f, 0, float(i / 64) / 9 - 3.5f}, kUp), kUp, kUp});
     return places;
@@ -97,7 +97,7 @@ TEST(LearnSky, DoesNotDependOnThreadsAndNeedsASky) {
     const ThreadLimit limit(threads);
     const auto guide = learn_sky(tracer, lights, Room::floor());
     std::vector<double> found;
-    for (const SkyPlace& place : Room::floor()) {
+    for (const SeenPlace& place : Room::floor()) {
       const SkyGuide::Grid* const grid = guide->at(place.surface.position, kUp);
       found.push_back(grid ? grid->pdf_solid_angle(normalize(Vec3{0.1f, 0.3f, 1})) : -1);
     }
