@@ -15,6 +15,12 @@ namespace tempolux {
 /// this name and GROUP.*.
 bool is_in_group(std::string_view channel, std::string_view group);
 
+/// True for R, G, B and A of the picture or of a layer.
+inline bool is_colour(std::string_view channel) {
+  const std::string_view last = channel.substr(channel.rfind('.') + 1);  // npos + 1 is 0
+  return last == "R" || last == "G" || last == "B" || last == "A";
+}
+
 /// True if the requested groups include this one.
 inline bool asked(const std::vector<std::string>& groups, std::string_view group) {
   return std::ranges::find(groups, group) != groups.end();

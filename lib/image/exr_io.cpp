@@ -27,6 +27,7 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/image/byte_file.h"
+#include "lib/image/channel_groups.h"
 #include "lib/image/exr_claims.h"
 #include "lib/image/exr_plain.h"
 #include "lib/image/foreign_names.h"
@@ -41,12 +42,6 @@ constexpr float kLargestHalf = 65504;
 // Level 4 of deflate is OpenEXR's default; written here, so that the default of a later OpenEXR does not change the
 // bytes.
 constexpr int kDeflateLevel = 4;
-
-bool is_colour(const std::string& channel) {
-  const std::size_t dot = channel.rfind('.');
-  const std::string last = dot == std::string::npos ? channel : channel.substr(dot + 1);
-  return last == "R" || last == "G" || last == "B" || last == "A";
-}
 
 std::string pixel_place(const std::string& path, const std::string& channel, std::size_t index, int width) {
   return path + ": channel " + one_line(channel) + ": pixel (" + std::to_string(index % std::size_t(width)) + ", " +

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <map>
 #include <span>
 
 #include "formats/error.h"
@@ -8,6 +7,7 @@
 #include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
 #include "lib/render/frame_renderer.h"
+#include "lib/scene/same_surfaces.h"
 
 namespace tempolux {
 namespace {
@@ -17,27 +17,17 @@ const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specul
                                        "albedo",   "motion", "coverage", "influence", "variance", "diffuse.variance",
                                        "samples",  "halves", "seen"};
 
-/// Finds the same point of the same surface in another frame, where movers have moved or deformed it. The same surface
-/// has the same node and the same rank among that node's surfaces; the same point has the same barycentric coordinates.
+/// Finds the same point of the same surface in another frame, where movers have moved or deformed it (same_surfaces).
+/// The same point has the same barycentric coordinates.
 class OtherFrame {
  public:
-  OtherFrame(const NeighbourFrame& other, const SceneFrame& here) : view_(other.view), there_(here.surfaces.size()) {
-    if (!other.frame) return;
-    std::map<std::uint32_t, std::vector<const Surface*>> by_node;
-    for (const Surface& surface : other.frame->surfaces) by_node[surface.node].push_back(&surface);
-    std::map<std::uint32_t, std::size_t> rank;
-    for (std::size_t s = 0; s < here.surfaces.size(); ++s) {
-      const auto& candidates = by_node[here.surfaces[s].node];
-      const std::size_t r = rank[here.surfaces[s].node]++;
-      if (r < candidates.size() &&
-          candidates[r]->primitive->triangles.size() == here.surfaces[s].primitive->triangles.size())
-        there_[s] = candidates[r];
-    }
+  OtherFrame(const NeighbourFrame& other, const SceneFrame& here) : view_(other.view) {
+    if (other.frame) there_ = same_surfaces(here, *other.frame);
   }
   /// Motion in pixels, right and up, from raster position `here` to the point's position in the other frame. Zero if
   /// the point is not in front of that frame's camera.
   Vec2 motion(const SurfacePoint& point, std::array<double, 2> here) const {
-    const Surface* surface = there_[point.surface];
+    const Surface* surface = there_.empty() ? nullptr : there_[point.surface];
     if (!surface) return {};
     const auto& corner = surface->primitive->triangles[point.triangle];
     const auto raster = view_->project(surface->position(corner[0]) * (1 - point.u - point.v) +
@@ -48,8 +38,7 @@ class OtherFrame {
 
  private:
   const CameraView* view_;
-  /// The other frame's surface by surface of this frame; nullptr: it does not exist there.
-  std::vector<const Surface*> there_;
+  std::vector<const Surface*> there_;  ///< by surface of this frame; empty without another frame
 };
 
 /// Stores one number in each plane at pixel i.

@@ -1,11 +1,11 @@
 #include "lib/warp/flow_of_view.h"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 
 #include "lib/core/parallel_each.h"
+#include "lib/scene/same_surfaces.h"
 
 namespace tempolux {
 namespace {
@@ -14,16 +14,12 @@ namespace {
 class Neighbour {
  public:
   Neighbour(const SceneView& here, const NeighbourView& there)
-      : here_(here), there_(there), motions_(here.frame(), *there.frame) {
-    const Affine to_there = there.camera->camera_from_world() * here.camera().world_from_camera();
-    of_object_.resize(motions_.count(), to_there);
-    for (std::uint32_t object = 0; object < of_object_.size(); ++object)
-      if (motions_.of(object).kind == ObjectMotion::Kind::moved)
-        of_object_[object] = there.camera->camera_from_world() *
-                             (motions_.of(object).other_from_here * here.camera().world_from_camera());
-    still_ = to_there;
-    match_surfaces();
-  }
+      : here_(here),
+        there_(there),
+        motions_(here.frame(), *there.frame),
+        still_(there.camera->camera_from_world() * here.camera().world_from_camera()),
+        of_object_(motions_.transforms(there.camera->camera_from_world(), here.camera().world_from_camera(), still_)),
+        surfaces_(same_surfaces(here.frame(), *there.frame)) {}
 
   /// The point in the neighbour's camera space; nothing if the point does not exist there. For a point at infinity, its
   /// direction.
@@ -49,24 +45,10 @@ class Neighbour {
   const FrameCamera& camera() const { return *there_.camera; }
 
  private:
-  /// Assigns surfaces of this frame to those of the other: equal rank among the surfaces of one node.
-  void match_surfaces() {
-    std::map<std::uint32_t, std::vector<const Surface*>> by_node;
-    for (const Surface& surface : there_.frame->surfaces) by_node[surface.node].push_back(&surface);
-    std::map<std::uint32_t, std::size_t> rank;
-    for (const Surface& surface : here_.frame().surfaces) {
-      const auto& others = by_node[surface.node];
-      const std::size_t r = rank[surface.node]++;
-      const bool fits =
-          r < others.size() && others[r]->primitive->triangles.size() == surface.primitive->triangles.size();
-      surfaces_.push_back(fits ? others[r] : nullptr);
-    }
-  }
-
   const SceneView& here_;
   NeighbourView there_;
   ObjectMotions motions_;
-  Affine still_;
+  Affine still_;  ///< camera to camera
   std::vector<Affine> of_object_;
   std::vector<const Surface*> surfaces_;
 };

@@ -6,15 +6,15 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/core/parallel_each.h"
+#include "lib/image/channel_groups.h"
 
 namespace tempolux {
 namespace {
 
-bool is_colour(const std::string& channel) {
-  const std::size_t dot = channel.rfind('.');
-  const std::string last = dot == std::string::npos ? channel : channel.substr(dot + 1);
-  if (last != "R" && last != "G" && last != "B" && last != "A") return false;
-  const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
+/// True for colours of light, which are warped.
+bool is_light(const std::string& channel) {
+  if (!is_colour(channel)) return false;
+  const std::string layer = channel.substr(0, std::max<std::size_t>(channel.size(), 2) - 2);
   return layer != "albedo" && layer != "variance" && !layer.starts_with("variance.");
 }
 
@@ -25,7 +25,7 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
   look_at_pixels();
   std::map<std::string, const Channel*> channels;
   for (const Channel& channel : image.channels)
-    if (is_colour(channel.name) && channel.ids.empty()) channels.emplace(channel.name, &channel);
+    if (is_light(channel.name) && channel.ids.empty()) channels.emplace(channel.name, &channel);
   for (const char* needed : {"R", "G", "B"})
     if (!channels.contains(needed))
       throw InputError(name + ": has no channel " + needed + "; a key is a picture: render it with RGBA");

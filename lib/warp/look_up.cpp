@@ -17,10 +17,7 @@ KeyView::KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCame
   // Composed camera to camera, in double: world coordinates may be large, the difference of two cameras is small.
   still_ = same_camera_ ? Affine{} : camera.camera_from_world() * target.world_from_camera();
   if (motions_.all_still()) return;
-  moved_.resize(motions_.count(), still_);
-  for (std::uint32_t object = 0; object < moved_.size(); ++object)
-    if (motions_.of(object).kind == ObjectMotion::Kind::moved)
-      moved_[object] = camera.camera_from_world() * (motions_.of(object).other_from_here * target.world_from_camera());
+  moved_ = motions_.transforms(camera.camera_from_world(), target.world_from_camera(), still_);
 }
 
 void WantedPoints::place(const FrameCamera& camera) {

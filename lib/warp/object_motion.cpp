@@ -75,4 +75,13 @@ ObjectMotions::ObjectMotions(const SceneFrame& here, const SceneFrame& other) {
   }
 }
 
+std::vector<Affine> ObjectMotions::transforms(const Affine& space_from_other, const Affine& here_from_space,
+                                              const Affine& still) const {
+  std::vector<Affine> transforms(motions_.size(), still);
+  for (std::size_t object = 0; object < motions_.size(); ++object)
+    if (motions_[object].kind == ObjectMotion::Kind::moved)
+      transforms[object] = space_from_other * (motions_[object].other_from_here * here_from_space);
+  return transforms;
+}
+
 }  // namespace tempolux
