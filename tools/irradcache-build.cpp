@@ -93,7 +93,7 @@ void add_options(tools::Tool& tool, Options& options) {
       "frames may follow: where movers changed the light in those frames, records are gathered anew, too");
   tool.number_option("--light-samples", options.point.light_samples, 1, 4096, "shadow rays per point for direct light");
   tool.number_option("--rays", options.gather.rays, 1, 1 << 20,
-                     "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many");
+                     "gather rays per record, one through each cell of its hemisphere");
   tool.number_option(
       "--error-bound", options.placement.error_bound, 1e-3, 2.0,
       "radius of a record divided by the harmonic mean distance of the surfaces that it sees: smaller "

@@ -7,7 +7,8 @@
 namespace tempolux::formats::irradcache {
 namespace {
 
-constexpr std::uint16_t kLeastCosineSince = 1, kClearanceSince = 2, kNoiseSince = 3;  ///< minor versions
+constexpr std::uint16_t kLeastCosineSince = 1, kClearanceSince = 2, kNoiseSince = 3,
+                        kLampsApartSince = 4;  ///< minor versions
 
 constexpr std::array<std::string_view, 4> kColumnNames{"influence", "update", "clearance", "noise"};
 constexpr std::uint32_t kColumnSets = 1u << kColumnNames.size();
@@ -25,6 +26,7 @@ std::string_view fault_of(const IrradcacheHeader& h) {
   if (h.columns >= kColumnSets) return "columns are not known";
   if (!std::isfinite(h.error_bound) || h.error_bound < 0) return "error-bound is not finite or is negative";
   if (!(h.least_cosine >= 0 && h.least_cosine < 1)) return "least-cosine is not from 0 to below 1";
+  if (!std::isfinite(h.lamps_apart) || h.lamps_apart < 0) return "lamps-apart is not finite or is negative";
   if (!std::isfinite(h.max_radius) || !(h.min_radius >= 0 && h.min_radius <= h.max_radius))
     return "radii are not two lengths, the smaller first";
   for (std::size_t i = 0; i < h.placed_frames.size(); ++i) {
@@ -56,6 +58,8 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
   if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);
   if (key == "error-bound") return result(parse_numbers(value, &h.error_bound, 1) && h.error_bound > 0);
   if (key == "least-cosine" && minor >= kLeastCosineSince) return result(parse_numbers(value, &h.least_cosine, 1));
+  if (key == "lamps-apart" && minor >= kLampsApartSince)
+    return result(parse_numbers(value, &h.lamps_apart, 1) && h.lamps_apart > 0);
   if (key == "radii") {
     std::array<double, 2> radii{};
     if (!parse_numbers(value, radii.data(), 2) || !(radii[1] > 0)) return Line::bad_value;
@@ -80,7 +84,8 @@ bool has_least_cosine(const IrradcacheHeader& h) { return h.least_cosine != kLea
 
 Format format_of(const IrradcacheHeader& h) {
   Format format = kFormat;
-  format.minor = h.columns & column_noise       ? kNoiseSince
+  format.minor = h.lamps_apart > 0              ? kLampsApartSince
+                 : h.columns & column_noise     ? kNoiseSince
                  : h.columns & column_clearance ? kClearanceSince
                  : has_least_cosine(h)          ? kLeastCosineSince
                                                 : 0;
@@ -95,6 +100,7 @@ std::string header_text(const IrradcacheHeader& h) {
   if (h.rays > 0) text.line("rays", text_of(h.rays));
   if (h.error_bound > 0) text.line("error-bound", text_of(h.error_bound));
   if (has_least_cosine(h)) text.line("least-cosine", text_of(h.least_cosine));
+  if (h.lamps_apart > 0) text.line("lamps-apart", text_of(h.lamps_apart));
   if (h.max_radius > 0) text.line("radii", text_of(h.min_radius) + " " + text_of(h.max_radius));
   if (!h.placed_frames.empty()) text.line("placed", ranges_text(h.placed_frames));
   text.identity(h.identity);

@@ -67,6 +67,9 @@ struct IrradcacheHeader {
   /// A record counts at a place with normal n if n . n_i is above this, in [0, 1). Records were placed for this
   /// value, and interpolation must use it.
   double least_cosine = kLeastCosine;
+  /// m, > 0: the records leave out light of lamps that are closer than this to surfaces (irradcache.md, section 1); the
+  /// reader samples it. 0: they hold all light.
+  double lamps_apart = 0;
   double min_radius = 0, max_radius = 0;  ///< m: limits to which radii were clamped; max_radius 0: unknown
   /// Ranges {first, last} of the frames for whose cameras the records were placed; ascending, with gaps between them.
   /// Empty: unknown.

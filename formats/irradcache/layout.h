@@ -14,7 +14,7 @@
 
 namespace tempolux::formats::irradcache {
 
-inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build", 1, 3};
+inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build", 1, 4};
 inline constexpr std::string_view kBlockMark = "IRRC";
 inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kClearanceSize = 20,
                              kNoiseSize = 12, kEndBodySize = 32;

@@ -110,7 +110,10 @@ void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
 
 /// Joins the sites of each point into a spot.
 void BrightPoints::gather_spots() {
-  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
+  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) {
+    const bool lamp_a = a.lamp_distance > 0, lamp_b = b.lamp_distance > 0;
+    return lamp_a != lamp_b ? lamp_b : a.spot < b.spot;
+  });
   std::vector<LightBounds> spots;
   for (std::size_t i = 0, end = 0; i < sites_.size(); i = end) {
     LightBounds spot;
@@ -124,8 +127,11 @@ void BrightPoints::gather_spots() {
     if (!(spot.weight > 0)) continue;
     spots.push_back(spot);
     sites_of_.push_back({std::uint32_t(i), std::uint32_t(end - i)});
+    if (!(sites_[i].lamp_distance > 0)) point_spots_ = spots.size();
   }
   tree_.emplace(spots);
+  spots.resize(point_spots_);
+  point_tree_.emplace(spots);
 }
 
 /// The site at a place: none if the point that represents the place has no high part, or if a ray to the place meets
@@ -201,12 +207,14 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
   Bsdf::Direction eye;
   if (at.seen_from) eye = at.coat->along(frame.emplace(normal).to_local(*at.seen_from));
   BrightLight light;
-  if (sites_of_.empty()) return light;
-  const LightTree::Start start = tree_->start(place.position, normal);
+  if ((at.lamps ? sites_of_.size() : point_spots_) == 0) return light;
+  const LightTree& tree = at.lamps ? *tree_ : *point_tree_;
+  const LightTree::Start start = tree.start(place.position, normal);
   for (std::uint32_t number = 0; number < std::uint32_t(samples); ++number) {
-    const float u = (float(number) + random.get1(number, Purpose::light_choice, 1)) / float(samples);
+    const float u =
+        at.choice ? *at.choice : (float(number) + random.get1(number, Purpose::light_choice, 1)) / float(samples);
     LightTree::Choice chosen;
-    if (!tree_->choose(start, place.position, normal, std::min(u, kOneMinusEpsilon), chosen)) continue;
+    if (!tree.choose(start, place.position, normal, std::min(u, kOneMinusEpsilon), chosen)) continue;
     const Sites& sites = sites_of_[chosen.light];
     const Site& site =
         sites_[sites.first + std::min(sites.count - 1, std::uint32_t(chosen.left * double(sites.count)))];

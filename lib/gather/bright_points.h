@@ -98,6 +98,10 @@ class BrightPoints {
     /// Unit. If given, the light is the radiance [W/m^2/sr] that the lobes S of `coat` reflect this way, in place of an
     /// irradiance, and has no gradients.
     std::optional<Vec3> seen_from = {};
+    /// In [0, 1): chooses the site of a single sample, from a sequence that fills the interval evenly. By default
+    /// `random` chooses.
+    std::optional<float> choice = {};
+    bool lamps = true;  ///< false: light of points alone, without that of lamps close to surfaces
   };
   /// The mean over `samples` explicit samples of the light that arrives at the place. Adds the shadow rays to `counts`.
   BrightLight arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const;
@@ -129,9 +133,10 @@ class BrightPoints {
   const PointLookup& points_;
   std::vector<float> high_;
   float radius_, lamp_reach_;
-  std::vector<Site> sites_;        ///< sites of one spot lie side by side
-  std::vector<Sites> sites_of_;    ///< by spot
-  std::optional<LightTree> tree_;  ///< over spots
+  std::vector<Site> sites_;      ///< sites of one spot lie side by side
+  std::vector<Sites> sites_of_;  ///< by spot; spots of points come before those of lamps
+  std::size_t point_spots_ = 0;
+  std::optional<LightTree> tree_, point_tree_;  ///< over all spots, and over those of points
 };
 
 /// Adds the light and its gradients to a record that holds the light of gather rays.

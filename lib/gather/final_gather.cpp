@@ -114,9 +114,9 @@ void FinalGather::add_explicit(const SurfacePoint& from, std::uint64_t key, Irra
   const Bsdf bsdf = incoming_.bsdf_at(from, record.normal);
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
   const PathRandom random(options_.seed ^ 0x6272696768740001ull, key);
-  add_bright_light(options_.bright->arriving({from, record.normal, coated ? &bsdf : nullptr}, options_.bright_samples,
-                                             random, counts),
-                   record);
+  BrightPoints::Receiver at{from, record.normal, coated ? &bsdf : nullptr};
+  at.lamps = !options_.lamps_apart;
+  add_bright_light(options_.bright->arriving(at, options_.bright_samples, random, counts), record);
 }
 
 }  // namespace tempolux

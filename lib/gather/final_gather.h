@@ -19,6 +19,9 @@ struct GatherOptions {
   int rays = 500;
   const BrightPoints* bright = nullptr;  ///< points that are sampled explicitly, if any (bright_points.h)
   int bright_samples = 100;              ///< explicit samples per record
+  /// Records leave out the explicit part of the light of lamps close to surfaces, for pixels that sample it themselves
+  /// (KnownLight::lamp_spots).
+  bool lamps_apart = false;
 };
 
 /// Rays from one place, at most one through each cell, and what arrives along them.

@@ -61,7 +61,7 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
 
 std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                                              std::uint64_t seed) {
-  if (points.size() == 0 || !lights.has_placed()) return {};
+  if (!(points.spacing() > 0) || !lights.has_placed()) return {};
   constexpr std::size_t kChunk = 1024;
   const std::uint64_t key = mix64(seed ^ kKey);
   const float reach = kBesideLamp * points.spacing();

@@ -30,7 +30,7 @@ inline constexpr float kBesideLamp = 2;
 /// Photons that land within kBesideLamp spacings of their lamp, of 2^15 emitted photons of kind direct (up to 2^18 if
 /// fewer than 2^10 land but some do: in sunlight lamps get few photons). The sum of their flux over a place has the
 /// direct light of such close lamps as its mean over seeds. Costs one short ray per photon. Same result for any number
-/// of threads.
+/// of threads. `points` may be empty: only its spacing decides which photons land.
 std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                                              std::uint64_t seed = 0);
 

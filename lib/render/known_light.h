@@ -31,6 +31,9 @@ class KnownLight {
   /// The bright points among `points`; places without a record sample them explicitly. Rays from such a place
   /// contribute the remaining light.
   const BrightPoints* bright = nullptr;
+  /// The light of lamps close to surfaces that `records` leave out (GatherOptions::lamps_apart); null: they hold all
+  /// light. Where records are read, these spots are sampled as often as lamps are.
+  const BrightPoints* lamp_spots = nullptr;
   int bright_samples = 4;  ///< explicit samples at the first such place of a camera path; later places take one each
   /// Can a ray meet a light, that is, is there an environment or an emitting surface? If not, and indirect and caustic
   /// light are known at a place, no ray is sent from its Lambert lobe: the ray would find nothing.

@@ -58,6 +58,7 @@ struct Vertex {
   bool direct_known = false;    ///< light that arrives from lights was added: none is sampled for the Lambert lobe
   bool caustic_known = false;   ///< light that arrives by events S was added
   bool bright_sampled = false;  ///< bright points were sampled explicitly
+  bool lamps_apart = false;     ///< records were read that leave out the light of KnownLight::lamp_spots
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
   float times_diffuse = 1, times_specular = 1;  ///< probability of a lobe over the Bsdf's, if the path forks
@@ -98,6 +99,7 @@ class EyeTracer {
   Lights::From sampled_lights() const { return scene_.suns_apart ? Lights::From::not_suns : Lights::From::all; }
   void sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
                     Layers& result) const;
+  void sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random, Layers& result) const;
   void add_light(const Vertex& at, const PathState& state) const;
   void arrive(const SurfacePoint& point, PathState& state) const;
   void add_known_light(Vertex& at, Vec3 smooth, const PathState& state) const;
@@ -254,16 +256,34 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   result[state.path.after(false).layer()] += arriving * glossy;
 }
 
+/// Takes one sample of the light that the records at a surface leave out.
+void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random,
+                                  Layers& result) const {
+  const ShadingPoint& x = at.x;
+  GatherCounts rays;
+  BrightPoints::Receiver place{x.surface, x.normal, x.bsdf.has_specular() ? &x.bsdf : nullptr};
+  place.choice = random.get1(state.bounce, Purpose::light_choice);
+  const PathRandom within(random.hashed().bits(state.bounce, Purpose::gather), state.bounce);
+  const Rgb irradiance(known_->lamp_spots->arriving(place, 1, within, rays).irradiance);
+  count(rays.shadow_rays, counts_.shadow, state);
+  result[state.path.after(true).after(true).layer()] +=
+      state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share) * irradiance;
+}
+
 /// Samples light at a surface. At the first matte surface effort_.lit samples are added to the part `lit`. Samples of
 /// the sun hardly differ from each other, so one per camera ray is enough; it belongs to the path's own part.
 void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
+  const bool first_matte = state.path.sharp() && at.x.bsdf.has_diffuse();
+  const auto each = [&](const auto& sample) {
+    if (!first_matte) sample(state.random, *state.result);
+    else
+      for (std::uint32_t i = 0; i < effort_.lit; ++i) sample(state.random.of_sample(effort_.lit_first + i), parts_.lit);
+  };
+  if (at.lamps_apart)
+    each([&](const PixelRandom& random, Layers& result) { sample_lamp_spots(at, state, random, result); });
   if (!samples_diffuse(at) && !samples_specular(at, state)) return;
   if (scene_.suns_apart) sample_light(at, state, state.random, true, *state.result);
-  const bool first_matte = state.path.sharp() && at.x.bsdf.has_diffuse();
-  if (!first_matte) sample_light(at, state, state.random, false, *state.result);
-  else
-    for (std::uint32_t i = 0; i < effort_.lit; ++i)
-      sample_light(at, state, state.random.of_sample(effort_.lit_first + i), false, parts_.lit);
+  each([&](const PixelRandom& random, Layers& result) { sample_light(at, state, random, false, result); });
 }
 
 /// Follows effort_.onward rays from the Lambert lobe of the first matte surface: the part `onward`.
@@ -365,6 +385,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
     ++counts_.lookups;
     at.indirect_known = true;
     result[layer] += reflected * *indirect;
+    at.lamps_apart = known.lamp_spots != nullptr;
     if (layer == Layer::indirect) parts_.stored_noise.indirect += reflected * noise;
   } else {
     ++counts_.gathered;

@@ -61,6 +61,7 @@ IrradcacheHeader rich_header() {
   header.rays = 900;
   header.error_bound = 0.15;
   header.least_cosine = 0.985;
+  header.lamps_apart = 0.125;
   header.min_radius = 0.001;
   header.max_radius = 2.5;
   header.placed_frames = {{-3, 0}, {2, 2}, {5, 20}};
@@ -116,6 +117,7 @@ TEST(Irradcache, EverythingComesBack) {
   EXPECT_EQ(file.header.rays, expected.rays);
   EXPECT_EQ(file.header.error_bound, expected.error_bound);
   EXPECT_EQ(file.header.least_cosine, expected.least_cosine);
+  EXPECT_EQ(file.header.lamps_apart, expected.lamps_apart);
   EXPECT_EQ(file.header.min_radius, expected.min_radius);
   EXPECT_EQ(file.header.max_radius, expected.max_radius);
   EXPECT_EQ(file.header.placed_frames, expected.placed_frames);

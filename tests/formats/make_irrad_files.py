@@ -221,6 +221,9 @@ def make_cache():
     m.save("accept/least-cosine-zero", m.with_header(least_cosine="0"))
     m.headers({f"least-cosine-{name}": {"least-cosine": value}
                for name, value in {"one": "1", "negative": "-0.5", "nan": "nan", "empty": "", "two": "0.9 0.9"}.items()})
+    m.save("accept/lamps-apart", m.with_header(lamps_apart="0.125"))
+    m.headers({f"lamps-apart-{name}": {"lamps-apart": value}
+               for name, value in {"zero": "0", "negative": "-0.5", "infinite": "inf", "empty": ""}.items()})
     text = m.pieces(m.bytes)[0][16:-4]
     m.save("refuse/header-key-of-a-later-version", m.with_text(text + b"least-cosine: 0.985\n"))
     m.save("refuse/header-key-unknown-1.1", m.with_text(text + b"colour-of-ink: blue\n", minor=1))

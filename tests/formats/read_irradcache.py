@@ -24,8 +24,8 @@ END = "<Q3d"                                                       # section 5, 
 NAMES = ["influence", "update", "clearance", "noise"]
 COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(16))}
 SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size, "clearance": CLEARANCE.size, "noise": NOISE.size}
-KEYS = ["columns", "origin", "rays", "error-bound", "least-cosine", "radii", "placed"]
-SINCE = {"least-cosine": 1, "clearance": 2, "noise": 3}             # section 9; the last two are no keys but columns
+KEYS = ["columns", "origin", "rays", "error-bound", "least-cosine", "lamps-apart", "radii", "placed"]
+SINCE = {"least-cosine": 1, "clearance": 2, "noise": 3, "lamps-apart": 4}   # section 9; clearance, noise are columns
 
 
 def good_radii(text):
@@ -46,6 +46,7 @@ RULES = {
     "rays": lambda v: integers(v, 1, 1, 2**32 - 1),
     "error-bound": lambda v: (reals(v, 1) or [0])[0] > 0,
     "least-cosine": lambda v: 0 <= (reals(v, 1) or [-1])[0] < 1,
+    "lamps-apart": lambda v: (reals(v, 1) or [0])[0] > 0,
     "radii": good_radii,
     "placed": good_ranges,
 }
@@ -129,7 +130,7 @@ def encode_irradcache(c):
             parts.append(b"".join(NOISE.pack(*r.noise) for r in records))
         blocks.append((len(records), parts))
     columns = COLUMNS.get(c.header["columns"], [])
-    minor = 3 if "noise" in columns else 2 if "clearance" in columns else int("least-cosine" in c.header)
+    minor = 4 if "lamps-apart" in c.header else 3 if "noise" in columns else 2 if "clearance" in columns else int("least-cosine" in c.header)
     return encode_container(MAGIC, MARK, KEYS, c.header, c.history, blocks, struct.pack(END, *totals(c)), minor)
 
 

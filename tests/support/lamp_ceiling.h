@@ -33,12 +33,18 @@ struct Ceiling {
   /// Irradiance at (x, 0, 0), normal up: the integral over the lamp's directions (phi from the ceiling's normal, psi),
   /// with a flux of sin phi dphi dpsi each, of reflectance / pi cos cos / l^2.
   double exact(double x) const {
+    return exact(x, [](double, double) { return true; });
+  }
+  /// The light from the places (x, z) of the ceiling with sees(x, z).
+  template <class Sees>
+  double exact(double x, const Sees& sees) const {
     constexpr int n = 400;
     double sum = 0;
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
         const double phi = (i + 0.5) / n * M_PI / 2, psi = (j + 0.5) / n * 2 * M_PI, r = d * std::tan(phi);
         const double dx = r * std::cos(psi) - x, dz = r * std::sin(psi), l2 = dx * dx + dz * dz + 1;
+        if (!sees(r * std::cos(psi), r * std::sin(psi))) continue;
         sum += std::sin(phi) * (M_PI / 2 / n) * (2 * M_PI / n) / (l2 * l2);
       }
     return double(kReflectance) / M_PI * sum;

@@ -55,6 +55,7 @@ Facts header_facts(const IrradcacheHeader& header) {
           {"rays", header.rays},
           {"error_bound", header.error_bound},
           {"least_cosine", header.least_cosine},
+          {"lamps_apart_m", header.lamps_apart},
           {"radius_limits_m", {header.min_radius, header.max_radius}},
           {"placed_frames", header.placed_frames}};
 }

@@ -108,6 +108,8 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   }
   const PointsRead read(tool, tracer, lights, divided, options.gather);
   const Lights guided = guided_lights(tracer, lights, points.points);
+  // Records of the static scene are joined with changes by movers, which know no lamps apart.
+  options.gather.lamps_apart = !standing && !read.beside_lamps.empty();
   const FinalGather gather(tracer, guided, read.lookup, options.gather);
   RecordStore store;
 
@@ -116,6 +118,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
                                                 options.placement, store);
   tool.stats().phase("write");
   formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
+  if (options.gather.lamps_apart) header.lamps_apart = double(kBesideLamp * points.spacing);
   if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
   header.history = points.history + tool.history_line();
   write_records(header, to_file(store.records(), first), output);
@@ -141,6 +144,9 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const std::string name = frame_name(options.update, number);
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
+  if (file.header.lamps_apart > 0)
+    throw InputError(name +
+                     ": its records leave out light of lamps close to surfaces; give a file made with --map static");
   RecordStore fixed({.least_cosine = float(file.header.least_cosine)});
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;

@@ -23,7 +23,7 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   }
   if (!options.irradcache.empty()) {
     tool.stats().phase("read cache");
-    read_cache(tool, frame_name(options.irradcache, number), frame, options.influence);
+    read_cache(tool, frame_name(options.irradcache, number), tracer, lights, options.influence);
   }
 }
 
@@ -99,8 +99,9 @@ void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFr
   known_.mesh_has_caustic = file.header.kinds == "caustic,indirect";
 }
 
-void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame,
+void IndirectLight::read_cache(Tool& tool, const std::string& name, const Tracer& tracer, const Lights& lights,
                                const InfluenceThresholds& thresholds) {
+  const SceneFrame& frame = tracer.frame();
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
   if (is_localised(file)) {
@@ -115,6 +116,14 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneF
   records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = float(file.header.least_cosine)});
   history_ = add_records(tool, name, file, frame, *records_);
   known_.records = records_.get();
+  if (!(file.header.lamps_apart > 0)) return;
+  no_points_ = std::make_unique<PointLookup>(std::span<const IrradiancePoint>(),
+                                             float(file.header.lamps_apart / double(kBesideLamp)));
+  const std::vector<LampPhoton> photons = photons_beside_lamps(tracer, lights, *no_points_);
+  lamp_spots_ = std::make_unique<BrightPoints>(tracer, lights, *no_points_, std::vector<float>(),
+                                               BrightOptions{.beside_lamps = photons});
+  known_.lamp_spots = lamp_spots_.get();
+  tool.stats().count("lamp_sites", double(lamp_spots_->site_count()));
 }
 
 }  // namespace tempolux::tools

@@ -39,14 +39,16 @@ class IndirectLight {
                    int number);
   void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
   void read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame);
-  void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
+  void read_cache(Tool& tool, const std::string& name, const Tracer& tracer, const Lights& lights,
+                  const InfluenceThresholds& thresholds);
 
   std::string history_;
   std::unique_ptr<PhotonLight> photons_;
   std::unique_ptr<RecordStore> records_;
   DividedGatherPoints points_;
   std::unique_ptr<PointLookup> lookup_;
-  std::unique_ptr<BrightPoints> bright_;
+  std::unique_ptr<BrightPoints> bright_, lamp_spots_;
+  std::unique_ptr<PointLookup> no_points_;  ///< of lamp_spots_
   std::unique_ptr<LocalisedLight> localised_;
   std::unique_ptr<MeshLight> mesh_;
   KnownLight known_;

@@ -6,15 +6,20 @@
 #include <cmath>
 
 #include "lib/core/sobol.h"
+#include "lib/gather/bright_points.h"
+#include "lib/gather/irradiance_points.h"
+#include "lib/gather/lamp_light.h"
 #include "lib/material/dielectric.h"
 #include "lib/render/known_light.h"
 #include "lib/render/path_tracer.h"
 #include "tests/support/chain.h"
 #include "tests/support/closed_box.h"
 #include "tests/support/frames.h"
+#include "tests/support/lamp_ceiling.h"
 #include "tests/support/layers.h"
 #include "tests/support/materials.h"
 #include "tests/support/mean.h"
+#include "tests/support/places.h"
 
 namespace tempolux {
 namespace {
@@ -205,6 +210,52 @@ TEST(MissingRecords, TakeOneRayEach) {
   EXPECT_EQ(ceiling.gathered, kCount);
   EXPECT_GT(ceiling.points_read, kCount * 3 / 4);
   EXPECT_LT(ceiling.bounce, kCount * 3 / 2) << "most end at the first";
+}
+
+/// A lamp 3 mm below a ceiling lights a floor by its spot. A plate of 20 cm, 10 cm above the floor, hides the ceiling
+/// within 1 m of the spot from the place below the plate's middle. A record half a metre away is read there, too.
+/// Pixels that sample the spot show the plate's shadow, in which 1 % of the light is left: that of the ceiling farther
+/// from the lamp, which records hold. At the record they show the light of the whole ceiling. Seen to fail: a record
+/// with the spot's light (1.1 of the light of the place without the plate, twice the light at the record), pixels that
+/// do not sample the spot (.01 at the record).
+TEST(LampSpots, ShadeIndirectLightBetweenRecords) {
+  test::Ceiling ceiling(0.003);
+  ceiling.scene.add_quad({-5, 0, 5}, {5, 0, 5}, {5, 0, -5}, {-5, 0, -5}, matte(Rgb(0.5f)));
+  ceiling.scene.add_quad({-0.1f, 0.1f, 0.1f}, {0.1f, 0.1f, 0.1f}, {0.1f, 0.1f, -0.1f}, {-0.1f, 0.1f, -0.1f},
+                         matte(Rgb(0.0f)));
+  const SceneFrame& frame = ceiling.scene.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  PointLookup lookup(ceiling.points, test::Ceiling::kSpacing, point_clearance(tracer));
+  const BrightPoints divided(tracer, lights, lookup, {}, {.beside_lamps = note_lamps_beside(tracer, lights, lookup)});
+  const FinalGather gather(tracer, lights, lookup, {.rays = 2000, .bright = &divided, .lamps_apart = true});
+  GatherCounts counts;
+  RecordStore store;
+  IrradianceRecord record = gather.gather(test::place_at({0.5f, 0, 0}, {0, 1, 0}), {0, 1, 0}, counts);
+  record.radius = 1;
+  ASSERT_TRUE(store.add(record));
+  // The pixels' spots know the points' spacing alone, as those of a file with `lamps-apart` do.
+  const PointLookup no_points({}, test::Ceiling::kSpacing);
+  const BrightPoints spots(tracer, lights, no_points, {},
+                           {.beside_lamps = photons_beside_lamps(tracer, lights, no_points)});
+  KnownLight known;
+  known.records = &store;
+  known.lamp_spots = &spots;
+  known.lights_are_met = false;
+  const auto irradiance = [&](float x) {
+    RayCounts rays;
+    Mean mean;
+    for (std::uint32_t i = 0; i < 16384; ++i)
+      mean.add(M_PI / 0.5 *
+               double(trace_eye_path({tracer, lights}, {{x, 0.05f, 0}, {0, -1, 0}, 0, INFINITY}, PixelRandom(3, 0, i),
+                                     &known, rays)[Layer::indirect]
+                          .g));
+    return mean.mean();
+  };
+  const double open = ceiling.exact(0);
+  const auto beside_plate = [](double x, double z) { return std::max(std::abs(x), std::abs(z)) > 1; };
+  EXPECT_NEAR(irradiance(0) / open, ceiling.exact(0, beside_plate) / open, 0.02);
+  EXPECT_NEAR(irradiance(0.5f) / ceiling.exact(0.5), 1, 0.02);
 }
 
 /// A plane under a uniform sky of 3, all other light known to be 0: rho L by light sampling and the continued ray, each
