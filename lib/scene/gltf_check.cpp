@@ -57,9 +57,14 @@ void check_view(const Import& import, std::size_t index) {
                            " bytes");
 }
 
-/// Checks that `count` elements of `size` bytes, `stride` apart from `offset` on, lie inside a view.
-void check_inside_view(const Import& import, const std::string& place, int view_index, std::uint64_t offset,
-                       std::uint64_t stride, std::uint64_t count, std::uint64_t size) {
+/// `count` elements of `size` bytes, `stride` apart from `offset` on, in a view.
+struct ViewPart {
+  int view;
+  std::uint64_t offset, stride, count, size;
+};
+
+void check_inside_view(const Import& import, const std::string& place, const ViewPart& part) {
+  const auto [view_index, offset, stride, count, size] = part;
   if (view_index < 0 || std::size_t(view_index) >= import.model.bufferViews.size())
     import.fail(place, "bufferView " + std::to_string(view_index) + " does not exist");
   const std::uint64_t length = import.model.bufferViews[std::size_t(view_index)].byteLength;
@@ -86,11 +91,11 @@ void check_sparse(const Import& import, const tinygltf::Accessor& accessor, cons
       index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
     import.fail(place, "sparse indices must be unsigned integers");
   const std::uint64_t count = std::uint64_t(sparse.count);
-  check_inside_view(import, place + ".sparse.indices", sparse.indices.bufferView,
-                    std::uint64_t(sparse.indices.byteOffset), std::uint64_t(index_size), count,
-                    std::uint64_t(index_size));
-  check_inside_view(import, place + ".sparse.values", sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset),
-                    size, count, size);
+  check_inside_view(import, place + ".sparse.indices",
+                    {sparse.indices.bufferView, std::uint64_t(sparse.indices.byteOffset), std::uint64_t(index_size),
+                     count, std::uint64_t(index_size)});
+  check_inside_view(import, place + ".sparse.values",
+                    {sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset), size, count, size});
 }
 
 void check_accessor(const Import& import, std::size_t index) {
@@ -105,8 +110,9 @@ void check_accessor(const Import& import, std::size_t index) {
   if (accessor.bufferView != -1) {
     if (accessor.bufferView < 0 || std::size_t(accessor.bufferView) >= import.model.bufferViews.size())
       import.fail(place, "bufferView " + std::to_string(accessor.bufferView) + " does not exist");
-    check_inside_view(import, place, accessor.bufferView, accessor.byteOffset, stride_of(import.model, accessor, size),
-                      accessor.count, size);
+    check_inside_view(
+        import, place,
+        {accessor.bufferView, accessor.byteOffset, stride_of(import.model, accessor, size), accessor.count, size});
   }
   if (accessor.sparse.isSparse) check_sparse(import, accessor, place, size);
 }

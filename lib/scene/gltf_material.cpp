@@ -82,10 +82,10 @@ Texture read_texture(Import& import, const Info& info, const std::string& place)
       place);
 }
 
-void read_extension(Import& import, const std::string& name, const Value& value, const std::string& place,
-                    Material& material, MaterialTextures& textures, double& emissive_strength) {
-  const ExtensionReader reader{import, value, place + ".extensions." + name};
-  if (!value.IsObject()) import.fail(reader.place, "is not an object");
+void read_extension(const ExtensionReader& reader, const std::string& name, Material& material,
+                    MaterialTextures& textures, double& emissive_strength) {
+  Import& import = reader.import;
+  if (!reader.object.IsObject()) import.fail(reader.place, "is not an object");
   if (name == "KHR_materials_emissive_strength") {
     emissive_strength = limited(import, reader.number("emissiveStrength", 1), 0, kNoUpper, reader.place);
   } else if (name == "KHR_materials_specular") {
@@ -103,7 +103,7 @@ void read_extension(Import& import, const std::string& name, const Value& value,
   } else if (name == "KHR_materials_volume") {
     material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
     material.attenuation_color = limited_colour(import, reader.numbers("attenuationColor"), Rgb{1.0f}, 1, reader.place);
-    if (value.Has("attenuationDistance"))
+    if (reader.object.Has("attenuationDistance"))
       material.attenuation_distance =
           limited(import, reader.number("attenuationDistance", 1), kLeastDistance, kNoUpper, reader.place);
     reader.ignore_texture("thicknessTexture");
@@ -136,7 +136,7 @@ Material read_material(Import& import, std::size_t index) {
   double strength = 1;
   MaterialTextures textures;
   for (const auto& [name, value] : source.extensions)
-    read_extension(import, name, value, place, material, textures, strength);
+    read_extension({import, value, place + ".extensions." + name}, name, material, textures, strength);
   material.emission = limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
   material.emission *= float(strength);
   if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
