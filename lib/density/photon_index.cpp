@@ -129,7 +129,7 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
     std::size_t place = places[first / kChunk];
     for (std::size_t i = first; i < last; ++i) {
       if (!is_wanted(photons[i])) continue;
-      const Vec3 p = moved(photons[i].position, shift);
+      const Vec3 p = shifted(photons[i].position, shift);
       if (!is_finite(p) || !is_finite(rgb_of(photons[i].flux)))
         throw std::invalid_argument("PhotonIndex: a position or flux is not finite");
       items[place++] = {{p.x, p.y, p.z}, std::uint32_t(i)};

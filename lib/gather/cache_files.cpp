@@ -42,7 +42,7 @@ std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePo
 std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointRecord> records, Vec3d shift) {
   return converted(records, [shift](const formats::IrradiancePointRecord& r) {
     IrradiancePoint p;
-    p.position = moved(r.position, shift);
+    p.position = shifted(r.position, shift);
     p.normal = vec_of(formats::decode_normal(r.normal));
     p.object = r.object;
     p.radius = r.radius;
@@ -68,7 +68,7 @@ std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRe
 std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCacheRecord> records, Vec3d shift) {
   return converted(records, [shift](const formats::IrradianceCacheRecord& r) {
     IrradianceRecord record = stored_values(r);
-    record.position = moved(r.position, shift);
+    record.position = shifted(r.position, shift);
     record.noise = rgb_of(r.noise);
     return record;
   });

@@ -35,7 +35,7 @@ formats::PhotonBlock whole_photons(const PhotonMaps& maps, const std::function<b
   };
   for (std::size_t i = 0; i < maps.dynamic.photons.size(); ++i) {
     Photon photon = maps.dynamic.photons[i];
-    const Vec3 place = moved(photon.position, maps.dynamic_shift);
+    const Vec3 place = shifted(photon.position, maps.dynamic_shift);
     if (!wanted(place, photon)) continue;
     if (!is_negative(photon)) {
       take(maps.dynamic, i, place);
@@ -46,7 +46,7 @@ formats::PhotonBlock whole_photons(const PhotonMaps& maps, const std::function<b
   }
   for (std::size_t i = 0; i < maps.fixed.photons.size(); ++i) {
     const Photon& photon = maps.fixed.photons[i];
-    const Vec3 place = moved(photon.position, maps.fixed_shift);
+    const Vec3 place = shifted(photon.position, maps.fixed_shift);
     if (!wanted(place, photon)) continue;
     if (const auto found = gone.find(photon); found != gone.end() && found->second > 0) --found->second;
     else take(maps.fixed, i, place);

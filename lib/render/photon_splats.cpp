@@ -46,7 +46,7 @@ bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& dist
 std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d shift, std::optional<Vec3> wi) const {
   const std::optional<Layer> layer = layer_of(photon.kind);
   if (!layer) return std::nullopt;
-  const Vec3 place = moved(photon.position, shift);
+  const Vec3 place = shifted(photon.position, shift);
   const std::optional<std::array<double, 2>> raster = view_.project(place);
   if (!raster ||
       !((*raster)[0] >= 0 && (*raster)[1] >= 0 && (*raster)[0] < view_.width() && (*raster)[1] < view_.height()))

@@ -63,7 +63,7 @@ void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenS
   kept.records.resize(head.records.size());
   KeptHemisphere& k = kept.records[record];
   k.record = head.records[record];
-  k.record.position = array_of(moved(k.record.position, shift));
+  k.record.position = array_of(shifted(k.record.position, shift));
   k.samples.assign(samples.samples.begin(), samples.samples.end());
   if (samples.anchors.empty()) k.anchors.assign(k.samples.size(), kNone);
   else k.anchors.assign(samples.anchors.begin(), samples.anchors.end());

@@ -117,7 +117,7 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
       !wanted.keep
           ? formats::load_photons(file)
           : formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
-              return wanted.keep(moved(photon.position, shift_of(header.origin, frame)), photon);
+              return wanted.keep(shifted(photon.position, shift_of(header.origin, frame)), photon);
             });
   check_photons(tool, file, map.header, frame, wanted);
   return map;
