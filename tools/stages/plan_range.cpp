@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <sstream>
 
 #include "formats/error.h"
+#include "lib/render/frame_renderer.h"
 #include "tools/common/cli.h"
 #include "tools/stages/measured.h"
 #include "tools/stages/planning.h"
@@ -39,6 +41,10 @@ Wish wish_of(Tool& tool, const PlanOptions& options) {
                                     {"--refine", wish.refine},
                                     {"--strategy", wish.strategy}})
     check_words(name, words);
+  std::vector<std::string> channels;
+  std::istringstream names(wish.channels);
+  for (std::string name; std::getline(names, name, ',');) channels.push_back(name);
+  check_channels(channels);  // frame-render would refuse them only after all light
   const std::vector<int>& frames = tool.common().frames;
   if (options.report == "ends") wish.report = {frames.front(), frames.back()};
   else if (!options.report.empty()) wish.report = parse_frames(options.report);
