@@ -23,7 +23,7 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   }
   if (!options.irradcache.empty()) {
     tool.stats().phase("read cache");
-    read_cache(tool, frame_name(options.irradcache, number), tracer, lights, options.influence);
+    read_cache(tool, frame_name(options.irradcache, number), scene, options.influence);
   }
 }
 
@@ -99,9 +99,9 @@ void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFr
   known_.mesh_has_caustic = file.header.kinds == "caustic,indirect";
 }
 
-void IndirectLight::read_cache(Tool& tool, const std::string& name, const Tracer& tracer, const Lights& lights,
+void IndirectLight::read_cache(Tool& tool, const std::string& name, const RenderScene& scene,
                                const InfluenceThresholds& thresholds) {
-  const SceneFrame& frame = tracer.frame();
+  const SceneFrame& frame = scene.frame();
   tool.depends_on(name);
   const formats::IrradcacheFile file = formats::load_irradcache(name);
   if (is_localised(file)) {
@@ -119,8 +119,8 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const Tracer
   if (!(file.header.lamps_apart > 0)) return;
   no_points_ = std::make_unique<PointLookup>(std::span<const IrradiancePoint>(),
                                              float(file.header.lamps_apart / double(kBesideLamp)));
-  const std::vector<LampPhoton> photons = photons_beside_lamps(tracer, lights, *no_points_);
-  lamp_spots_ = std::make_unique<BrightPoints>(tracer, lights, *no_points_, std::vector<float>(),
+  const std::vector<LampPhoton> photons = photons_beside_lamps(scene.tracer, scene.lights, *no_points_);
+  lamp_spots_ = std::make_unique<BrightPoints>(scene.tracer, scene.lights, *no_points_, std::vector<float>(),
                                                BrightOptions{.beside_lamps = photons});
   known_.lamp_spots = lamp_spots_.get();
   tool.stats().count("lamp_sites", double(lamp_spots_->site_count()));

@@ -39,8 +39,7 @@ class IndirectLight {
                    int number);
   void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
   void read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame);
-  void read_cache(Tool& tool, const std::string& name, const Tracer& tracer, const Lights& lights,
-                  const InfluenceThresholds& thresholds);
+  void read_cache(Tool& tool, const std::string& name, const RenderScene& scene, const InfluenceThresholds& thresholds);
 
   std::string history_;
   std::unique_ptr<PhotonLight> photons_;
