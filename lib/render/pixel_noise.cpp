@@ -91,7 +91,7 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
 /// pixel's first samples may then miss the bright part or overestimate it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
-  for_each_around(view_.width(), view_.height(), x, y, kNearPixels, [&](std::size_t at, int, int) {
+  for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {
     const Pixel& pixel = pixels_[at];
     ++n;
     within += pixel.seen_variance;

@@ -64,8 +64,9 @@ class PixelNoise {
   };
   /// Approximate number of lattice pixels: their mean has an error of 1 % if single pixels differ by 60 %.
   static constexpr double kOnLattice = 4096;
-  // Pixels. Noise is also estimated from the 80 pixels around a pixel: docs/pixels.md.
-  static constexpr int kWide = 4;
+  // Pixels. Noise is also estimated from the 80 pixels around a pixel (docs/pixels.md). For light with edges it is
+  // estimated from 8 pixels, because edges are narrow and all pixels that see an edge take further samples.
+  static constexpr int kWide = 4, kNearSharp = 1;
   struct Around;
 
   double own_variance(int x, int y) const;
