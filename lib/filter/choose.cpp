@@ -128,6 +128,9 @@ class Choice {
     });
   }
 
+  /// A - B as far as the estimates count the difference as noise.
+  float apart_at(std::size_t p, std::size_t c) const { return raw_.confirmed.at(p) ? 0 : raw_.a[c][p] - raw_.b[c][p]; }
+
   /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
   template <class Term>
   Plane around(const Term& term, Plane* square = nullptr) const {
@@ -150,7 +153,8 @@ class Choice {
     for (const Halves& f : candidates_) {
       errors.push_back(around([&](std::size_t p, std::size_t c) {
         const float a = raw_.a[c][p], b = raw_.b[c][p], fa = f.a[c][p], fb = f.b[c][p];
-        return (squared(fa + fb - a - b) - squared(a - b)) / 4 + (fa - fb) * (a - b) / 2;
+        const float apart = apart_at(p, c);
+        return (squared(fa + fb - a - b) - squared(apart)) / 4 + (fa - fb) * apart / 2;
       }));
       shares.emplace_back(near_.width(), near_.height());
     }
@@ -183,7 +187,7 @@ class Choice {
     else mix();
     gain_ = around(
         [&](std::size_t p, std::size_t c) {
-          const float apart = raw_.a[c][p] - raw_.b[c][p];
+          const float apart = apart_at(p, c);
           return (apart - (best_.a[c][p] - best_.b[c][p])) * apart / 4;
         },
         &square_);

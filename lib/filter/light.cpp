@@ -130,6 +130,7 @@ void LightGroup::take_noise(const Image& image) {
       if (a.empty()) continue;
       b = Plane::unset(image.width, image.height);
       const Channel* channel = made_up ? nullptr : image.find(channel_name(layers[l] + ".noise", c));
+      const Confirmed confirmed(image, layers[l]);
       for_each_row(image.height, [&](int y) {
         for (int x = 0; x < image.width; ++x) {
           float noise = made_up ? made_up->of(l, c).at(x, y) : 0;
@@ -137,6 +138,7 @@ void LightGroup::take_noise(const Image& image) {
             noise = channel->values[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] /
                     surfaces.albedo_at(c, x, y);
           if (!(std::abs(noise) < kLargestLight)) noise = surfaces.use.at(x, y) = 0;
+          if (confirmed.at(std::size_t(y) * std::size_t(image.width) + std::size_t(x))) noise = 0;
           b.at(x, y) = a.at(x, y) - noise;
           a.at(x, y) += noise;
           total.at(x, y) += noise;
@@ -179,9 +181,9 @@ FrameLight::FrameLight(const Image& image) {
 }
 
 bool is_read_to_filter(const std::string& channel) {
-  constexpr std::array<const char*, 17> kGroupsRead{"RGBA",   "direct",   "caustic", "indirect", "emission", "specular",
+  constexpr std::array<const char*, 18> kGroupsRead{"RGBA",   "direct",   "caustic", "indirect", "emission", "specular",
                                                     "volume", "seen",     "albedo",  "Z",        "N",        "id",
-                                                    "motion", "coverage", "samples", "variance", "diffuse"};
+                                                    "motion", "coverage", "samples", "variance", "diffuse",  "halves"};
   return std::any_of(kGroupsRead.begin(), kGroupsRead.end(),
                      [&](const char* group) { return is_in_group(channel, group); });
 }

@@ -24,6 +24,12 @@ Channel* float_channel(Image& image, const std::string& name) {
   return channel && !channel->values.empty() ? channel : nullptr;
 }
 
+Confirmed::Confirmed(const Image& image, const std::string& layer) {
+  if (!holds(image, "halves.confirmed")) return;
+  layers_ = image.find("halves.confirmed")->values.data();
+  bit_ = 1 << (std::find(kLayersInOrder.begin(), kLayersInOrder.end(), layer) - kLayersInOrder.begin());
+}
+
 void leave_numbers(Image& image) {
   for (Channel& channel : image.channels) {
     const bool depth = channel.name == "Z";

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <utility>
 
+#include "lib/core/random.h"
 #include "lib/filter/picture.h"
 #include "lib/image/srgb.h"
 
@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kBlock = 32;  ///< pixels: edge of the blocks from which the standard error is estimated
 const std::string kNoise = "tempolux:noise.";
-using Numbers = std::map<std::string, double>;
 
 double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
   std::vector<double> means(picture[0]->size());
@@ -22,8 +21,6 @@ double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
     means[p] = double(((*picture[0])[p] + (*picture[1])[p] + (*picture[2])[p]) / 3);
   return tempolux::exposure_of(std::move(means));
 }
-
-constexpr double kWhite = 255;
 
 /// Squared error in codes over the squared linear error e^2 (`square`) at an exposed value, mean over both signs of e.
 /// For small errors the ratio is the squared slope of the display curve. The ratio times e^2 is at most 255^2.
@@ -56,23 +53,19 @@ class Mean {
 struct Errors {
   Mean whole, noise;
 
-  /// Writes NAME.UNIT, and the part NAME.kept.UNIT that halves do not know, if the raw frame has it.
-  void write(const std::string& name, const std::string& unit, double most, const Numbers& raw, Image& frame) const {
-    const auto kept = raw.find(name + "kept." + unit);
-    const double known = kept != raw.end() ? kept->second * kept->second : 0;
+  void write(const std::string& name, Image& frame) const {
     const Mean& larger = whole.value() > noise.value() ? whole : noise;
-    const double root = std::min(most, std::sqrt(std::max(0.0, larger.value()) + known)), error = larger.error();
-    frame.numbers[name + unit] = root;
-    frame.numbers[name + unit + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
-    if (kept != raw.end()) frame.numbers.insert(*kept);
+    const double root = std::sqrt(std::max(0.0, larger.value())), error = larger.error();
+    frame.numbers[name] = root;
+    frame.numbers[name + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
   }
 };
 
 struct BothUnits {
   Errors linear, codes;
-  void write(const std::string& name, const Numbers& raw, Image& frame) const {
-    linear.write(name, "linear", HUGE_VAL, raw, frame);
-    codes.write(name, "codes", kWhite, raw, frame);
+  void write(const std::string& name, Image& frame) const {
+    linear.write(name + "linear", frame);
+    codes.write(name + "codes", frame);
   }
 };
 
@@ -82,17 +75,22 @@ double codes_above(double value, double noise) {
   return off * off;
 }
 
-/// Sums over the blocks of a picture or layer; squares(c, p) are `whole` and the square of the noise.
+constexpr double kEnough = 1 << 18;  ///< pixels: conversions of all pixels of a large picture would cost too much
+
+/// Sums over the blocks of a picture or layer; square_of(c, p) are `whole` and the square of the noise. A picture of
+/// many more than kEnough pixels is represented by a random share of them.
 template <class Square>
 BothUnits sum_blocks(const Image& frame, const PicturePlanes& picture, double exposure, const Square& square_of) {
   BothUnits errors;
+  const auto step = std::uint64_t(std::max(1.0, std::round(std::sqrt(double(frame.pixel_count()) / kEnough))));
   for (int top = 0; top < frame.height; top += kBlock)
     for (int left = 0; left < frame.width; left += kBlock) {
       double count = 0, whole = 0, noise = 0, whole_codes = 0, noise_codes = 0;
       for (int y = top; y < std::min(frame.height, top + kBlock); ++y)
-        for (int x = left; x < std::min(frame.width, left + kBlock); ++x)
+        for (int x = left; x < std::min(frame.width, left + kBlock); ++x) {
+          const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
+          if (mix64(p) % (step * step) != 0) continue;
           for (std::size_t c = 0; c < 3; ++c) {
-            const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
             const auto [of_whole, of_noise] = square_of(c, p);
             if (!std::isfinite(of_whole) || !std::isfinite(of_noise)) continue;
             const double value = exposure * double((*picture[c])[p]), square = exposure * exposure * of_whole;
@@ -102,6 +100,7 @@ BothUnits sum_blocks(const Image& frame, const PicturePlanes& picture, double ex
             noise_codes += codes_above(value, exposure * std::sqrt(of_noise));
             ++count;
           }
+        }
       errors.linear.whole.add(whole, count), errors.linear.noise.add(noise, count);
       errors.codes.whole.add(whole_codes, count), errors.codes.noise.add(noise_codes, count);
     }
@@ -134,20 +133,19 @@ RemainingError RemainingNoise::error() const {
 }
 
 void write_remaining_noise(const RemainingError& error, Image& frame) {
-  const Numbers raw = frame.numbers;
   std::erase_if(frame.numbers, [](const auto& number) { return number.first.starts_with(kNoise); });
   if (error.whole[0].empty() || !holds(frame, "R") || !holds(frame, "G") || !holds(frame, "B")) return;
   const double exposure = exposure_of(frame.rgb(""));
   sum_blocks(frame, frame.rgb(""), exposure, [&](std::size_t c, std::size_t p) {
     return std::pair(double(error.whole[c][p]), double(error.noise[c][p]));
-  }).write(kNoise, raw, frame);
+  }).write(kNoise, frame);
   for (const std::string layer : {"emission", "specular", "direct", "caustic", "indirect", "volume"}) {
     if (!holds(frame, layer + ".R") || !holds(frame, layer + ".noise.R")) continue;
     const auto noise = frame.rgb(layer + ".noise");
     const BothUnits errors = sum_blocks(frame, frame.rgb(layer), exposure, [&](std::size_t c, std::size_t p) {
       return std::pair(0.0, double((*noise[c])[p]) * double((*noise[c])[p]));
     });
-    if (errors.linear.noise.value() > 0) errors.write(kNoise + layer + ".", raw, frame);
+    if (errors.linear.noise.value() > 0) errors.write(kNoise + layer + ".", frame);
   }
   frame.numbers[kNoise + "exposure"] = exposure;
 }

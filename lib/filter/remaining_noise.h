@@ -34,10 +34,9 @@ class RemainingNoise {
 /// frame's attributes tempolux:noise.*, in place of the raw frame's (formats/frames/frames.md 3); and that of each
 /// layer with a channel LAYER.noise, which holds half the difference of the filtered halves.
 ///
-/// The squared error is the sum of two terms. The first is the mean of `noise`, or of `whole` if that is larger:
-/// choose() takes the candidate with the least `whole`, so its `whole` is too small, most of all if few pixels hold
-/// most of the noise. Layers have no `whole`. The second is the noise that halves do not show: that of confirmed
-/// outliers, which stay (tempolux:noise.kept.*, KeptNoise).
+/// The squared error is the mean of `noise`, or of `whole` if that is larger: choose() takes the candidate with the
+/// least `whole`, so its `whole` is too small, most of all if few pixels hold most of the noise. Layers have no
+/// `whole`.
 ///
 /// The error in codes is the difference of the sRGB codes, clipped at 0 and 255, of the filtered value and of the value
 /// without the error. `whole` may have both signs, so the mean over both is taken. Noise k is subtracted: where it is

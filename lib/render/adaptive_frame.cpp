@@ -1,6 +1,5 @@
 #include "lib/render/adaptive_frame.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -62,7 +61,6 @@ class AdaptiveFrame {
   void put_together();
   void spread();
   void note_confirmed(std::size_t pixel, const Layers& before);
-  void keep_confirmed();
   double noise_left() const;
   double noise_goal() const;
   void reach_seen_error();
@@ -81,7 +79,6 @@ class AdaptiveFrame {
   std::vector<PartCounts> counts_;     ///< samples of each pixel, by part
   ParallelArray<PathParts> parts_;     ///< means over these samples
   ParallelArray<BrightestSamples> brightest_;
-  std::vector<KeptNoise> confirmed_;  ///< outliers that further samples have confirmed
 };
 
 void AdaptiveFrame::take_again(const PixelPass& pass) {
@@ -168,33 +165,19 @@ void AdaptiveFrame::spread() {
   std::vector<Layers> before;
   for (const std::size_t pixel : judged) before.push_back(pixels[pixel]);
   frame_.spread = spread_outliers(samples, errors, pixels);
-  confirmed_.clear();
-  for (std::size_t i = 0; i < judged.size(); ++i) note_confirmed(judged[i], before[i]);
+  std::vector<std::uint8_t>& confirmed = frame_.mean.confirmed;
+  confirmed.assign(frame_.mean.sample_halves.size(), 0);
+  for (std::size_t i = 0; i < judged.size() && !confirmed.empty(); ++i) note_confirmed(judged[i], before[i]);
 }
 
-/// Notes the outlier of the pixel if kJudges samples have confirmed it.
+/// Notes the layer where kJudges samples have confirmed an outlier. The light may lie in one half only, and a filter
+/// that takes the difference of the halves for noise would remove it.
 void AdaptiveFrame::note_confirmed(std::size_t pixel, const Layers& before) {
   const BrightestSamples& claims = brightest_[pixel];
   const BrightestSample& claim = std::max({claims.own, claims.lit, claims.onward},
                                           [](const auto& a, const auto& b) { return a.brightest < b.brightest; });
   if (channel_sum(frame_.mean.pixels[pixel][claim.layer]) >= channel_sum(before[claim.layer]))
-    confirmed_.push_back({pixel, claim.layer, {}});
-}
-
-/// Sets both halves of the layers with confirmed outliers to their mean. Otherwise the light may lie in one half only,
-/// and a filter that takes the difference of the halves for noise would remove it. Few samples found this light, so
-/// stratification did not reduce its noise: the variance is the square of the difference, without a share.
-void AdaptiveFrame::keep_confirmed() {
-  for (KeptNoise& of : confirmed_) {
-    SampleHalves& halves = frame_.mean.sample_halves[of.pixel];
-    of.noise = halves.difference(std::size_t(of.layer));
-    halves.join(of.layer);
-  }
-  frame_.mean.difference_share =
-      check_.shares(frame_.mean.sample_halves, [&](std::size_t pixel) { return parts_[pixel].sum(); });
-  const std::vector<std::uint8_t>& mask = options_.mask;
-  frame_.noise.keep(confirmed_, frame_.mean.pixels,
-                    mask.empty() ? counts_.size() : mask.size() - std::size_t(std::ranges::count(mask, 0)));
+    frame_.mean.confirmed[pixel] |= std::uint8_t(1 << int(claim.layer));
 }
 
 /// Noise in codes, or its standard error if that is larger: one outlier among the pixels that are rendered twice can
@@ -231,7 +214,9 @@ void AdaptiveFrame::reach_seen_error() {
 }
 
 void AdaptiveFrame::finish() {
-  if (!frame_.mean.sample_halves.empty()) keep_confirmed();
+  if (!frame_.mean.sample_halves.empty())
+    frame_.mean.difference_share =
+        check_.shares(frame_.mean.sample_halves, [&](std::size_t pixel) { return parts_[pixel].sum(); });
   for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
   frame_.mean.samples = noise_.first().own;
   double samples = 0;

@@ -75,8 +75,7 @@ struct ImageAndLayers {
       layer[l].add(error([l](const Layers& layers) { return Rgbd(layers.value[l]); }));
   }
   FrameNoise noise(double exposure, std::size_t pixels) const {
-    FrameNoise noise;
-    noise.image = image.noise(), noise.exposure = exposure, noise.pixels = pixels;
+    FrameNoise noise{image.noise(), 0, {}, exposure, pixels};
     for (std::size_t l = 0; l < kLayerCount; ++l) noise.layer[l] = layer[l].noise();
     return noise;
   }
@@ -99,22 +98,6 @@ double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t>
 
 double mean_to_white(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
   return mean_to_white(means_of(pixels, mask));
-}
-
-void FrameNoise::keep(std::span<const KeptNoise> kept, std::span<const Layers> picture, std::size_t pixel_count) {
-  std::array<Squares, kLayerCount> layers;
-  Squares whole;
-  for (const KeptNoise& of : kept) {
-    Rgbd noise(of.noise), value(picture[of.pixel][of.layer]);
-    for (int c = 0; c < 3; ++c) noise[c] = std::abs(noise[c]);
-    layers[std::size_t(of.layer)] += squares(value, value - noise, exposure);
-    whole += squares(total(picture[of.pixel]), total(picture[of.pixel]) - noise, exposure);
-  }
-  const auto root = [&](const Squares& sum) {
-    return Noise{std::sqrt(sum.linear / double(pixel_count)), 0, std::sqrt(sum.codes / double(pixel_count)), 0};
-  };
-  kept_image = root(whole);
-  std::transform(layers.begin(), layers.end(), kept_layer.begin(), root);
 }
 
 NoiseCheck::NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask)

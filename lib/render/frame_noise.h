@@ -20,14 +20,6 @@ struct Noise {
   double codes = -1, codes_error = 0;    ///< 8-bit sRGB codes, 0 to 255, at FrameNoise::exposure
 };
 
-/// Noise of an outlier that further samples have confirmed. Both halves of its layer hold the mean, so the difference
-/// of the halves does not show this noise.
-struct KeptNoise {
-  std::size_t pixel;
-  Layer layer;
-  Rgb noise;  ///< its square is the variance of the layer [W/m^2/sr]
-};
-
 struct FrameNoise {
   Noise image;
   /// The part of image.codes that comes from noise of records and photons. All samples read the same records and
@@ -37,12 +29,6 @@ struct FrameNoise {
   double exposure = 0;                   ///< factor that brings the median of the pixels' mean channels to .18
   std::size_t pixels = 0;                ///< number of pixels that were rendered twice
   bool known() const { return pixels > 1; }
-  /// The part of `image` and of each layer that KeptNoise has; its errors stay 0.
-  Noise kept_image{0, 0, 0, 0};
-  std::array<Noise, kLayerCount> kept_layer;
-  /// Sets the kept parts: root mean squares over `pixel_count` pixels. A confirmed outlier is above the true value, so
-  /// its error in codes is that of the value without the noise.
-  void keep(std::span<const KeptNoise> kept, std::span<const Layers> picture, std::size_t pixel_count);
 };
 
 /// Relative error of a linear value of .18 that changes its sRGB code by `codes`. The slope of the curve there is

@@ -131,7 +131,8 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
     Channel& channel = image.channels[i];
     const Channel* from = base.find(channel.name);
     if (!from && i < data_channels) continue;
-    const bool known = !from && channel.name.find(".noise.") != std::string::npos;
+    const bool known =
+        !from && (channel.name.find(".noise.") != std::string::npos || channel.name == "halves.confirmed");
     if (!known && (!from || from->values.size() != channel.values.size()))
       throw InputError("--base: has no channel " + channel.name +
                        "; ask for fewer with --channels, or render the base with it");

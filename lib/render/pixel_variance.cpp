@@ -29,17 +29,6 @@ void SampleHalves::add(int h, const PathParts& sample, const PathEffort& effort)
   half[h].onward.add(sample.onward, float(effort.onward));
 }
 
-void SampleHalves::join(Layer layer) {
-  const std::size_t l = std::size_t(layer);
-  for (Sum Half::*part : {&Half::own, &Half::lit, &Half::onward}) {
-    Sum &a = half[0].*part, &b = half[1].*part;
-    if (!(a.count + b.count > 0)) continue;
-    const Rgb mean = (a.radiance.value[l] + b.radiance.value[l]) * (1 / (a.count + b.count));
-    a.radiance.value[l] = mean * a.count;
-    b.radiance.value[l] = mean * b.count;
-  }
-}
-
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
   for (int h = 0; h < 2; ++h) {
     const auto other = parts_of(more.half[h]);
@@ -104,7 +93,9 @@ void add_variance_channels(const LayerImage& layers, const std::vector<std::stri
     add_colour("variance.", image, [&](std::size_t p) { return halves[p].variance(kImageLayers); });
   if (asked(channels, "diffuse.variance"))
     add_colour("diffuse.variance.", image, [&](std::size_t p) { return halves[p].variance(kDiffuseLayers); });
-  if (asked(channels, "halves"))
+  if (asked(channels, "halves")) {
+    std::vector<float>& confirmed = image.add("halves.confirmed").values;
+    std::copy(layers.confirmed.begin(), layers.confirmed.end(), confirmed.begin());
     for (std::size_t l = 0; l < kLayerCount; ++l)
       if (layers.media || l != std::size_t(Layer::volume))
         add_colour(std::string(kLayerNames[l]) + ".noise.", image, [&](std::size_t p) {
@@ -112,6 +103,7 @@ void add_variance_channels(const LayerImage& layers, const std::vector<std::stri
           const Rgb* stored = layers.stored_noise.empty() ? nullptr : layers.stored_noise[p].of(Layer(l));
           return stored ? noise + *stored : noise;
         });
+  }
   if (!asked(channels, "samples")) return;
   std::vector<float>& samples = image.add("samples").values;
   for (std::size_t p = 0; p < halves.size(); ++p) samples[p] = halves[p].samples();

@@ -29,8 +29,6 @@ struct SampleHalves {
   /// Adds a sample of half h, 0 or 1.
   void add(int h, const PathParts& sample, const PathEffort& effort);
   SampleHalves& operator+=(const SampleHalves& more);
-  /// Sets both halves to their common mean in a layer.
-  void join(Layer layer);
   float samples() const { return half[0].own.count + half[1].own.count; }
   /// Half the difference of the halves in layer l [W/m^2/sr]: the sum over the parts of (a - b) (n_a n_b)^(1/2) / (n_a
   /// + n_b), with a, b the halves' means and n_a, n_b their counts. For independent samples the mean of its square is
@@ -65,7 +63,7 @@ struct LayerImage;
 
 /// Adds the requested ones of "variance" (variance.R .G .B, the variance of R G B), "diffuse.variance"
 /// (diffuse.variance.R .G .B, the variance of the sum of direct, caustic and indirect), "halves" (LAYER.noise.R .G .B
-/// of each layer, of volume only with media) and "samples".
+/// of each layer, of volume only with media; halves.confirmed, LayerImage::confirmed) and "samples".
 ///
 /// LAYER.noise = n: LAYER + n and LAYER - n are uncorrelated halves, and the mean of n^2 is the variance of LAYER. n is
 /// the half difference d of the samples' halves times the root of LayerImage::difference_share. Halves a and b that are

@@ -20,12 +20,6 @@ void add(const Noise& noise, const std::string& name, std::map<std::string, doub
   numbers[name + ".linear_error"] = noise.linear_error;
 }
 
-void add_kept(const Noise& kept, const std::string& name, std::map<std::string, double>& numbers) {
-  if (!(kept.linear > 0)) return;
-  numbers[name + ".kept.codes"] = kept.codes;
-  numbers[name + ".kept.linear"] = kept.linear;
-}
-
 std::string noise_line(const RenderedFrame& rendered) {
   const FrameNoise& noise = rendered.noise;
   std::string line = "noise " + number(noise.image.codes) + " +- " + number(noise.image.codes_error) + " codes";
@@ -98,11 +92,8 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
   const FrameNoise& noise = rendered.noise;
   if (!noise.known()) return numbers;
   add(noise.image, "noise", numbers);
-  add_kept(noise.kept_image, "noise", numbers);
-  for (std::size_t l = 0; l < kLayerCount; ++l) {
+  for (std::size_t l = 0; l < kLayerCount; ++l)
     if (noise.layer[l].linear > 0) add(noise.layer[l], "noise." + std::string(kLayerNames[l]), numbers);
-    add_kept(noise.kept_layer[l], "noise." + std::string(kLayerNames[l]), numbers);
-  }
   numbers["noise.exposure"] = noise.exposure;
   numbers["noise.pixels"] = double(noise.pixels);
   return numbers;

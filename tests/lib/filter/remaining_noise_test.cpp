@@ -84,9 +84,6 @@ TEST(RemainingNoise, AnErrorBeyondWhiteIsWhite) {
   const double code = 255 * (1.055 * std::pow(0.18, 1 / 2.4) - 0.055);  // the error: up to white, or down to black
   EXPECT_NEAR(frame.numbers.at("tempolux:noise.codes"), std::sqrt((code * code + (255 - code) * (255 - code)) / 2),
               0.1);
-  frame.numbers["tempolux:noise.kept.codes"] = 400;
-  write_remaining_noise(error, frame);
-  EXPECT_EQ(frame.numbers.at("tempolux:noise.codes"), 255);
 }
 
 /// Long waves leave little but noise: the reported error is never below the difference of the filtered frame's halves.
@@ -97,18 +94,25 @@ TEST(RemainingNoise, NoiseAloneIsSaid) {
   EXPECT_LT(said, is * 1.3);
 }
 
-/// The raw frame reports confirmed outliers with a noise of .4: these stay, and st-filter of its result knows them.
-TEST(RemainingNoise, NoiseThatHalvesDoNotKnowStays) {
-  Image frame = wall(8, 4);
-  grey(frame, "", test::everywhere(3));
-  RemainingError error;
-  for (auto* colours : {&error.whole, &error.noise})
-    for (auto& plane : *colours) plane.assign(frame.pixel_count(), 0.01f);
-  frame.numbers["tempolux:noise.linear"] = 0.6;
-  frame.numbers["tempolux:noise.kept.linear"] = 0.4;
-  write_remaining_noise(error, frame);
-  EXPECT_NEAR(frame.numbers.at("tempolux:noise.linear"), std::sqrt(0.01 + 0.16), 1e-6);
-  EXPECT_EQ(frame.numbers.at("tempolux:noise.kept.linear"), 0.4);
+/// One pixel of 97 has light from one half of its samples that further samples have confirmed: 5 +- 5. The filter keeps
+/// this light, and the account has its noise, 5 / sqrt(97) of the layer direct and of the picture. Halves that were set
+/// to their mean would say the noise of the other pixels alone, .02.
+TEST(RemainingNoise, ConfirmedLightStaysAndSaysItsNoise) {
+  Image frame = waves(20, 0.1f);
+  std::vector<float>& confirmed = frame.add("halves.confirmed").values;
+  for (std::size_t p = 0; p < confirmed.size(); p += 97) {
+    confirmed[p] = 4;
+    for (const std::string c : {"R", "G", "B"}) {
+      for (const std::string& channel : {c, "direct." + c}) frame.find(channel)->values[p] += 5;
+      frame.find("direct.noise." + c)->values[p] = 5;
+    }
+  }
+  const Image out = test::filtered({frame});
+  EXPECT_GT(out.find("direct.R")->values[97], 0.8f * frame.find("direct.R")->values[97]);
+  const double noise = 5 / std::sqrt(97.0);
+  EXPECT_NEAR(out.numbers.at("tempolux:noise.direct.linear"), noise, 0.15 * noise);
+  EXPECT_NEAR(out.numbers.at("tempolux:noise.linear"), noise, 0.15 * noise);
+  EXPECT_LT(out.numbers.at("tempolux:noise.indirect.linear"), 0.05);
 }
 
 /// One pixel of 32 holds all light, from one half: its halves are L + L and L - L. The samples of this pixel found what
