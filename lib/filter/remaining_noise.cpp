@@ -89,7 +89,7 @@ BothUnits sum_blocks(const Image& frame, const PicturePlanes& picture, double ex
       for (int y = top; y < std::min(frame.height, top + kBlock); ++y)
         for (int x = left; x < std::min(frame.width, left + kBlock); ++x) {
           const std::size_t p = std::size_t(y) * std::size_t(frame.width) + std::size_t(x);
-          if (mix64(p) % (step * step) != 0) continue;
+          if ((mix64(p) >> 32) * step * step >> 32 != 0) continue;
           for (std::size_t c = 0; c < 3; ++c) {
             const auto [of_whole, of_noise] = square_of(c, p);
             if (!std::isfinite(of_whole) || !std::isfinite(of_noise)) continue;
