@@ -155,9 +155,11 @@ class PixelCoverage {
 
 }  // namespace
 
-void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
-                          Image& image) {
-  if (!asked(channels, "coverage")) return;
+std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const CameraView& view,
+                                               const std::vector<std::string>& channels, Image& image) {
+  std::vector<std::uint8_t> edges;
+  if (!asked(channels, "coverage")) return edges;
+  edges.resize(image.pixel_count());
   std::uint32_t* const around = image.add_ids("coverage").ids.data();
   std::uint32_t* const other = image.add_ids("coverage.other").ids.data();
   const PixelCoverage pixels(scene, view);
@@ -166,7 +168,9 @@ void add_coverage_channel(const RenderScene& scene, const CameraView& view, cons
         pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
     around[p] = counts.around;
     other[p] = counts.other;
+    edges[p] = counts.around != 0 || counts.other != 0;
   });
+  return edges;
 }
 
 }  // namespace tempolux

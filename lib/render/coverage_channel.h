@@ -1,6 +1,7 @@
 // lib/render/coverage_channel.h -- how much a pixel sees of its neighbours' surfaces.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,9 @@ namespace tempolux {
 /// PixelSurfaces::kSameNormal, and each one's plane passes within a pixel of the other point. Costs one ray per pixel
 /// and eight more that search for what no centre sees, such as wires; and 16 where these rays and the neighbours'
 /// centres see two surfaces. Nothing is shaded. The rays do not depend on seed or frame.
-void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
-                          Image& image);
+///
+/// Returns by pixel 1 where one of the channels is not 0; empty without "coverage".
+std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const CameraView& view,
+                                               const std::vector<std::string>& channels, Image& image);
 
 }  // namespace tempolux

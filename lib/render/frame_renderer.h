@@ -31,9 +31,12 @@ struct FrameOptions {
   /// With pixel_error: spreads light that a single sample found over the pixels around. In a masked frame only pixels
   /// of the mask receive it (lib/render/spread_outliers.h).
   bool spread_outliers = false;
-  bool sample_halves = false;            ///< keep LayerImage::sample_halves
-  const KnownLight* known = nullptr;     ///< light at which camera paths may end
-  std::vector<std::uint8_t> mask;        ///< by pixel, 0: not rendered; empty: all pixels
+  bool sample_halves = false;         ///< keep LayerImage::sample_halves
+  const KnownLight* known = nullptr;  ///< light at which camera paths may end
+  std::vector<std::uint8_t> mask;     ///< by pixel, 0: not rendered; empty: all pixels
+  /// By pixel, 1: at an edge between surfaces, 0: inside one. Only for frames that lib/filter will filter: pixels at
+  /// edges get more of the samples that pixel_error asks for (PixelNoise::wanted_at). Empty: all pixels are alike.
+  std::vector<std::uint8_t> edges;
   std::function<void(double)> progress;  ///< called with [0, 1]; may be empty
 };
 

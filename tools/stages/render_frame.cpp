@@ -6,6 +6,7 @@
 
 #include "formats/error.h"
 #include "lib/core/random.h"
+#include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
 #include "lib/material/smooth_material.h"
 #include "lib/render/audit.h"
@@ -161,6 +162,9 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
 
   tool.stats().phase("render", true);
   if (!yardstick) frame_options.known = &light.get();
+  Image image{options.width, options.height, {}, {}, {}, {}};
+  std::vector<std::uint8_t> edges = add_coverage_channel(scene, view, options.channels, image);
+  if (asked(options.channels, "halves")) frame_options.edges = std::move(edges);
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
   const Shot shot{scene, input.emission(frame.frame), view, frame_options, rendered};
@@ -174,9 +178,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
     tool.say("audit: no bias, as camera paths find all light");
   }
   tool.stats().phase("data channels", true);
-  Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
-  add_coverage_channel(scene, view, options.channels, image);
   add_seen_channels(scene, view, options.channels, image);
   add_influence_channels(scene, view, light.get().localised, options.channels, image);
   tool.stats().phase("write");

@@ -134,6 +134,52 @@ TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   }
 }
 
+/// A white and a black sheet under a lamp so far away that all light on one sheet is alike; they meet inside a column
+/// of pixels. Light sampling is noisy in this column alone. If edges are known, this column alone takes the 12 samples
+/// up to the limit, from 6 camera rays. Otherwise the pixels beside it do, too.
+TEST(AdaptiveFrame, KnownEdgesAreComparedWithEdges) {
+  const float edge = 20.3f / 32;
+  HandMadeScene made;
+  made.add_quad({-2, -2, 0}, {edge, -2, 0}, {edge, 2, 0}, {-2, 2, 0}, test::matte(Rgb(0.8f)));
+  made.add_quad({edge, -2, 0}, {2, -2, 0}, {2, 2, 0}, {edge, 2, 0}, test::matte(Rgb(0.0f)));
+  made.add_point_light({0, 0, 10000}, Rgb(1e8f));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const CameraView view = from_above();
+  FrameOptions options;
+  options.samples = 4;
+  options.pixel_error = 0.001;
+  options.adaptive_limit = 16;
+  const auto samples = [&] { return render_frame({tracer, lights}, view, options).samples_per_pixel; };
+  EXPECT_GT(samples(), 4 + 6 * 5.0 / 64);
+  options.edges.assign(64 * 36, 0);
+  for (std::size_t y = 0; y < 36; ++y) options.edges[64 * y + 32 + 20] = 1;
+  EXPECT_DOUBLE_EQ(samples(), 4 + 6 * 1.0 / 64);
+}
+
+/// Everything else alike, a pixel at an edge gets twice the samples of one inside a surface; unknown ones lie between.
+TEST(AdaptiveFrame, EdgesGetMoreSamplesBecauseTheFilterLeavesMoreOfTheirNoise) {
+  const Cornell c;
+  const NoLight none(c.tracer);
+  FrameOptions options;
+  options.known = &none.known;
+  options.samples = 1;
+  options.adaptive_limit = 1 << 20;
+  options.pixel_error = 0.002;
+  const auto samples = [&](std::vector<std::uint8_t> edges) {
+    options.edges = std::move(edges);
+    return render_frame(c.render_scene(), c.view, options).samples_per_pixel;
+  };
+  const std::size_t pixels = 64 * 36;
+  const double at_edges = samples(std::vector<std::uint8_t>(pixels, 1)),
+               inside = samples(std::vector<std::uint8_t>(pixels, 0));
+  const double unknown = samples({});
+  EXPECT_NEAR(at_edges / inside, 2, 0.1);
+  EXPECT_LT(inside, unknown);
+  EXPECT_LT(unknown, at_edges);
+}
+
 /// The border of the shadow of a sheet in front of a square lamp. The covered share of the lamp is p = (1 - s)^2 / 2
 /// where x + y = (0.6 s - 0.5) / 0.4, and 0 from s = 1 on; the test looks at s from 0.82 to 0.99, p < 1.6 %. In 4 p of
 /// the pixels one of four samples misses the lamp, and the pixel is 25 % dark. The mean over this part and all seeds is
