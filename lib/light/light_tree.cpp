@@ -58,6 +58,7 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   a.weight += b.weight;
   a.cos_reach = std::min(a.cos_reach, b.cos_reach);
   a.two_sided = a.two_sided || b.two_sided;
+  a.backs_within.add(b.backs_within);
   return a;
 }
 
@@ -185,7 +186,9 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.cos_spread[lane] = bounds.cos_spread;
   node.sin_spread[lane] = safe_sqrt(1 - bounds.cos_spread * bounds.cos_spread);
   node.cos_reach[lane] = bounds.cos_reach - kSlack;
-  node.two_sided[lane] = bounds.two_sided ? 1.0f : 0.0f;
+  const Box3& backs = bounds.backs_within;
+  const float farthest = length(max(abs(backs.lower - centre), abs(backs.upper - centre))) * (1 + kSlack);
+  node.backs_within2[lane] = bounds.two_sided ? INFINITY : backs.empty() ? -1 : farthest * farthest;
   node.weight[lane] = bounds.weight;
 }
 
@@ -246,7 +249,7 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
     const float sin_size = std::min(1.0f, radius * inverse), cos_size = safe_sqrt(1 - sin_size * sin_size);
     const float along = -(node.axis[0][i] * x + node.axis[1][i] * y + node.axis[2][i] * z) * inverse;
-    const float cos_axis = node.two_sided[i] > 0 ? std::abs(along) : along;
+    const float cos_axis = distance2 <= node.backs_within2[i] ? std::abs(along) : along;
     const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
     // Smallest angle between the point's direction and any normal: the angle to the axis minus the spread and the angle
     // of the box.

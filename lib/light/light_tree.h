@@ -21,6 +21,7 @@ struct LightBounds {
   float cos_spread = 1;    ///< cosine of the largest angle between a normal and the axis
   float cos_reach = 0;     ///< cosine of the largest angle from its normal at which a light shines (at most pi/2)
   bool two_sided = false;  ///< true if any of the lights shines backwards, too
+  Box3 backs_within;       ///< backs of further lights are seen from this box alone (closed_parts); empty: none
 };
 
 class LightTree {
@@ -54,7 +55,8 @@ class LightTree {
   struct alignas(32) Node {
     float centre[3][kWidth], radius[kWidth];  ///< sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
-    float two_sided[kWidth];      ///< 1 or 0
+    /// m^2: square of the distance from the centre within which backs are seen; -1: nowhere
+    float backs_within2[kWidth];
     double weight[kWidth];        ///< over the whole tree's weight; 0: no child
     std::uint32_t child[kWidth];  ///< number of the child node, or of the light
     std::uint32_t parent;         ///< kWidth x node + lane of the parent

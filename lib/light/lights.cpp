@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/core/check.h"
+#include "lib/light/closed_parts.h"
 #include "lib/light/punctual.h"
 #include "lib/scene/texture_lookup.h"
 
@@ -20,14 +21,16 @@ EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
   return EmissionSlot::Kind::point;
 }
 
-LightBounds bounds_of(const TriangleLight& t) {
+/// backs_within: the box around the closed part of which the triangle is; empty: none.
+LightBounds bounds_of(const TriangleLight& t, const Box3& backs_within) {
   LightBounds b;
   b.box.add(t.corner);
   b.box.add(t.corner + t.edge1);
   b.box.add(t.corner + t.edge2);
   b.axis = t.normal;
   b.weight = double(max_component(t.radiance)) * t.area;
-  b.two_sided = t.two_sided;
+  b.two_sided = t.two_sided && backs_within.empty();
+  if (t.two_sided) b.backs_within = backs_within;
   return b;
 }
 
@@ -124,9 +127,18 @@ void Lights::build_tree() {
 std::vector<LightBounds> Lights::tree_bounds() const {
   std::vector<LightBounds> bounds;
   bounds.reserve(tree_slot_.size());
-  for (const std::uint32_t slot : tree_slot_)
-    bounds.push_back(slot < triangles_.size() ? bounds_of(triangles_[slot])
-                                              : bounds_of(frame_->lights[slots_[slot].light]));
+  std::uint32_t surface = kNone;
+  std::vector<Box3> closed;
+  for (const std::uint32_t slot : tree_slot_) {
+    const EmissionSlot& of = slots_[slot];
+    if (slot >= triangles_.size()) {
+      bounds.push_back(bounds_of(frame_->lights[of.light]));
+      continue;
+    }
+    if (of.surface != surface && triangles_[slot].two_sided) closed = closed_parts(*frame_, of.surface);
+    surface = of.surface;
+    bounds.push_back(bounds_of(triangles_[slot], triangles_[slot].two_sided ? closed[of.triangle] : Box3()));
+  }
   return bounds;
 }
 

@@ -71,6 +71,62 @@ TEST(AreaLight, OfOneTriangleAgreesWithLambertOnBothSides) {
   EXPECT_NEAR(irradiance(lights, above, -kUp, 1 << 14).r, polygon_irradiance(above, -kUp, corners), 2e-3);
 }
 
+/// A two-sided box lamp of half a side `half` around the centre, corners by their bits x, y, z. `open`: without its
+/// top.
+LightScene box_lamp(Vec3 centre, float half, bool inside_out = false, bool open = false) {
+  LightScene scene;
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(centre + Vec3{i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half});
+  scene.add(corners, Rgb(1.0f), true, inside_out);
+  auto& triangles = scene.primitives.back().triangles;
+  triangles = {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {1, 3, 7}, {1, 7, 5},
+               {3, 2, 6}, {3, 6, 7}, {2, 0, 4}, {2, 4, 6}, {4, 5, 7}, {4, 7, 6}};
+  if (open) triangles.resize(10);
+  else triangles.push_back({0, 0, 1});  // without area, as at the poles of spheres
+  return scene;
+}
+
+/// Share of the samples at the origin that lie above z.
+double share_above(const Lights& lights, float z) {
+  constexpr std::uint32_t kCount = 4096;
+  int above = 0;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    LightSample s;
+    if (lights.sample({0, 0, 0}, kUp, sobol_owen_1d(i, 3), sobol_owen_2d(i, 5), s)) above += s.position.z > z;
+  }
+  return above / double(kCount);
+}
+
+// The top's back is half of the visible area if the lamp is open. A closed lamp hides it.
+TEST(ClosedLamp, BacksAreNotSampledFromOutside) {
+  const Vec3 centre{0, 0, 1};
+  constexpr float kTop = 1.019995f;
+  const LightScene closed = box_lamp(centre, 0.02f);
+  EXPECT_EQ(share_above(closed.lights(), kTop), 0);
+  EXPECT_EQ(closed.lights().pdf_solid_angle({0, 0, 0}, kUp, 0, 10, {0.001f, -0.001f, 1.02f}), 0);
+  EXPECT_GT(closed.lights().pdf_solid_angle({0, 0, 0}, kUp, 0, 0, {-0.001f, 0.001f, 0.98f}), 0);
+  EXPECT_GT(share_above(box_lamp(centre, 0.02f, true).lights(), kTop), 0.3) << "inside out";
+  LightScene glass = box_lamp(centre, 0.02f);
+  glass.frame.materials[0].transmission = 0.5f;
+  EXPECT_GT(share_above(glass.lights(), kTop), 0.3) << "glass";
+  LightScene open = box_lamp(centre, 0.02f, false, true);
+  double sides = 0, sigma = 0;
+  for (const auto& c : open.primitives.back().triangles) {
+    const auto& p = open.primitives.back().positions;
+    sides += polygon_irradiance({0, 0, 0}, kUp, {p[c[0]], p[c[1]], p[c[2]]});
+  }
+  const double e = irradiance(open.lights(), {0, 0, 0}, kUp, 1 << 14, &sigma).r;
+  EXPECT_NEAR(e, sides, 4 * sigma + 1e-5 * sides) << "open";
+}
+
+TEST(ClosedLamp, LightsItsInsideToo) {
+  const LightScene scene = box_lamp({0, 0, 0}, 1);
+  double sigma = 0;
+  const double e = irradiance(scene.lights(), {0.3f, 0.1f, -0.5f}, kUp, 1 << 15, &sigma).r;
+  EXPECT_NEAR(e, kPi, 4 * sigma + 1e-4);
+}
+
 TEST(AreaLight, IsDarkFromBehindAndEdgeOn) {
   LightScene scene;
   scene.add(square_facing_down({0, 0, 1}, 0.5f), Rgb(1.0f));
