@@ -7,9 +7,9 @@ namespace tempolux {
 /// errors once in 370 times.
 inline constexpr double kCertain = 3;
 
-/// Share of the samples that a mixture draws without its guide. Where the guide misleads, the density is still a quarter
-/// of the plain density, so the variance is at most four times as large [defensive mixtures: Hesterberg, Technometrics
-/// 37(2), 1995].
+/// Share of the samples that a mixture draws without its guide. Where the guide misleads, the density is still a
+/// quarter of the plain density, so the variance is at most four times as large [defensive mixtures: Hesterberg,
+/// Technometrics 37(2), 1995].
 inline constexpr double kUnguidedShare = 0.25;
 
 }  // namespace tempolux

@@ -22,8 +22,8 @@ struct MovingPilot {
   double gathered_share = 0;
 };
 
-/// Traces kPilotPaths light paths through the static scene, traces those that movers touch through the whole scene as well,
-/// and looks at 2048 visible places. Takes some tenths of a second. Same result for any number of threads.
+/// Traces kPilotPaths light paths through the static scene, traces those that movers touch through the whole scene as
+/// well, and looks at 2048 visible places. Takes some tenths of a second. Same result for any number of threads.
 MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                          std::uint64_t seed);
 

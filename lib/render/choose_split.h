@@ -18,8 +18,8 @@ struct SplitPilot {
   double high_share = 0;  ///< the share of the radiance that is taken out
 };
 
-/// Traces kPilotPaths light paths, sums their photons of all kinds in cells (FluxCells, the default limit), and sends one
-/// gather ray from each of 2048 visible places. Takes a tenth of a second. Same result for any number of threads.
+/// Traces kPilotPaths light paths, sums their photons of all kinds in cells (FluxCells, the default limit), and sends
+/// one gather ray from each of 2048 visible places. Takes a tenth of a second. Same result for any number of threads.
 SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                        std::uint64_t seed);
 

@@ -2,8 +2,8 @@
 """The named constants of lib and tools, and what depends on each.
 
 docs/constants.md puts every constant into one class: `pictures` (pictures depend on it), `rare` (only pictures of rare
-input do), `effort` (speed, memory, limits of input and figures in reports only) or `names`. Text, enums and salts of random streams are always
-`names`, so the page does not list them.
+input do), `effort` (speed, memory, limits of input and figures in reports only) or `names`. Text, enums and salts of
+random streams are always `names`, so the page does not list them.
 
   constants.py              one line per constant: class, file, name, value, first line of the comment
   constants.py --check      exit 1 unless page and source name the same constants and few enough shape pictures
@@ -17,7 +17,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "constants.md"
-MOST_PICTURES = 166  # a ratchet: lower it with each constant that goes; the aim is 120
+MOST_PICTURES = 162  # a ratchet: lower it with each constant that goes; the aim is 120
 CLASSES = ("pictures", "rare", "effort", "names")
 BASES = ("paper", "derived", "measured", "none")
 
