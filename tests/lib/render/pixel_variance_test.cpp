@@ -171,7 +171,7 @@ TEST(PixelVariance, ChannelHalvesAreUncorrelated) {
 }
 
 /// Two samples, 1 and 5, in one half each: half their difference, -2, times the root of a share of a quarter. Light
-/// taken from the pixel, 1.5 of 3, is taken from the noise as well.
+/// taken from the pixel, .5 of 3, is taken from the difference as well: what is left of an outlier keeps its noise.
 TEST(PixelVariance, NoiseIsAShareOfTheHalvesDifference) {
   LayerImage layers;
   layers.width = 2, layers.height = 1;
@@ -184,15 +184,18 @@ TEST(PixelVariance, NoiseIsAShareOfTheHalvesDifference) {
   layers.difference_share.fill(0.25);
   Image image{2, 1, {}, {}, {}, {}};
   add_variance_channels(layers, {"halves"}, image);
-  EXPECT_EQ(image.find("direct.noise.G")->values, (std::vector<float>{-1, -0.5f}));
+  EXPECT_EQ(image.find("direct.noise.G")->values, (std::vector<float>{-1, -0.75f}));
   EXPECT_EQ(image.find("emission.noise.G")->values, (std::vector<float>{0, 0}));
   EXPECT_EQ(image.find("volume.noise.G"), nullptr);
+  EXPECT_EQ(image.find("halves.confirmed")->values, (std::vector<float>{0, 0}));
+  layers.confirmed = {0, 6};
   layers.stored_noise = {{Rgb(0.25f), Rgb(0.5f)}, {Rgb(0.0f), Rgb(-2.0f)}};
   Image with_records{2, 1, {}, {}, {}, {}};
   add_variance_channels(layers, {"halves"}, with_records);
   EXPECT_EQ(with_records.find("indirect.noise.G")->values, (std::vector<float>{0.5f, -2}));
   EXPECT_EQ(with_records.find("caustic.noise.G")->values, (std::vector<float>{0.25f, 0}));
-  EXPECT_EQ(with_records.find("direct.noise.G")->values, (std::vector<float>{-1, -0.5f}));
+  EXPECT_EQ(with_records.find("halves.confirmed")->values, (std::vector<float>{0, 6}));
+  EXPECT_EQ(with_records.find("direct.noise.G")->values, (std::vector<float>{-1, -0.75f}));
 }
 
 }  // namespace
