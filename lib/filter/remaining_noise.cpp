@@ -49,39 +49,29 @@ class Mean {
   double sum_ = 0, count_ = 0, squares_ = 0, products_ = 0, counts_ = 0;
 };
 
+void write_root(const std::string& name, const Mean& whole, const Mean& noise, Image& frame) {
+  const Mean& larger = whole.value() > noise.value() ? whole : noise;
+  const double root = std::sqrt(std::max(0.0, larger.value())), error = larger.error();
+  frame.numbers[name] = root;
+  frame.numbers[name + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
+}
+
 /// Squared errors of the picture or of a layer.
 struct Errors {
-  Mean whole, noise;
-
+  Mean whole, noise, whole_codes, noise_codes;
   void write(const std::string& name, Image& frame) const {
-    const Mean& larger = whole.value() > noise.value() ? whole : noise;
-    const double root = std::sqrt(std::max(0.0, larger.value())), error = larger.error();
-    frame.numbers[name] = root;
-    frame.numbers[name + "_error"] = root * root > error ? error / (2 * root) : std::sqrt(error);
+    write_root(name + "linear", whole, noise, frame);
+    write_root(name + "codes", whole_codes, noise_codes, frame);
   }
 };
-
-struct BothUnits {
-  Errors linear, codes;
-  void write(const std::string& name, Image& frame) const {
-    linear.write(name + "linear", frame);
-    codes.write(name + "codes", frame);
-  }
-};
-
-/// Squared error in codes of a value that exceeds the true one by `noise`.
-double codes_above(double value, double noise) {
-  const double off = srgb_code(value) - srgb_code(value - noise);
-  return off * off;
-}
 
 constexpr double kEnough = 1 << 18;  ///< pixels: conversions of all pixels of a large picture would cost too much
 
 /// Sums over the blocks of a picture or layer; square_of(c, p) are `whole` and the square of the noise. A picture of
 /// many more than kEnough pixels is represented by a random share of them.
 template <class Square>
-BothUnits sum_blocks(const Image& frame, const PicturePlanes& picture, double exposure, const Square& square_of) {
-  BothUnits errors;
+Errors sum_blocks(const Image& frame, const PicturePlanes& picture, double exposure, const Square& square_of) {
+  Errors errors;
   const auto step = std::uint64_t(std::max(1.0, std::round(std::sqrt(double(frame.pixel_count()) / kEnough))));
   for (int top = 0; top < frame.height; top += kBlock)
     for (int left = 0; left < frame.width; left += kBlock) {
@@ -97,12 +87,13 @@ BothUnits sum_blocks(const Image& frame, const PicturePlanes& picture, double ex
             whole += of_whole;
             noise += of_noise;
             whole_codes += square * codes_for_square(value, std::abs(square));
-            noise_codes += codes_above(value, exposure * std::sqrt(of_noise));
+            const double off = srgb_code(value) - srgb_code(value - exposure * std::sqrt(of_noise));
+            noise_codes += off * off;
             ++count;
           }
         }
-      errors.linear.whole.add(whole, count), errors.linear.noise.add(noise, count);
-      errors.codes.whole.add(whole_codes, count), errors.codes.noise.add(noise_codes, count);
+      errors.whole.add(whole, count), errors.noise.add(noise, count);
+      errors.whole_codes.add(whole_codes, count), errors.noise_codes.add(noise_codes, count);
     }
   return errors;
 }
@@ -142,10 +133,10 @@ void write_remaining_noise(const RemainingError& error, Image& frame) {
   for (const std::string layer : {"emission", "specular", "direct", "caustic", "indirect", "volume"}) {
     if (!holds(frame, layer + ".R") || !holds(frame, layer + ".noise.R")) continue;
     const auto noise = frame.rgb(layer + ".noise");
-    const BothUnits errors = sum_blocks(frame, frame.rgb(layer), exposure, [&](std::size_t c, std::size_t p) {
+    const Errors errors = sum_blocks(frame, frame.rgb(layer), exposure, [&](std::size_t c, std::size_t p) {
       return std::pair(0.0, double((*noise[c])[p]) * double((*noise[c])[p]));
     });
-    if (errors.linear.noise.value() > 0) errors.write(kNoise + layer + ".", frame);
+    if (errors.noise.value() > 0) errors.write(kNoise + layer + ".", frame);
   }
   frame.numbers[kNoise + "exposure"] = exposure;
 }
