@@ -15,10 +15,18 @@ namespace {
 
 using tempolux::FourierRequest;
 
+/// Plans by kind, width and height.
+struct Plans : std::map<std::tuple<int, int, int>, fftwf_plan> {
+  ~Plans() {
+    for (const auto& [size, plan] : *this) fftwf_destroy_plan(plan);
+    fftwf_cleanup();
+  }
+};
+
 /// The plan for a kind and size, made by the first call. FFTW's planner is not thread-safe, but executing a plan is.
 fftwf_plan plan_for(const FourierRequest& request) {
   static std::mutex planner;
-  static std::map<std::tuple<int, int, int>, fftwf_plan> plans;
+  static Plans plans;
   const std::lock_guard lock(planner);
   fftwf_plan& plan = plans[{request.kind, request.width, request.height}];
   if (plan) return plan;

@@ -32,6 +32,8 @@ PathKind kind_after(bool diffuse_seen, bool specular_seen) {
   return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
 }
 
+}  // namespace
+
 /// A photon that arrives at a surface; normals point to the side it comes from.
 struct Arrival {
   Vec3 wi, normal_geometric, normal;
@@ -90,6 +92,8 @@ struct Arrival {
     return next;
   }
 };
+
+namespace {
 
 /// Data that only materials with textures or alpha need; the constructor bends the point's normal.
 struct Textured {

@@ -82,6 +82,7 @@ int main(int argc, char** argv) {
   if (mode == "echo") print(input);
   if (mode == "crash") {
     print("so far");
+    std::signal(SIGSEGV, SIG_DFL);  // a sanitizer has a handler of its own
     ::raise(SIGSEGV);
   }
   if (mode == "abort") std::abort();
