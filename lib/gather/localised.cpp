@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor, darker light counts as this much
 
-constexpr float kBelow = 0.999f;      ///< of the lower threshold: what a sum of floats may lose by rounding is less
+constexpr float kBelow = 0.999f;  ///< of the lower threshold: what a sum of floats may lose by rounding is less
 
 constexpr float kAnyWeight = std::numeric_limits<float>::denorm_min();
 
