@@ -16,11 +16,10 @@ constexpr double kStratified = 0.875;
 constexpr double kAtError = 2.5;
 constexpr double kOwn = 1.2;  ///< cost of a camera ray with its surface, in shadow rays
 
-/// Numbers of samples at edges and inside surfaces in a frame that will be filtered, over those of an unfiltered frame.
-/// The filter leaves about half as much of the squared error inside surfaces as at edges. The median scene takes 6 %
+/// Number of samples at edges in a frame that will be filtered, over that of an unfiltered frame; half of this number
+/// inside surfaces, because the filter leaves about half as much of the squared error there. The median scene takes 6 %
 /// more samples than with 1 and 1, and errs by 7 % less (docs/notebook/st-filter.md).
-constexpr double kAtEdges = 1.8, kInside = 0.9;
-constexpr double kFewestAlike = 3;  ///< fewer pixels of one kind, of edges or others, say too little about its noise
+constexpr double kAtEdges = 1.8;
 
 /// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.
 int first_onward(const FrameOptions& options) {
@@ -146,9 +145,9 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   if (!options_.edges.empty()) {
     const std::uint8_t kind = options_.edges[std::size_t(y) * std::size_t(view_.width()) + std::size_t(x)];
     look_around([&](std::size_t at) { return options_.edges[at] == kind; });
-    times *= kind ? kAtEdges : kInside;
+    times *= kind ? kAtEdges : kAtEdges / 2;
   }
-  if (near.n < kFewestAlike) look_around([](std::size_t) { return true; });
+  if (near.n < 2) look_around([](std::size_t) { return true; });
   if (near.n == 0) return first_;
   const auto variance = [&](const auto& of) { return (of(near) + of(wide)) / 2; };
   const double lit_variance = variance([&](const Around& of) {
