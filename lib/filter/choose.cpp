@@ -92,7 +92,9 @@ class Choice {
         width_(std::size_t(around.width())),
         count_(around.count()),
         counts_(count_, 1),
+        differs_(count_, 1),
         share_(around.width(), around.height()) {
+    for (const std::size_t p : raw.confirmed) differs_[p] = 0;
     for (std::size_t p = 0; p < count_; ++p)
       for (std::size_t c = 0; c < 3; ++c)
         if (!(std::abs(raw.a[c][p]) < kLargestLight && std::abs(raw.b[c][p]) < kLargestLight)) counts_[p] = 0;
@@ -129,7 +131,7 @@ class Choice {
   }
 
   /// A - B as far as the estimates count the difference as noise.
-  float apart_at(std::size_t p, std::size_t c) const { return raw_.confirmed.at(p) ? 0 : raw_.a[c][p] - raw_.b[c][p]; }
+  float apart_at(std::size_t p, std::size_t c) const { return differs_[p] * (raw_.a[c][p] - raw_.b[c][p]); }
 
   /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
   template <class Term>
@@ -238,6 +240,7 @@ class Choice {
   const PictureLight& picture_;
   std::size_t width_, count_;
   std::vector<std::uint8_t> counts_;  ///< by pixel; 0: the pixel enters no estimate
+  std::vector<float> differs_;        ///< by pixel; 0: the difference of its halves is no noise
   Halves best_;
   Plane gain_, square_, apart_;  ///< neighbourhood means of V - C, its square and (F - M)^2
   Plane share_;                  ///< w, by pixel

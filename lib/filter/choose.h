@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "lib/filter/picture.h"
 #include "lib/filter/plane.h"
 
 namespace tempolux {
@@ -17,7 +16,7 @@ using Colours = std::array<std::vector<float>, 3>;
 /// A layer from each half of the samples alone, with uncorrelated noise.
 struct Halves {
   Colours a, b;
-  Confirmed confirmed{};  ///< pixels whose light is kept: estimates take both halves as equal
+  std::vector<std::size_t> confirmed{};  ///< pixels whose light is kept: estimates take both halves as equal
 };
 /// (a + b) / 2; each is halved first, because a + b may overflow.
 inline float mean_of(float a, float b) { return a / 2 + b / 2; }

@@ -76,7 +76,7 @@ class Candidates {
 Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
   const Surfaces& on = group.surfaces;
   Halves raw;
-  raw.confirmed = Confirmed(image, group.layers[l]);
+  raw.confirmed = confirmed_in(image, group.layers[l]);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::vector<float>& mean = image.find(channel_name(group.layers[l], c))->values;
     raw.a[c] = raw.b[c] = mean;
@@ -86,13 +86,13 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
       for (int x = 0; x < on.width; ++x) {
         const std::size_t p = std::size_t(y) * std::size_t(on.width) + std::size_t(x);
         const float noise =
-            raw.confirmed.at(p) && stored
-                ? stored->values[p]
-                : (group.raw[0].layers[l][c].at(x, y) - group.raw[1].layers[l][c].at(x, y)) / 2 * on.albedo_at(c, x, y);
+            (group.raw[0].layers[l][c].at(x, y) - group.raw[1].layers[l][c].at(x, y)) / 2 * on.albedo_at(c, x, y);
         raw.a[c][p] += noise;
         raw.b[c][p] -= noise;
       }
     });
+    for (const std::size_t p : raw.confirmed)
+      if (stored) raw.a[c][p] += stored->values[p], raw.b[c][p] -= stored->values[p];
   }
   return raw;
 }

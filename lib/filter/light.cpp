@@ -123,6 +123,8 @@ void LightGroup::take_noise(const Image& image) {
   const auto has_noise = [&](const std::string& layer) { return holds(image, layer + ".noise.R"); };
   std::optional<MadeUpNoise> made_up;
   if (std::none_of(layers.begin(), layers.end(), has_noise)) made_up.emplace(image, *this);
+  std::vector<std::vector<std::size_t>> confirmed;
+  for (const std::string& layer : layers) confirmed.push_back(confirmed_in(image, layer));
   for (std::size_t c = 0; c < 3; ++c) {
     Plane total(image.width, image.height);
     for (std::size_t l = 0; l < layers.size(); ++l) {
@@ -130,7 +132,6 @@ void LightGroup::take_noise(const Image& image) {
       if (a.empty()) continue;
       b = Plane::unset(image.width, image.height);
       const Channel* channel = made_up ? nullptr : image.find(channel_name(layers[l] + ".noise", c));
-      const Confirmed confirmed(image, layers[l]);
       for_each_row(image.height, [&](int y) {
         for (int x = 0; x < image.width; ++x) {
           float noise = made_up ? made_up->of(l, c).at(x, y) : 0;
@@ -138,12 +139,16 @@ void LightGroup::take_noise(const Image& image) {
             noise = channel->values[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] /
                     surfaces.albedo_at(c, x, y);
           if (!(std::abs(noise) < kLargestLight)) noise = surfaces.use.at(x, y) = 0;
-          if (confirmed.at(std::size_t(y) * std::size_t(image.width) + std::size_t(x))) noise = 0;
           b.at(x, y) = a.at(x, y) - noise;
           a.at(x, y) += noise;
           total.at(x, y) += noise;
         }
       });
+      for (const std::size_t p : confirmed[l]) {
+        const int x = int(p % std::size_t(image.width)), y = int(p / std::size_t(image.width));
+        total.at(x, y) -= (a.at(x, y) - b.at(x, y)) / 2;
+        a.at(x, y) = b.at(x, y) = a.at(x, y) / 2 + b.at(x, y) / 2;
+      }
     }
     for_each_row(image.height, [&](int y) {
       for (int x = 0; x < image.width; ++x) variance.at(x, y) += 2 * total.at(x, y) * total.at(x, y);

@@ -24,10 +24,14 @@ Channel* float_channel(Image& image, const std::string& name) {
   return channel && !channel->values.empty() ? channel : nullptr;
 }
 
-Confirmed::Confirmed(const Image& image, const std::string& layer) {
-  if (!holds(image, "halves.confirmed")) return;
-  layers_ = image.find("halves.confirmed")->values.data();
-  bit_ = 1 << (std::find(kLayersInOrder.begin(), kLayersInOrder.end(), layer) - kLayersInOrder.begin());
+std::vector<std::size_t> confirmed_in(const Image& image, const std::string& layer) {
+  std::vector<std::size_t> pixels;
+  if (!holds(image, "halves.confirmed")) return pixels;
+  const auto bit = std::find(kLayersInOrder.begin(), kLayersInOrder.end(), layer) - kLayersInOrder.begin();
+  const std::vector<float>& layers = image.find("halves.confirmed")->values;
+  for (std::size_t p = 0; p < layers.size(); ++p)
+    if (layers[p] >= 1 && layers[p] < 64 && (int(layers[p]) >> bit & 1)) pixels.push_back(p);
+  return pixels;
 }
 
 void leave_numbers(Image& image) {

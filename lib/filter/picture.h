@@ -18,21 +18,8 @@ bool holds(const Image& image, const std::string& name);
 /// nullptr if the channel does not exist or has no samples.
 Channel* float_channel(Image& image, const std::string& name);
 
-/// The pixels for which the channel halves.confirmed names a layer; none without that channel. The image must outlive
-/// this object.
-class Confirmed {
- public:
-  Confirmed() = default;
-  Confirmed(const Image& image, const std::string& layer);
-  bool at(std::size_t pixel) const {
-    const float layers = layers_ ? layers_[pixel] : 0;
-    return layers >= 1 && layers < 64 && (int(layers) & bit_) != 0;
-  }
-
- private:
-  const float* layers_ = nullptr;
-  int bit_ = 0;
-};
+/// The pixels for which the channel halves.confirmed names a layer; none without that channel.
+std::vector<std::size_t> confirmed_in(const Image& image, const std::string& layer);
 
 /// Sums of the layers by pixel, for R, G and B, in the order of frames.md 2; empty if there are no layers.
 using LayerSums = std::array<std::vector<float>, 3>;

@@ -65,7 +65,7 @@ struct Errors {
   }
 };
 
-constexpr double kEnough = 1 << 18;  ///< pixels: conversions of all pixels of a large picture would cost too much
+constexpr double kEnough = 1 << 17;  ///< pixels: conversions of all pixels of a large picture would cost too much
 
 /// Sums over the blocks of a picture or layer; square_of(c, p) are `whole` and the square of the noise. A picture of
 /// many more than kEnough pixels is represented by a random share of them.
