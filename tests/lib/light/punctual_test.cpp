@@ -54,8 +54,9 @@ TEST(SpotProfile, DrawsFollowTheFalloff) {
   for (int i = 0; i < kSteps; ++i) {
     const double step = profile.outer / kSteps;
     sum += 2 * kPiD * step * profile.falloff((i + 0.5) * step);
-    if (i % 20'000 == 19'999 && i + 1 < kSteps)
+    if (i % 20'000 == 19'999 && i + 1 < kSteps) {
       EXPECT_NEAR(profile.sample_one_minus_cos(sum / profile.solid_angle()), (i + 1) * step, 1e-5);
+    }
   }
   EXPECT_NEAR(sum, profile.solid_angle(), 1e-5);
 }
