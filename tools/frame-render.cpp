@@ -61,9 +61,6 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
       "--seen-error", options.frame.seen_error, 0.0, 255.0,
       "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "
       "the picture's median to .18; --pixel-error then only distributes the samples; 0: off");
-  app.add_flag("--for-filter", options.frame.for_filter,
-               "for frames that st-filter will filter: --pixel-error counts only the noise of the layer specular, "
-               "which passes the filter");
   app.add_flag("--keep-outliers", options.keep_outliers,
                "do not spread light that a single sample found; without this option --pixel-error spreads it over the "
                "surrounding pixels, which keeps each layer's sum; --integrator path never spreads");

@@ -36,7 +36,7 @@ inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", 
 inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
 inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal",
                                    "read counts,windows,filter,write"};
-inline constexpr StageInfo raw{"frame-render --for-filter", "raw", ".exr", "frame-render",
+inline constexpr StageInfo raw{"frame-render (raw)", "raw", ".exr", "frame-render",
                                "render,data channels,write"};
 inline constexpr StageInfo keys{"frame-render (keys)", "keys", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo pictures{"frame-render", "pictures", ".exr", "frame-render", "render,data channels,write"};

@@ -94,12 +94,11 @@ void AdaptiveFrame::take_first() {
   const bool spreads = options_.spread_outliers;
   for_each_pixel(view_, around_, frame_.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PixelSum half[2];
-    half[0].for_filter = half[1].for_filter = options_.for_filter;
     const std::uint64_t before = counts.onward;
     const PixelPass pass{pixel, x, y, {}, first};
     for_each_sample(camera_, pass, image.halves_of(pixel), counts, [&](int s, const PathParts& sample) {
       half[noise_.half(s)].add(sample);
-      if (spreads) brightest_[pixel].note(sample, options_.for_filter);
+      if (spreads) brightest_[pixel].note(sample);
     });
     noise_.note(pixel, half[0], half[1], counts.onward - before);
     join_parts(half[0] + half[1], {}, first, parts_[pixel]);
@@ -120,7 +119,7 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
     PixelSum sum;
     for_each_sample(camera_, pass, frame_.mean.halves_of(pixel), counts, [&](int, const PathParts& sample) {
       sum.add(sample);
-      if (options_.spread_outliers) brightest_[pixel].note(sample, options_.for_filter);
+      if (options_.spread_outliers) brightest_[pixel].note(sample);
     });
     join_parts(sum, have, more, parts_[pixel]);
     take_again(pass);

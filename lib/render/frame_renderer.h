@@ -25,9 +25,6 @@ struct FrameOptions {
   /// (FrameNoise). Needs pixel_error.
   double seen_error = 0;
   int adaptive_limit = 1024;  ///< largest number of samples of a pixel with pixel_error
-  /// True if lib/filter will filter the frame: pixel_error then considers only the noise that the filter does not
-  /// remove, which is that of the layer specular.
-  bool for_filter = false;
   /// With pixel_error: spreads light that a single sample found over the pixels around. In a masked frame only pixels
   /// of the mask receive it (lib/render/spread_outliers.h).
   bool spread_outliers = false;

@@ -24,7 +24,7 @@ constexpr double kAtEdges = 1.8;
 /// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.
 int first_onward(const FrameOptions& options) {
   const int n = options.samples;
-  return options.for_filter ? n : std::max((n + 1) / 2, options.sample_halves ? std::min(n, 2) : 1);
+  return std::max((n + 1) / 2, options.sample_halves ? std::min(n, 2) : 1);
 }
 
 }  // namespace
@@ -71,17 +71,13 @@ void PixelNoise::look_around_mask() {
 void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays) {
   const double n = options_.samples, a = first_half_, b = n - a;
   const auto both = [&](LayersT<double> PixelSum::*part) {
-    return first.value(first.*part) + second.value(second.*part);
+    return radiance_of(first.*part) + radiance_of(second.*part);
   };
   const double mirrored = PixelSum::mirrored(first.own) + PixelSum::mirrored(second.own);
   const double seen = both(&PixelSum::own) - mirrored, onward = both(&PixelSum::onward);
-  double all = 0;
-  for (const PixelSum* sum : {&first, &second})
-    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward})
-      all += radiance_of(sum->*part);
   Pixel& state = pixels_[pixel];
-  state.mean = all / n + onward * (1.0 / first_.onward - 1 / n);
-  state.lit_difference = first.value(first.lit) / a - (b > 0 ? second.value(second.lit) / b : 0);
+  state.mean = (both(&PixelSum::own) + both(&PixelSum::lit)) / n + onward / first_.onward;
+  state.lit_difference = radiance_of(first.lit) / a - (b > 0 ? radiance_of(second.lit) / b : 0);
   state.seen = seen / n;
   state.seen_variance = sample_variance(n, seen, first.seen_square + second.seen_square);
   state.mirrored_variance = sample_variance(n, mirrored, first.mirrored_square + second.mirrored_square);

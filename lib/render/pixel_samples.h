@@ -20,9 +20,8 @@ struct PartCounts {
 struct PixelSum {
   LayersT<double> own, lit, onward;
   StoredNoiseT<double> stored_noise;
-  /// Sums of squares of single samples: of seen(), mirrored() of `own` and value() of `onward`.
+  /// Sums of squares of single samples: seen() and mirrored() of `own`, radiance_of() `onward`.
   double seen_square = 0, mirrored_square = 0, onward_square = 0;
-  bool for_filter = false;  ///< FrameOptions::for_filter: only noise of layer specular counts
   void add(const PathParts& sample) {
     own += sample.own;
     lit += sample.lit;
@@ -31,7 +30,7 @@ struct PixelSum {
     const auto square = [](double v) { return v * v; };
     seen_square += square(seen(sample.own));
     mirrored_square += square(mirrored(sample.own));
-    onward_square += square(value(sample.onward));
+    onward_square += square(radiance_of(sample.onward));
   }
   PixelSum operator+(const PixelSum& more) const {
     PixelSum sum = *this;
@@ -44,15 +43,10 @@ struct PixelSum {
   static double mirrored(const LayersT<T>& layers) {
     return channel_mean(Rgbd(layers[Layer::specular]));
   }
-  /// Mean channel of the other layers whose noise counts.
+  /// Mean channel of the other layers.
   template <class T>
-  double seen(const LayersT<T>& layers) const {
-    return value(layers) - mirrored(layers);
-  }
-  /// Mean channel of all layers whose noise counts.
-  template <class T>
-  double value(const LayersT<T>& layers) const {
-    return for_filter ? mirrored(layers) : radiance_of(layers);
+  static double seen(const LayersT<T>& layers) {
+    return radiance_of(layers) - mirrored(layers);
   }
 };
 

@@ -215,9 +215,8 @@ void note_what_is_seen(const SampledPixels& samples, const std::vector<Layers>& 
 
 }  // namespace
 
-void BrightestSample::note(const Layers& sample, bool specular_alone) {
+void BrightestSample::note(const Layers& sample) {
   for (const Layer of : {Layer::specular, Layer::direct, Layer::caustic, Layer::indirect, Layer::volume}) {
-    if (specular_alone && of != Layer::specular) continue;
     if (const float sum = channel_sum(sample[of]); sum > brightest) {
       second = layer == of ? radiance : Rgb(0.0f);
       brightest = sum;

@@ -16,17 +16,16 @@ struct BrightestSample {
   Rgb second{0.0f};     ///< the brightest of the other samples noted so far in the same layer; 0: none
   float brightest = 0;  ///< sum of the channels of `radiance`
   Layer layer = Layer::specular;
-  /// layers: the layers whose samples are stored; for a frame that will be filtered, layer specular alone.
-  void note(const Layers& sample, bool specular_alone);
+  void note(const Layers& sample);
 };
 
 /// The brightest sample of each part of a pixel (PathParts).
 struct BrightestSamples {
   BrightestSample own, lit, onward;
-  void note(const PathParts& sample, bool specular_alone) {
-    own.note(sample.own, specular_alone);
-    lit.note(sample.lit, specular_alone);
-    onward.note(sample.onward, specular_alone);
+  void note(const PathParts& sample) {
+    own.note(sample.own);
+    lit.note(sample.lit);
+    onward.note(sample.onward);
   }
 };
 

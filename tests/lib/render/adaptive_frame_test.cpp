@@ -91,27 +91,6 @@ TEST(AdaptiveFrame, OneFirstSampleIsEnoughToRefine) {
   EXPECT_NEAR(more / some, std::pow(2.0, 0.875), 0.05 * std::pow(2.0, 0.875));
 }
 
-/// For a filter only light in mirrors gets further samples. A matte room gets none and equals a frame with fixed
-/// samples, except for rounding: parts are summed one by one, in float.
-TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
-  const Cornell c;
-  const NoLight none(c.tracer);
-  FrameOptions options;
-  options.known = &none.known;
-  options.samples = 2;
-  const RenderedFrame fixed = render_frame(c.render_scene(), c.view, options);
-  options.pixel_error = 0.001;
-  EXPECT_GT(render_frame(c.render_scene(), c.view, options).samples_per_pixel, 20);
-  options.for_filter = true;
-  const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
-  EXPECT_EQ(frame.samples_per_pixel, 2);
-  for (std::size_t p = 0; p < frame.mean.pixels.size(); ++p)
-    for (std::size_t l = 0; l < kLayerCount; ++l) {
-      const float value = fixed.mean.pixels[p].value[l].g;
-      EXPECT_NEAR(frame.mean.pixels[p].value[l].g, value, 1e-6f * value);
-    }
-}
-
 /// A bright and a black sheet meet in the middle of a column of pixels: two of four stratified samples lie on each.
 /// If the wanted number exceeds the limit, each pixel at the edge or next to one takes as many samples as the limit
 /// allows: this column and one on either side. If the sheets meet between two columns, no pixel's samples differ, but
