@@ -44,7 +44,7 @@ struct Even {
     for (const Rgb& radiance : samples) {
       PathParts sample;
       sample.onward[layer] = radiance;
-      brightest[pixel].note(sample, false);
+      brightest[pixel].note(sample);
       parts[pixel].onward[layer] += radiance * 0.25f;
     }
   }
@@ -243,20 +243,17 @@ TEST(SpreadOutliers, WithoutAnErrorNothingMoves) {
     if (p != 77) { EXPECT_TRUE(std::isfinite(pixels[p][Layer::indirect].g)) << p; }
 }
 
-/// In a frame that will be filtered, light that the filter filters stays.
-TEST(SpreadOutliers, ForAFilterMirrorsAlone) {
+/// Of each part the layer in which it is brightest is noted.
+TEST(SpreadOutliers, NotesTheBrightestLayerOfEachPart) {
   PathParts sample;
   sample.onward[Layer::indirect] = Rgb(9.0f);
   sample.own[Layer::specular] = Rgb(3.0f);
   sample.own[Layer::direct] = Rgb(5.0f);
-  BrightestSamples all, mirrors;
-  all.note(sample, false);
-  mirrors.note(sample, true);
+  BrightestSamples all;
+  all.note(sample);
   EXPECT_EQ(all.own.layer, Layer::direct);
   EXPECT_EQ(all.onward.radiance.g, 9);
-  EXPECT_EQ(mirrors.own.layer, Layer::specular);
-  EXPECT_EQ(mirrors.own.radiance.g, 3);
-  EXPECT_EQ(mirrors.onward.radiance.g, 0);
+  EXPECT_EQ(all.own.radiance.g, 5);
 }
 
 /// A room by paths, two samples per pixel, one onward: the sum of each layer is that without spreading, up to float
