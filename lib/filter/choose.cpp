@@ -207,8 +207,10 @@ class Choice {
     return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
-  /// Filtering takes light from pixels or adds it. Spreads this difference over the filtered pixels around, for each
-  /// half, so that the sum of the layer stays: adds w B(light / B(w)), where B sums over 7 x 7 pixels, twice.
+  /// Filtering takes light from some pixels and adds light to others. Gives the difference d = raw - result of each
+  /// half back to the filtered pixels around, so that the sum of the layer stays that of the raw layer. Each pixel gets
+  /// v B(d / B(v)), where v = w (filtered light + dark) and B sums over 7 x 7 pixels, twice. PictureLight::dark keeps
+  /// v of black pixels above 0. share_ becomes v.
   void give_back() {
     const auto sums = [&](const Plane& values) {
       const Plane once = box_sums(values, near_.width(), near_.height());

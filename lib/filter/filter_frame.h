@@ -33,8 +33,9 @@ struct WindowLight {
 /// half the difference of the layer's filtered halves. Other channels and all attributes stay.
 class FrameFilter {
  public:
-  /// `middle` is made from the image; middle and flow must outlive this object. `before` and `after` are the numbers of
-  /// frames on each side of the window. `dark`: dark_of() the whole picture (choose.h); empty: of the given image.
+  /// `middle` is made from the image that finish() or filter() receives; middle and flow must outlive this object.
+  /// `before` and `after` are the numbers of frames on each side of the window. `dark` is dark_of() the whole picture
+  /// (choose.h), for an image that is a part of it. If empty, dark_of() the image is used.
   FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
               std::optional<float> dark = {});
   ~FrameFilter();

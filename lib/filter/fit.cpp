@@ -117,9 +117,11 @@ class StripFit {
     return where(z > 0, z * z);
   }
 
-  /// The plane's value at the pixel is a weighted sum of the differences to the pixel's own value, with the weights
-  ///     weight (1 / one + to_x (dx - mx) + to_y (dy - my)),   their sum is 1.
-  /// Coordinates are relative to the window's centre of weight, so only the two slopes must be solved for.
+  /// Computes the kernel that gives the fitted plane's value at the pixel: own + sum of kernel (value - own) over the
+  /// window, where own is the pixel's value. The sum of the kernel is 1, and its value at the offset (dx, dy) is
+  ///     weight (1 / one + b (dx - mx) + c (dy - my)) = weight (a + b dx + c dy).
+  /// (mx, my) is the weighted mean of the offsets. Offsets from this mean have the weighted sum 0, so the plane's value
+  /// there is the weighted mean, and only the slopes remain to be solved for.
   void to_kernel(const Moments& moments) {
     const Int8 any = moments.one > 0;
     const Float8 one = where(any, moments.one) + where(~any, all8(1)), per_weight = where(any, 1 / one);

@@ -329,9 +329,8 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
   }
-  // Each hit has its own random numbers. If one sequence were spread over neighbouring close hits, records in corners
-  // would have half the noise but be 5 % too bright: further rays of a cell depend on its neighbours' light, which must
-  // then be independent of the cell's own.
+  // Each hit has its own random numbers, so the errors of neighbouring cells are independent. Hemisphere::noise assumes
+  // this when it estimates a record's variance from the differences of neighbouring cells.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));

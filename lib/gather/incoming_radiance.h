@@ -36,8 +36,9 @@ struct GatherCounts {
 
 /// What the radiance along a ray was computed from, for callers that store it.
 struct RadianceSource {
-  /// The irradiance point that represents the first hit if this has a Lambert lobe, or kNone. Set for close hits, too,
-  /// from which a ray continues: the choice must not depend on the light (docs/methods/temporal.md).
+  /// The irradiance point that represents the ray's first hit. kNone if no point does, or the hit has no Lambert lobe.
+  /// If the first hit is close, the ray continues to a second point. `point` is the first hit's even then, because the
+  /// choice between the two must not depend on their light (docs/methods/temporal.md).
   std::uint32_t point = kNone;
   bool partial = false;  ///< the radiance is more than this point's light times a constant
   bool mover = false;    ///< the path meets a surface that moves in the segment

@@ -27,7 +27,9 @@ struct SeenPoint {
   Vec3 normal;             ///< shading normal on the side seen
   float footprint = 0;     ///< m: size of a pixel there
   bool by_choice = false;  ///< the path has passed a surface at which it chose one of several directions
-  Rgb passed{1.0f};        ///< weight of its radiance in the mean over random branches: mirrors and glass absorb
+  /// The path's throughput [1] from the point to the camera: what mirrors and glass leave, divided by the probabilities
+  /// of the branches. With Look::random the mean of passed times the point's radiance is what the camera receives.
+  Rgb passed{1.0f};
 };
 
 /// A raster position of a picture. Where the path forks (glass, gloss), `random` chooses the branch. Without `random`

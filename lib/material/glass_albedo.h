@@ -7,12 +7,15 @@
 
 namespace tempolux {
 
-/// 1 - E for the lobe of rough_glass.h [1]. E is the share of uniform light that is reflected and transmitted, for
-/// one alpha and index, seen from outside or inside. Cubic interpolation in a table (tables/make_tables.cpp) with
-/// planes at equal steps of sqrt(1 - 1/index), rows at equal steps of sqrt(alpha), and columns by cosine; within 3e-3
-/// of the integrals (tests/lib/material/glass_albedo_test.cpp).
-/// Outside, the column is the square root of x = cos (1 + alpha) / (cos + alpha). Inside, the loss has a bend at the
-/// critical angle. That angle lies in the middle column, and columns are denser close to it.
+/// The lost share 1 - E [1] of the lobe of rough_glass.h, for one alpha and one index. E is the share of uniform light
+/// that the lobe reflects and transmits towards one direction, outside or inside of the glass. 1 - E is interpolated
+/// cubically in a table (tables/make_tables.cpp), within 3e-3 of the integrals
+/// (tests/lib/material/glass_albedo_test.cpp).
+///
+/// The table has a plane for each index, at equal steps of sqrt(1 - 1/index); a row for each alpha, at equal steps of
+/// sqrt(alpha); and a column for each cosine. Outside, columns are at equal steps of sqrt(x), where x = cos (1 + alpha)
+/// / (cos + alpha). Inside, the loss bends at the critical angle: this angle is the middle of the columns, and columns
+/// are denser close to it.
 class GlassLoss {
  public:
   /// index >= 1 and alpha of GGX are clamped to the table's range. Side 0 is outside of the glass, side 1 inside.

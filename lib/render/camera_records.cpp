@@ -11,8 +11,8 @@
 namespace tempolux {
 namespace {
 
-/// Share of min_weight that covers a pixel when records of another frame's camera exist already. All frames interpolate
-/// the first frame's records; a lower limit for later frames avoids new records all over the picture.
+/// Factor of PlacementOptions::min_weight for the cameras of all frames but the first. Later frames interpolate the
+/// records of earlier frames. With the full min_weight they would get new records all over the picture.
 constexpr float kLaterWeight = 0.5f;
 
 /// Where records are placed, and where their light comes from.

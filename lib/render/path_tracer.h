@@ -189,11 +189,11 @@ struct RenderScene {
 ///
 /// With `known`, a path ends where the light is known. The result has the bias of that light, and no light is counted
 /// twice:
-/// - At the first Lambert lobe x, caustic light is that of photons, if there are any. Light that the path meets by
+/// - At the first Lambert lobe x, caustic light is read from photons, if there are any. Light that the path meets by
 /// events S after x is then not added.
-/// - Indirect light at x is that of records. The path still continues to its next hit, because that ray is joined
-/// with light sampling by MIS; it continues by events S if caustic light is not known.
-/// - Where no record is valid, the ray ends at a hit that a point represents, or continues as a path.
+/// - Indirect light at x is read from records. The path still continues from x to its next hit, because MIS joins the
+/// emission of that hit with light sampling. If caustic light is not known, the path also continues by events S.
+/// - If no record is valid at x, the path goes on. It ends at the first hit that a point represents.
 ///
 /// An unlit material shows its base colour to the camera, directly and by events S; it lights and scatters nothing.
 /// In media (SceneFrame::media) paths move by null collisions and take one light sample at each collision. With

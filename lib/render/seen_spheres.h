@@ -37,15 +37,16 @@ struct SeenAround {
 /// ratio of `width` and `height` of the picture counts.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
-/// Spheres around cells of an octree. Cell sizes are powers of two and corners their multiples, so that a place which
-/// moves a little leaves the cells as they are. Cells with more than 1/32 of the weight are halved, the heaviest first,
-/// while there are at most formats::kMaxViewSpheres cells, down to a quarter of the median distance of visible places.
-/// Cells with less than 1/512 are left to the uniform photons. The weight of a sphere is the cell's share, rounded to a
-/// power of two.
+/// Computes spheres around the places, one around each cell of an octree. Sizes of cells are powers of two and corners
+/// are multiples of the size, so that a place which moves a little leaves the cells as they are. Cells with more than
+/// 1/32 of the weight are divided in eight, the heaviest first. A cell stays whole if there would be more than
+/// formats::kMaxViewSpheres cells, or cells smaller than about a quarter of the median distance of visible places.
+/// Cells with less than 1/512 of the weight get no sphere; uniform photons light them. The weight of a sphere is its
+/// cell's share, rounded to a power of two.
 ///
-/// Returns none if the spheres are not much smaller than the scene: if photons aimed at them (Aim) would not be at
-/// least twice as dense, in the geometric mean over places, as uniform photons on the disc of radius `scene_radius`
-/// [m]. Reasons: docs/methods/aim.md.
+/// Returns no sphere if aiming gains little. The gain is how much denser photons aimed at the spheres (Aim) are than
+/// uniform photons on the disc of radius `scene_radius` [m], as the geometric mean over places. Spheres need a gain of
+/// at least 2. Reasons: docs/methods/aim.md.
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius);
 
 /// The spheres in scene space; `origin`: the frame's.

@@ -197,8 +197,10 @@ std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<L
   return all;
 }
 
-/// Sets `seen2` of each outlier: (light that it adds below white / allowed error at the pixel's radiance)^2. White is
-/// the median pixel's radiance divided by .18, as where seen errors are measured.
+/// Sets `seen2` of each outlier: the square of D = (T - M) / e(T). M is the pixel's radiance without the outlier. T is
+/// M plus the outlier's light, but at most white, because a display shows nothing above white; T is M if M is above
+/// white. e(T) is the allowed error at T. White is the median radiance of the pixels divided by .18, the exposure at
+/// which seen errors are measured.
 void note_what_is_seen(const SampledPixels& samples, const std::vector<Layers>& pixels, std::vector<Excess>& outliers) {
   std::vector<double> radiances;
   for (std::size_t p = 0; p < pixels.size(); ++p)

@@ -40,7 +40,8 @@ Value slerp(const Value& a, Value b, double s) {
   return unit(v);
 }
 
-/// Cubic Hermite spline of glTF appendix C, in a form in which equal values without tangents stay exact.
+/// Cubic Hermite spline of glTF appendix C. It is written as v0 + (v1 - v0) (...) + ..., so the result is exactly v0 if
+/// both values are equal and the tangents are zero.
 void spline(const AnimationTrack& track, std::size_t key, double s, double dt_s, std::span<double> out) {
   const std::size_t n = track.components;
   const double* v0 = &track.values[(3 * key + 1) * n];

@@ -23,7 +23,7 @@ class VolumeInput {
   bool any() const { return !sources_.empty(); }
   /// True if the majorants come from a file, --majorants.
   bool frozen() const { return !tool_.common().volume.majorants.empty(); }
-  /// Last frame with a file, if all volumes give it; -1: unknown.
+  /// The last frame for which any volume has a file. -1 if there is no volume, or one does not name its frames.
   int last_frame() const;
   /// The media of a frame in scene space; nullptr: none. Their files become dependencies of the tool.
   std::shared_ptr<const Media> at(int frame, Vec3d origin);

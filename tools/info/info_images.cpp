@@ -17,7 +17,8 @@
 namespace tempolux::tools {
 namespace {
 
-/// Loads an EXR with or without NaN, only R, G and B if wanted and present; any other format as lib/image reads it.
+/// Loads a picture of any format that lib/image reads. The arguments concern EXR files: allow_nan accepts NaN, and
+/// only_rgb reads only R, G and B if the file has them.
 Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
   if (!head_of(path).starts_with("\x76\x2f\x31\x01")) return load_image(path);
   return load_exr(path, {.allow_nan = allow_nan, .only_rgb = only_rgb});

@@ -28,7 +28,8 @@ std::string noise_line(const RenderedFrame& rendered) {
   return line + "; " + number(rendered.samples_per_pixel) + " samples a pixel";
 }
 
-/// The part of a layer with the largest difference in light, if the difference is significant.
+/// Finds the object or the tile (`kind`) in which the frame's light of a layer differs most from the audit's, summed
+/// over pixels. Differences below kAuditErrors standard errors do not count; nullptr if none counts.
 const AuditEntry* worst_of(const std::vector<AuditEntry>& audit, Layer layer, const std::string& kind) {
   const AuditEntry* worst = nullptr;
   for (const AuditEntry& entry : audit) {
