@@ -51,6 +51,7 @@ inline Vec3 sample_hemisphere_cos(Vec2 u) {
 inline void sample_hemisphere_cos(std::span<const Vec2> u, Vec3* directions) {
   for (std::size_t i = 0; i < u.size(); ++i) directions[i] = sample_hemisphere_cos(u[i]);
 }
+/// Density cos / pi [1/sr] of sample_hemisphere_cos(); 0 below the plane.
 inline float pdf_hemisphere_cos(float cos_theta) { return std::max(0.0f, cos_theta) * kInvPi; }
 
 /// Barycentric (b1, b2) of a uniform point in a triangle; b0 = 1 - b1 - b2.

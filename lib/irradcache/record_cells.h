@@ -21,6 +21,8 @@ struct Cell {
   std::int64_t x, y, z;
 };
 
+/// The cell that holds a place. `local` [m]: the place seen from the grid's origin; `inverse` [1/m]: 1 / edge of a
+/// cell.
 inline Cell cell_at(Vec3d local, double inverse) {
   // Cell numbers are clamped to 2^60, so records far outside the scene share one cell.
   const auto index = [&](double x) { return std::int64_t(std::floor(std::clamp(x * inverse, -0x1p60, 0x1p60))); };

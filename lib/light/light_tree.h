@@ -43,6 +43,7 @@ class LightTree {
     /// reach the point.
     double sum = 0;
   };
+  /// Importances at a point; a normal of zero means that lights below the surface count as well.
   Start start(Vec3 point, Vec3 normal) const;
   /// Walks down from the root. At each node a child is chosen in proportion to its importance, an upper bound of weight
   /// cos cos / distance^2. `normal` is unit; zero means that lights below the surface count as well. u in [0, 1). False

@@ -15,7 +15,7 @@ struct FramesInARow {
 };
 
 /// True if the lights, or a surface in their light, jump between `last` and `here`: the step is larger than twice the
-/// sum of the steps before and after, and larger than 1/16 of the power of all lights or of the moving surface's size.
+/// sum of the steps before and after, and larger than 1/16 of the flux of all lights or of the moving surface's size.
 /// If all lamps go on or off, it is a jump in any case, even for one frame. False if `last` is null.
 bool light_jumps(const FramesInARow& frames);
 
