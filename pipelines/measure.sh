@@ -2,8 +2,8 @@
 # measure.sh -- measures how much of the noise a viewer sees, before a long run: `make measure`. run.sh runs it after
 # scene-plan; it has make's variables.
 #
-# Of each segment the wished frame closest to the middle is rendered twice with independent random numbers. AQM estimates the share of the
-# pixels in which a viewer sees the noise of one rendering (aqm-compare --either).
+# In each segment the frame of FRAMES that is closest to the middle is rendered twice with independent random numbers.
+# AQM estimates the share of the pixels in which a viewer sees the noise of one rendering (aqm-compare --either).
 # With METHOD=preview it chooses the number of photons: a frame of n photons is compared with one of 2 n. The difference
 # is noise, and blur that more photons remove. n starts at 3125 and is doubled until the share is at most AQM, or until
 # two doublings have not reduced it. OUT/measured.json has all results; scene-plan --measured chooses by them.

@@ -50,10 +50,8 @@ void add_options(tools::Tool& tool, tools::TemporalGatherOptions& options) {
       tool.file_option("--previous", options.previous,
                        ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
                        "without it the frame is gathered anew"));
-  tool.number_option(
-      "--rays", options.gather.rays, 1, 1 << 20,
-      "gather rays per record, one per cell; a record has up to 9 times as many cells where its neighbours "
-      "found uneven light");
+  tool.number_option("--rays", options.gather.rays, 1, 1 << 20,
+                     "gather rays per record, one through each cell of its hemisphere");
   tool.number_option(
       "--refresh", options.temporal.refresh, 0, 1,
       "share of the cells that are traced in a frame, in records whose light changed: first the cells that "

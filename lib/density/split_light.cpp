@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+
 #include "lib/core/arrays.h"
 
 namespace tempolux {

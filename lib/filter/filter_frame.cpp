@@ -81,7 +81,8 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
     const std::vector<float>& mean = image.find(channel_name(group.layers[l], c))->values;
     raw.a[c] = raw.b[c] = mean;
     if (group.raw[0].layers[l][c].empty()) continue;
-    const Channel* const stored = image.find(channel_name(group.layers[l] + ".noise", c));
+    const std::string noise_of = channel_name(group.layers[l] + ".noise", c);
+    const Channel* const stored = holds(image, noise_of) ? image.find(noise_of) : nullptr;
     for_each_row(on.height, [&](int y) {
       for (int x = 0; x < on.width; ++x) {
         const std::size_t p = std::size_t(y) * std::size_t(on.width) + std::size_t(x);

@@ -13,9 +13,11 @@ namespace {
 
 constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor, darker light counts as this much
 
-constexpr float kBelow = 0.999f;  ///< of the lower threshold: what a sum of floats may lose by rounding is less
+/// A record counts as influenced from this share of the lower threshold on: sums of floats lose less by rounding.
+constexpr float kBelow = 0.999f;
 
-constexpr float kAnyWeight = std::numeric_limits<float>::denorm_min();
+/// The least weight above 0. Tools count denormal numbers as 0, so denorm_min() would be no weight.
+constexpr float kAnyWeight = std::numeric_limits<float>::min();
 
 /// Dynamic photons are searched in a disc this much wider than the disc of k static photons. With k = 50 and an
 /// influence of .06, the lower threshold, the wide disc holds .06 x 50 x 7^2 = 150 dynamic photons. Their standard

@@ -32,19 +32,20 @@ std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& positions) {
   return first;
 }
 
-/// Groups of vertices that are joined step by step.
+/// Groups of triangles that are joined step by step.
 struct Groups {
   std::vector<std::uint32_t> parent;
-  std::uint32_t of(std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
+  explicit Groups(std::size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
+  std::uint32_t of(std::uint32_t t) {
+    while (parent[t] != t) t = parent[t] = parent[parent[t]];
+    return t;
   }
   void join(std::uint32_t a, std::uint32_t b) { parent[of(a)] = of(b); }
 };
 
-/// An edge from `low` to the vertex `high`, or back.
+/// An edge of a triangle from `low` to the vertex `high`, or back.
 struct Edge {
-  std::uint32_t low, high;
+  std::uint32_t low, high, triangle;
   bool back;
   bool operator<(const Edge& o) const { return std::tie(low, high, back) < std::tie(o.low, o.high, o.back); }
   bool same_place(const Edge& o) const { return low == o.low && high == o.high; }
@@ -62,40 +63,42 @@ std::vector<Box3> closed_parts(const SceneFrame& frame, std::uint32_t surface) {
   std::vector<Vec3> positions(s.primitive->positions.size());
   for (std::uint32_t v = 0; v < positions.size(); ++v) positions[v] = s.position(v);
   const std::vector<std::uint32_t> place = first_at_place(positions);
-  Groups groups{place};
+  Groups groups(triangles.size());
   std::vector<Edge> edges;
   edges.reserve(3 * triangles.size());
-  for (const auto& corners : triangles) {
-    const std::array<std::uint32_t, 3> at{place[corners[0]], place[corners[1]], place[corners[2]]};
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const std::array<std::uint32_t, 3> at{place[triangles[t][0]], place[triangles[t][1]], place[triangles[t][2]]};
     if (at[0] == at[1] || at[1] == at[2] || at[2] == at[0]) continue;  // poles of spheres have triangles without area
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = at[i], b = at[(i + 1) % 3];
-      groups.join(a, b);
-      edges.push_back({std::min(a, b), std::max(a, b), a > b});
+      edges.push_back({std::min(a, b), std::max(a, b), t, a > b});
     }
   }
   std::ranges::sort(edges, std::less());
-  std::vector<std::uint8_t> open(positions.size());  // by group
+  std::vector<std::uint32_t> torn;  // triangles at edges that do not belong to two triangles of opposite winding
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t last = i + 1;
-    while (last < edges.size() && edges[last].same_place(edges[i])) ++last;
-    if (last - i != 2 || edges[i].back == edges[i + 1].back) open[groups.of(edges[i].low)] = 1;
+    for (; last < edges.size() && edges[last].same_place(edges[i]); ++last)
+      groups.join(edges[i].triangle, edges[last].triangle);
+    if (last - i != 2 || edges[i].back == edges[i + 1].back) torn.push_back(edges[i].triangle);
     i = last;
   }
-  std::vector<Box3> box(positions.size());
-  std::vector<double> volume(positions.size());  // six times, in m^3
-  for (const auto& corners : triangles) {
-    const std::uint32_t group = groups.of(place[corners[0]]);
-    const Vec3d origin(positions[group]);
+  std::vector<std::uint8_t> open(triangles.size());  // by group, as all below
+  for (const std::uint32_t t : torn) open[groups.of(t)] = 1;
+  std::vector<Box3> box(triangles.size());
+  std::vector<double> volume(triangles.size());  // six times, in m^3
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const std::uint32_t group = groups.of(t);
+    const Vec3d origin(positions[triangles[group][0]]);
     std::array<Vec3d, 3> p;
     for (std::size_t i = 0; i < 3; ++i) {
-      box[group].add(positions[corners[i]]);
-      p[i] = Vec3d(positions[corners[i]]) - origin;
+      box[group].add(positions[triangles[t][i]]);
+      p[i] = Vec3d(positions[triangles[t][i]]) - origin;
     }
     volume[group] += dot(p[0], cross(p[1], p[2])) * (s.flipped ? -1 : 1);
   }
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const std::uint32_t group = groups.of(place[triangles[t][0]]);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const std::uint32_t group = groups.of(t);
     if (!open[group] && volume[group] > 0) boxes[t] = box[group];
   }
   return boxes;

@@ -9,9 +9,10 @@
 namespace tempolux {
 
 /// By triangle of the surface, the box [m, scene space] around the closed part that the triangle belongs to; an empty
-/// box for other triangles. A part is all triangles that are joined by corners at one place. The part is closed if it
-/// is opaque, each of its edges belongs to two triangles of opposite winding, and its normals point outwards. From a
-/// point outside the box the part hides the backs of all its triangles. Exporters often make such lamps two-sided.
+/// box for other triangles. A part is all triangles that are joined by edges. The part is closed if it is opaque, each
+/// of its edges belongs to two triangles of opposite winding, and its signed volume is positive. From a point outside
+/// the box the part hides the backs of all its triangles; a part that crosses itself may still show some. Exporters
+/// often make such lamps two-sided.
 std::vector<Box3> closed_parts(const SceneFrame& frame, std::uint32_t surface);
 
 }  // namespace tempolux

@@ -101,7 +101,7 @@ class FrameAudit {
   std::vector<Part> parts_;                 ///< picture, 16 tiles, objects
   std::vector<std::uint32_t> object_part_;  ///< by pixel
   std::vector<Sums> sums_;                  ///< by part
-  double picture_ = 0;                      ///< sum over pixels of the mean channel of all layers, at most white each (mean_to_white)
+  double picture_ = 0;                      ///< sum over pixels of mean_to_white()
 };
 
 /// True if the entry is to be reported: a layer's bias over the picture above 2 % of the picture's light and above

@@ -6,7 +6,6 @@
 #include "lib/render/shading.h"
 
 namespace tempolux {
-namespace {}  // namespace
 
 std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, Rgb* noise) const {
   if (mesh) return mesh->irradiance(surface, geometric);

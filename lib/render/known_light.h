@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// Mirrors in a row that a look follows. Darker mirrors end it earlier: 16 of albedo .6 leave 3e-4 of the light.
+/// Mirrors in a row that a look follows. Dark mirrors leave nothing to see: 16 of albedo .6 leave 3e-4 of the light.
 inline constexpr int kMostMirrors = 16;
 
 class LocalisedLight;

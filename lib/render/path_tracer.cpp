@@ -13,8 +13,8 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRouletteFrom = 3;  ///< number of bounces that always survive
-constexpr float kLargestSurvival = kLargestPhotonSurvival;
+constexpr std::uint32_t kRouletteFrom = 3;                  ///< number of bounces that always survive
+constexpr float kLargestSurvival = kLargestPhotonSurvival;  ///< below 1: paths in a lossless box end, as photons do
 
 /// The state of a path on its way: the ray from the last vertex, and the light that must not be added again. An event D
 /// is a Lambert lobe or a collision in a medium.

@@ -16,9 +16,9 @@ constexpr double kStratified = 0.875;
 constexpr double kAtError = 2.5;
 constexpr double kOwn = 1.2;  ///< cost of a camera ray with its surface, in shadow rays
 
-/// Number of samples at edges in a frame that will be filtered, over that of an unfiltered frame; half of this number
-/// inside surfaces, because the filter leaves about half as much of the squared error there. The median scene takes 6 %
-/// more samples than with 1 and 1, and errs by 7 % less (docs/notebook/st-filter.md).
+/// In a frame that will be filtered, pixels at edges get this many times the samples of an unfiltered frame, and pixels
+/// inside surfaces half as many times: the filter leaves about half as much of the squared error there. The median scene
+/// takes 6 % more samples than with 1 and 1, and errs by 7 % less (docs/notebook/st-filter.md).
 constexpr double kAtEdges = 1.8;
 
 /// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.

@@ -6,10 +6,10 @@
 #include <memory>
 #include <optional>
 
-#include "lib/core/statistics.h"
 #include "lib/core/parallel.h"
 #include "lib/core/parallel_each.h"
 #include "lib/core/sobol.h"
+#include "lib/core/statistics.h"
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
@@ -113,7 +113,7 @@ struct Levels {
   std::vector<double> allowed;  ///< by part: the allowed error at pixel error 1
 
   Levels(const Samples& samples, const SeenLight& photons, const CameraView& view, std::uint64_t seed)
-      : picture(photons.caustic.mean + photons.indirect.mean), allowed(kColumns * kRows) {
+      : allowed(kColumns * kRows) {
     std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       part.push_back(where(int(i), view, seed).part);
@@ -123,10 +123,14 @@ struct Levels {
     for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : mean;
     std::vector<double> sorted = sum;
     std::ranges::nth_element(sorted, sorted.begin() + std::ptrdiff_t(sorted.size() / 2));
-    picture = std::max(picture, mean_of(samples, [](const Sample& s) { return s.caustic + s.indirect; })) +
-              mean_of(samples, [](const Sample& s) { return s.other - s.seen; });
-    white = std::max(sorted[sorted.size() / 2], 0.1 * (picture > 0 ? picture : mean)) / 0.18;
-    picture += mean_of(samples, [&](const Sample& s) { return std::min(s.seen, white); });
+    const double shown = photons.caustic.mean + photons.indirect.mean,
+                 found = mean_of(samples, [](const Sample&s) { return s.caustic + s.indirect; }),
+                 others = mean_of(samples, [](const Sample&s) { return s.other - s.seen; });
+    const double least = std::max(shown, found) + others;
+    white = std::max(sorted[sorted.size() / 2], 0.1 * (least > 0 ? least : mean)) / 0.18;
+    // Photons show the light behind mirrors and glass, too. Paths have this light in `seen`. It counts once.
+    const double seen = mean_of(samples, [&](const Sample& s) { return std::min(s.seen, white); });
+    picture = std::max(shown, found + seen) + others;
     for (std::size_t p = 0; p < sum.size(); ++p) allowed[p] = allowed_error(sum[p], picture, 1);
   }
 };
@@ -405,7 +409,7 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
     rough.photons_per_path = double(photons.photons.size()) / kPaths;
     if (scene.lights.has_distant()) rough.paths_of_light = photon_paths(rough.photons_per_path, options.photons);
   }
-  const SeenLight shown = see_photons(scene, view, photons);
+  const SeenLight shown = rough.places > 0 ? see_photons(scene, view, photons) : SeenLight{};
   RayCounts counts;
   const Samples paths = take_samples(scene, view, nullptr, options, counts);
   const Picture picture{scene, view, options, Levels(paths, shown, view, options.seed)};

@@ -19,7 +19,7 @@ struct FramePoints : DividedGatherPoints {
   FramePoints(DividedGatherPoints points, const SceneFrame& frame);
 
   std::size_t anchored = 0;  ///< number of first points on static surfaces
-  std::string places_hash;   ///< of those
+  std::string places_hash;   ///< hash of the positions and normals of these points
   std::string high_hash;     ///< hash of high_shares; "" without
 };
 

@@ -33,8 +33,8 @@ class ObjectMotions {
   /// Number of objects; objects from this number on are still.
   std::size_t count() const { return motions_.size(); }
   bool all_still() const { return all_still_; }
-  /// By object, the transform from a space of this frame, such as a camera's, to one of the other frame. `still`: that
-  /// of objects that do not move.
+  /// By object, the transform from a space of this frame, such as a camera's, to one of the other frame. `still` is the
+  /// transform of objects that do not move.
   std::vector<Affine> transforms(const Affine& space_from_other, const Affine& here_from_space,
                                  const Affine& still) const;
 

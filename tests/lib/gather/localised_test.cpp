@@ -2,6 +2,7 @@
 #include "lib/gather/localised.h"
 
 #include <gtest/gtest.h>
+#include <immintrin.h>
 
 #include <cmath>
 
@@ -120,6 +121,22 @@ TEST(Influence, FieldIsRelativeToTheStaticIrradiance) {
   EXPECT_EQ(relative.at({0.2f, 0, 0.2f}, kUp), 0);
   EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));  // no record is valid there
   EXPECT_EQ(relative.gathered_share({0.2f, 0, 0.2f}, kUp), 0);
+}
+
+/// No record is valid half a metre away, as each of the record's spokes meets an obstacle at once: the influence there
+/// is infinite, and the place gathers. The processor counts denormal numbers as 0, as in the tools.
+TEST(Influence, WhereAnObstacleHidesAllRecordsThePlaceGathers) {
+  std::vector<IrradianceRecord> records{record(kMiddle, 5)};
+  records[0].clearance.reach = 1;
+  records[0].clearance.shares = {0, 0};
+  const std::vector<RecordChange> changes(1);
+  const InfluenceField field(records, changes, {});
+  const Vec3 hidden = kMiddle + Vec3{0.5f, 0, 0};
+  EXPECT_TRUE(std::isinf(field.at(hidden, kUp)));
+  const unsigned flags = _mm_getcsr();
+  _mm_setcsr(flags | 0x8040);
+  EXPECT_EQ(field.gathered_share(hidden, kUp), 1);
+  _mm_setcsr(flags);
 }
 
 TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {

@@ -83,7 +83,7 @@ TEST(ChoosePreview, ShrinksWithTheFourthRootOfThePhotons) {
   const PreviewChoice few = choose_preview({&pilot, 1}, 200, 10'000, 33),
                       many = choose_preview({&pilot, 1}, 200, 160'000, 33);
   EXPECT_NEAR(many.width / few.width, 0.5, 1e-12);
-  // As many photons as the pilot had: its kernel, s = sqrt(200 x 24 / (4 pi 65536)).
+  // As many photons as the pilot had: its kernel, s = sqrt(200 x 24 / (4 pi kPilotPaths)).
   EXPECT_NEAR(choose_preview({&pilot, 1}, 200, kPilotPaths, 1).width,
               std::sqrt(200 * 24 / (4 * std::numbers::pi * double(kPilotPaths))), 1e-12);
 }
