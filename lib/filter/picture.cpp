@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace tempolux {
-namespace {
-
-constexpr std::array<const char*, 6> kLayersInOrder{"emission", "specular", "direct", "caustic", "indirect", "volume"};
-
-}  // namespace
-
 std::string channel_name(const std::string& layer, std::size_t c) {
   return layer.empty() ? kComponents[c] : layer + "." + kComponents[c];
 }

@@ -10,6 +10,9 @@
 namespace tempolux {
 
 inline constexpr std::array<const char*, 3> kComponents{"R", "G", "B"};
+/// The layers of a frame, in the order of the bits of the channel halves.confirmed (formats/frames/frames.md).
+inline constexpr std::array<const char*, 6> kLayersInOrder{"emission", "specular", "direct",
+                                                           "caustic",  "indirect", "volume"};
 
 /// "direct.R", or "R" if `layer` is empty. c: 0, 1, 2.
 std::string channel_name(const std::string& layer, std::size_t c);

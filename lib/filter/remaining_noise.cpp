@@ -130,7 +130,7 @@ void write_remaining_noise(const RemainingError& error, Image& frame) {
   sum_blocks(frame, frame.rgb(""), exposure, [&](std::size_t c, std::size_t p) {
     return std::pair(double(error.whole[c][p]), double(error.noise[c][p]));
   }).write(kNoise, frame);
-  for (const std::string layer : {"emission", "specular", "direct", "caustic", "indirect", "volume"}) {
+  for (const std::string layer : kLayersInOrder) {
     if (!holds(frame, layer + ".R") || !holds(frame, layer + ".noise.R")) continue;
     const auto noise = frame.rgb(layer + ".noise");
     const Errors errors = sum_blocks(frame, frame.rgb(layer), exposure, [&](std::size_t c, std::size_t p) {

@@ -18,17 +18,21 @@ std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& positions) {
   Box3 box;
   for (const Vec3 p : positions) box.add(p);
   const float step = std::max(max_component(box.upper - box.lower) * kSamePlace, 1e-30f);
-  std::vector<std::uint32_t> order(positions.size()), first(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto place = [&](std::uint32_t v) {
-    const Vec3 p = (positions[v] - box.lower) / step;
-    return std::tuple(std::round(p.x), std::round(p.y), std::round(p.z));
+  struct Place {
+    float x, y, z;  // in steps
+    std::uint32_t vertex;
+    auto operator<=>(const Place&) const = default;
+    bool same(const Place& o) const { return x == o.x && y == o.y && z == o.z; }
   };
-  std::ranges::sort(order, {}, [&](std::uint32_t v) { return std::tuple(place(v), v); });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && place(order[i]) == place(order[i - 1]);
-    first[order[i]] = same ? first[order[i - 1]] : order[i];
+  std::vector<Place> places;
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    const Vec3 p = (positions[v] - box.lower) / step;
+    places.push_back({std::round(p.x), std::round(p.y), std::round(p.z), v});
   }
+  std::ranges::sort(places, std::less());
+  std::vector<std::uint32_t> first(positions.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    first[places[i].vertex] = i > 0 && places[i].same(places[i - 1]) ? first[places[i - 1].vertex] : places[i].vertex;
   return first;
 }
 

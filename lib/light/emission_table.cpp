@@ -13,7 +13,9 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLeastShare = kUnguidedShare;  ///< least share of the environment, and of all other lights together
+/// Least share of the photons for the environment, and for all other lights together: a share by flux misleads where
+/// most of the flux falls outside of the picture, and costs at most four times the variance.
+constexpr double kLeastShare = kUnguidedShare;
 
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 

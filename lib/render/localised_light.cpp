@@ -21,14 +21,16 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
 }
 
 std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading, Rgb* noise) const {
-  if (!moving_.contains(surface.object) && !influence_.near_influenced(surface.position, shading)) {
+  const bool moving = moving_.contains(surface.object);
+  if (!moving && !influence_.near_influenced(surface.position, shading)) {
     const RecordStore::Interpolated found = updated_.interpolate(surface.position, shading);
     if (found.weight > 0) {
       if (noise) *noise = found.noise;
       return found.irradiance;
     }
   }
-  const float gathered = gathered_share(surface, shading);
+  // gathered_share() without its look-up of influenced records, which was made above.
+  const float gathered = moving ? 1 : influence_.thresholds().gathered_share(influence_.at(surface.position, shading));
   Rgb irradiance{0.0f}, records_noise{0.0f};
   for (const auto& [records, share] : {std::pair{&updated_, 1 - gathered}, std::pair{&gathered_, gathered}}) {
     if (!(share > 0)) continue;
