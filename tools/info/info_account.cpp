@@ -90,7 +90,7 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     if (sum.biased())
       account.warnings.push_back(std::string(kLayers[l]) + " light is off by " + percent(sum.mean(), sum.error()) +
                                  " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
-                                 "INDIRECT=paths mend it");
+                                 "another INDIRECT mend it");
   }
   if (audited && account.line.empty()) account.line = "audit: indirect and caustic light are below 2 % of the picture";
   return account;
