@@ -136,7 +136,7 @@ struct ChannelFilters::Lobe {
     for (int v = -most_y; v <= most_y; ++v) {
       const std::size_t row = std::size_t(((v % rows) + rows) % rows) * std::size_t(columns);
       for (int u = no_left ? 0 : -most_x; u <= most_x; ++u)
-        if (const float w = weight(u, v)) add(row + std::size_t(((u % columns) + columns) % columns), u, v, w);
+        if (const float w = weight(u, v); w != 0) add(row + std::size_t(((u % columns) + columns) % columns), u, v, w);
     }
   }
 };

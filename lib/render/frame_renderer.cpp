@@ -110,9 +110,9 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
     const std::array<std::uint64_t, 2> seeds = seeds_of_halves(options);
     frame.half[0] = empty_layers(view, options);
     frame.half[1] = empty_layers(view, options);
-    for (int h = 0; h < 2; ++h)
+    for (std::size_t h = 0; h < 2; ++h)
       render_pass(scene, view, seeds[h], options, std::max(1, options.samples / 2), frame.half[h], frame.rays,
-                  options.progress ? [&, h](double f) { options.progress((f + h) / 2); } : options.progress);
+                  options.progress ? [&, h](double f) { options.progress((f + double(h)) / 2); } : options.progress);
     join_halves(frame);
   }
   for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
