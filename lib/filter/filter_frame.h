@@ -34,8 +34,8 @@ struct WindowLight {
 class FrameFilter {
  public:
   /// `middle` is made from the image that finish() or filter() receives; middle and flow must outlive this object.
-  /// `before` and `after` are the numbers of frames on each side of the window. `dark` is dark_of() the whole picture
-  /// (choose.h), for an image that is a part of it. If empty, dark_of() the image is used.
+  /// `before` and `after` are the numbers of frames on each side of the window. If the image is a part of a
+  /// picture, `dark` is dark_of() of the whole picture (choose.h). If `dark` is empty, dark_of() of the image is used.
   FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
               std::optional<float> dark = {});
   ~FrameFilter();

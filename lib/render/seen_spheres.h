@@ -37,12 +37,12 @@ struct SeenAround {
 /// ratio of `width` and `height` of the picture counts.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
-/// Computes spheres around the places, one around each cell of an octree. Sizes of cells are powers of two and corners
-/// are multiples of the size, so that a place which moves a little leaves the cells as they are. Cells with more than
-/// 1/32 of the weight are divided in eight, the heaviest first. A cell stays whole if there would be more than
-/// formats::kMaxViewSpheres cells, or cells smaller than about a quarter of the median distance of visible places.
-/// Cells with less than 1/512 of the weight get no sphere; uniform photons light them. The weight of a sphere is its
-/// cell's share, rounded to a power of two.
+/// Divides space into the cells of an octree and computes a sphere around each cell that holds places. A cell's size is
+/// a power of two, and its corners are multiples of the size, so small movements of the places do not change the cells.
+/// Cells with more than 1/32 of the weight are divided in eight, the heaviest first. A cell stays whole if there would
+/// be more than formats::kMaxViewSpheres cells, or cells smaller than about a quarter of the median distance of visible
+/// places. Cells with less than 1/512 of the weight get no sphere; uniform photons light them. The weight of a sphere
+/// is its cell's share, rounded to a power of two.
 ///
 /// Returns no sphere if aiming gains little. The gain is how much denser photons aimed at the spheres (Aim) are than
 /// uniform photons on the disc of radius `scene_radius` [m], as the geometric mean over places. Spheres need a gain of

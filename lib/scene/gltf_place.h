@@ -9,7 +9,8 @@ namespace tempolux::gltf {
 /// Throws InputError "FILE: PLACE: WHAT".
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what);
 
-/// The first line of a text from a file or a library, at most `length` bytes, without control characters.
+/// Returns the first line of `text`, cut to `length` bytes and without control characters. Messages quote text of files
+/// and libraries in this form.
 std::string one_line(std::string text, std::size_t length);
 
 /// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.

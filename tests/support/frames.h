@@ -48,6 +48,14 @@ inline CameraView from_above() {
   return CameraView(camera, {}, 64, 36);
 }
 
+/// Tracer and lights of a frame, which must outlive this object.
+struct Lit {
+  Tracer tracer;
+  Lights lights;
+  explicit Lit(const SceneFrame& frame) : tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
+  RenderScene scene() const { return {tracer, lights}; }
+};
+
 /// An empty photon map: all light but direct light is 0.
 struct NoLight {
   PhotonLight photons;

@@ -52,7 +52,7 @@ void count_work(Tool& tool, const RenderedFrame& rendered, const Tracer& tracer)
   stats.set("spread", rendered.spread);
 }
 
-/// A rendered frame, and what it was rendered from.
+/// A rendered frame, with the scene, the lights, the view and the options that it was rendered from.
 struct Shot {
   const RenderScene& scene;
   const EmissionTable& emission;

@@ -11,6 +11,7 @@ namespace {
 using test::Cornell;
 using test::from_above;
 using test::HandMadeScene;
+using test::Lit;
 using test::NoLight;
 
 struct Mean {
@@ -101,15 +102,13 @@ TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
     HandMadeScene made;
     made.add_quad({-2, -2, 0}, {edge, -2, 0}, {edge, 2, 0}, {-2, 2, 0}, test::matte(Rgb(0.0f), Rgb(1.0f)));
     made.add_quad({edge, -2, 0}, {2, -2, 0}, {2, 2, 0}, {edge, 2, 0}, test::matte(Rgb(0.0f)));
-    const SceneFrame& frame = made.frame();
-    const Tracer tracer(frame);
-    const Lights lights(frame, build_emission_table({&frame, 1}));
+    const Lit lit(made.frame());
     const CameraView view = from_above();
     FrameOptions options;
     options.samples = 4;
     options.pixel_error = 1e-6;
     options.adaptive_limit = 16;
-    EXPECT_DOUBLE_EQ(render_frame({tracer, lights}, view, options).samples_per_pixel, 4 + 12 * taken / 64) << column;
+    EXPECT_DOUBLE_EQ(render_frame(lit.scene(), view, options).samples_per_pixel, 4 + 12 * taken / 64) << column;
   }
 }
 
@@ -122,15 +121,13 @@ TEST(AdaptiveFrame, KnownEdgesAreComparedWithEdges) {
   made.add_quad({-2, -2, 0}, {edge, -2, 0}, {edge, 2, 0}, {-2, 2, 0}, test::matte(Rgb(0.8f)));
   made.add_quad({edge, -2, 0}, {2, -2, 0}, {2, 2, 0}, {edge, 2, 0}, test::matte(Rgb(0.0f)));
   made.add_point_light({0, 0, 10000}, Rgb(1e8f));
-  const SceneFrame& frame = made.frame();
-  const Tracer tracer(frame);
-  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const Lit lit(made.frame());
   const CameraView view = from_above();
   FrameOptions options;
   options.samples = 4;
   options.pixel_error = 0.001;
   options.adaptive_limit = 16;
-  const auto samples = [&] { return render_frame({tracer, lights}, view, options).samples_per_pixel; };
+  const auto samples = [&] { return render_frame(lit.scene(), view, options).samples_per_pixel; };
   EXPECT_GT(samples(), 4 + 6 * 5.0 / 64);
   options.edges.assign(64 * 36, 0);
   for (std::size_t y = 0; y < 36; ++y) options.edges[64 * y + 32 + 20] = 1;
@@ -169,13 +166,11 @@ TEST(AdaptiveFrame, BordersOfShadowsKeepTheirMean) {
   made.add_quad({-0.5f, -0.5f, 2}, {-0.5f, 0.5f, 2}, {0.5f, 0.5f, 2}, {0.5f, -0.5f, 2},
                 test::matte(Rgb(0.0f), Rgb(1.0f)));
   made.add_quad({2.5f, -3, 1.2f}, {-3, 2.5f, 1.2f}, {-6, -0.5f, 1.2f}, {-0.5f, -6, 1.2f}, test::matte(Rgb(0.0f)));
-  const SceneFrame& frame = made.frame();
-  const Tracer tracer(frame);
-  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const Lit lit(made.frame());
   const CameraView view = from_above();
-  const NoLight none(tracer);
+  const NoLight none(lit.tracer);
   const auto light_there = [&](const FrameOptions& options) {
-    const RenderedFrame rendered = render_frame({tracer, lights}, view, options);
+    const RenderedFrame rendered = render_frame(lit.scene(), view, options);
     double light = 0;
     int looked_at = 0;
     for (int y = 0; y < 36; ++y)
@@ -219,9 +214,7 @@ TEST(AdaptiveFrame, LampsSmallerThanPixelsKeepTheirLight) {
       made.add_quad({x, y - kSide, 2}, {x, y, 2}, {x + kSide, y, 2}, {x + kSide, y - kSide, 2},
                     test::matte(Rgb(0.0f), Rgb(25.0f)));
     }
-  const SceneFrame& frame = made.frame();
-  const Tracer tracer(frame);
-  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const Lit lit(made.frame());
   const CameraView view = from_above();
   FrameOptions options;
   options.samples = 4;
@@ -229,7 +222,7 @@ TEST(AdaptiveFrame, LampsSmallerThanPixelsKeepTheirLight) {
   Mean means;
   for (options.seed = 1; options.seed <= 32; ++options.seed) {
     double mean = 0;
-    for (const Layers& pixel : render_frame({tracer, lights}, view, options).mean.pixels)
+    for (const Layers& pixel : render_frame(lit.scene(), view, options).mean.pixels)
       mean += double(pixel[Layer::specular].g) / (64 * 36);
     means.add(mean);
   }

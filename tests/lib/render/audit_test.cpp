@@ -13,6 +13,7 @@ namespace tempolux {
 namespace {
 
 using test::HandMadeScene;
+using test::Lit;
 using test::matte;
 
 constexpr int kWidth = 64, kHeight = 36;
@@ -37,12 +38,6 @@ RenderedFrame even_frame(Layer layer, float radiance) {
   for (Layers& pixel : frame.mean.pixels) pixel[layer] = Rgb(radiance);
   return frame;
 }
-
-struct Lit {
-  Tracer tracer;
-  Lights lights;
-  explicit Lit(const SceneFrame& frame) : tracer(frame), lights(frame, build_emission_table({&frame, 1})) {}
-};
 
 std::vector<AuditEntry> audit(const Lit& lit, const CameraView& view, const RenderedFrame& frame, std::uint64_t paths,
                               std::uint64_t seed = 1) {

@@ -50,6 +50,17 @@ double mean_of(const KeptHemispheres& kept) {
   return sum / double(kept.records.size());
 }
 
+/// 10 x 10 places on the floor, `apart` [m] from each other; none after a first frame, which has records there.
+RecordPicture places_on_floor(const Tracer& tracer, float apart, bool later) {
+  return {[&tracer, apart, later](const Look& look) -> std::optional<SeenPoint> {
+            Hit hit;
+            if (later || !tracer.intersect({{apart * look.x, 0.1f, apart * look.y}, {0, -1, 0}}, hit))
+              return std::nullopt;
+            return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+          },
+          10, 10};
+}
+
 /// Records of one frame: the first frame, or the frame after `kept`. high: share of the point's light.
 KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres kept, TemporalCounts& counts) {
   const SceneFrame& frame = now.scene.frame();
@@ -70,14 +81,7 @@ KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres 
                               each_place_its_own(), {}, 8);
   if (before) gather.advance(kept, counts);
   RecordStore store;
-  gather.place({[&](const Look& look) -> std::optional<SeenPoint> {
-                  Hit hit;
-                  if (before || !tracer.intersect({{0.02f * look.x, 0.1f, 0.02f * look.y}, {0, -1, 0}}, hit))
-                    return std::nullopt;
-                  return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-                },
-                10, 10},
-               kept, store, counts);
+  gather.place(places_on_floor(tracer, 0.02f, before != nullptr), kept, store, counts);
   return kept;
 }
 
@@ -149,14 +153,7 @@ TEST(DividedLight, LampsBesideACeilingAreSampledInEachFrame) {
     TemporalCounts counts;
     if (before) gather.advance(kept, counts);
     RecordStore store;
-    gather.place({[&](const Look& look) -> std::optional<SeenPoint> {
-                    Hit hit;
-                    if (before || !tracer.intersect({{0.01f * look.x, 0.1f, 0.01f * look.y}, {0, -1, 0}}, hit))
-                      return std::nullopt;
-                    return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-                  },
-                  10, 10},
-                 kept, store, counts);
+    gather.place(places_on_floor(tracer, 0.01f, before != nullptr), kept, store, counts);
     ASSERT_EQ(kept.records.size(), 100u);
     double sum = 0, squares = 0;
     int anchored = 0;
