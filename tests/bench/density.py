@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Photons over time in figures: the tables of docs/methods/density.md.
+"""Photons over time in figures: the tables of docs/notebook/density.md.
 
     python3 tests/bench/density.py BIN WORK static|alarms|period|events|equal|preview ... [--shared FOLDER] [--frames N]
 
