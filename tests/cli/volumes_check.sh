@@ -123,6 +123,8 @@ a, b = (json.loads(subprocess.run(["tempolux-info", "--json", f + ".photons"], c
 assert b["emitted_paths"] == a["emitted_paths"] + 5000, b["emitted_paths"]
 assert all(abs(x / y - 1) < 1e-6 for x, y in zip(a["emitted_flux_W"], b["emitted_flux_W"]))
 END
+# The number of paths that --photons means has another number of groups. The map's own number holds.
+photon-trace ${sun%--photons*} $(echo "${sun#*--photons}" | cut -d' ' -f3-) --frame 1 --update fresh.photons --refine 5k -q -o again.photons || bad 'refine without --photons'
 expect 2 'is the map of another state' photon-trace $sun --frame 1 --update pilots.photons --refine 5k -o x.photons
 expect 2 'has another number of groups or paths' photon-trace $sun --frame 1 --update refined.photons --share 10% -o x.photons
 # What movers change cannot be told apart where all light meets media: said before anything is made.

@@ -136,7 +136,7 @@ void PhotonTracing::trace_global(int frame_number) {
   const Tracer tracer(frame, static_tree_);
   const Lights lights(frame, emission);
   PhotonOptions options = photon_options(frame_number);
-  options.pilots = pilots_of(options_.updating, options, frame.frame);
+  set_groups(options_.updating, frame.frame, options);
   const formats::PhotonHeader header = header_of(frame, emission, frame_number);
 
   tool_.stats().phase("trace", true);

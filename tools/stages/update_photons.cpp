@@ -138,14 +138,20 @@ void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArgu
         "photons look at other places in each frame");
 }
 
-std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& photons, int frame) {
-  if (arguments.updates())
-    return formats::PhotonReader(previous_name(arguments, frame), {.digest = false}).header().pilots;
+void set_groups(const UpdateArguments& arguments, int frame, PhotonOptions& photons) {
+  if (arguments.updates()) {
+    const formats::PhotonHeader previous =
+        formats::PhotonReader(previous_name(arguments, frame), {.digest = false}).header();
+    photons.pilots = previous.pilots;
+    if (arguments.refine > 0) photons.group_count = previous.group_count;
+    return;
+  }
+  photons.pilots = 0;
   const double share = share_of(arguments.pilots, "--pilots");
-  if (!(share > 0)) return 0;
+  if (!(share > 0)) return;
   const std::uint32_t groups =
       photons.group_count ? photons.group_count : automatic_group_count(photons.photon_count, true);
-  return std::uint32_t(
+  photons.pilots = std::uint32_t(
       std::clamp(std::ceil(share * double(photons.photon_count) / groups), 1.0, double(formats::photons::kMostPilots)));
 }
 

@@ -25,8 +25,9 @@ void add_update_options(Tool& tool, UpdateArguments& arguments);
 /// "dynamic".
 void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments);
 
-/// Pilots per group of the new map; for an update those of the earlier map.
-std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& photons, int frame);
+/// Sets the number of pilots per group of the new map: --pilots, or that of the earlier map. --refine also takes the
+/// number of groups from the earlier map, because --photons does not say how many paths that map has.
+void set_groups(const UpdateArguments& arguments, int frame, PhotonOptions& photons);
 
 /// Inputs of a new map.
 struct MapToUpdate {
