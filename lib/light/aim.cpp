@@ -6,6 +6,7 @@
 
 #include "lib/core/check.h"
 #include "lib/core/frame.h"
+#include "lib/core/pi.h"
 #include "lib/core/sampling.h"
 
 namespace tempolux {
@@ -16,7 +17,8 @@ Vec2 disc_point(double u, double v) {
   return sample_disc_concentric({below_one(u), below_one(v)});
 }
 
-/// 1 - cosine of half the angle that a sphere covers, seen from outside the sphere. Small angles keep all digits.
+/// 1 - cosine of half the angle that a sphere covers, seen from a point outside the sphere. Small angles keep all
+/// digits.
 double one_minus_cos(double radius, Vec3d to_centre) {
   const double sine2 = std::min(1.0, radius * radius / dot(to_centre, to_centre));
   return sine2 / (1 + std::sqrt(1 - sine2));
@@ -102,7 +104,7 @@ Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
   const Vec3d to = discs_[chosen].centre - from;
   // The direction is uniform over the cone, so 1 - cos of its angle to the axis is uniform.
   const double off = std::min(left / discs_[chosen].share, 1.0) * one_minus_cos(discs_[chosen].radius, to),
-               phi = 2 * M_PI * double(u.y);
+               phi = 2 * kPiD * double(u.y);
   const double across = std::sqrt(off * (2 - off));
   const Frame axes(Vec3(to * (1 / length(to))));
   const Vec3 direction =
@@ -114,14 +116,14 @@ double Aim::pdf_solid_angle(Vec3 place, Vec3 direction) const {
   return pdf_solid_angle(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
 }
 
-/// A direction meets the chosen sphere by construction, so rounding at the rim is ignored for that sphere. `place` is
-/// relative to the scene's centre.
+/// `chosen` is the sphere towards which the direction was drawn: it counts even where rounding puts the direction just
+/// outside the rim. `place` is relative to the scene's centre.
 double Aim::pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const {
   double pdf = 0;
   for (std::size_t k = 0; k < given_; ++k) {
     const Vec3d to = discs_[k].centre - place, aside = cross(to, Vec3d(direction));
     if (k == chosen || (dot(to, Vec3d(direction)) > 0 && dot(aside, aside) < discs_[k].radius * discs_[k].radius))
-      pdf += discs_[k].share / (given_share_ * 2 * M_PI * one_minus_cos(discs_[k].radius, to));
+      pdf += discs_[k].share / (given_share_ * 2 * kPiD * one_minus_cos(discs_[k].radius, to));
   }
   return pdf;
 }

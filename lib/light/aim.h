@@ -17,12 +17,11 @@ struct AimSphere {
   double weight = 0;  ///< above 0; Aim divides by the sum of all weights
 };
 
-/// Where parallel light enters the scene. Without spheres, photons start uniformly on a disc of the scene sphere's
-/// radius R in front of the scene. With spheres, a photon starts on that disc with probability kUniform; else it
-/// chooses sphere k with probability w_k and starts uniformly on the disc of radius r_k that the sphere covers, seen
-/// along the light. The constructor adds larger spheres around all given ones, each twice as wide as the one before, up
-/// to the scene's; together they have the share kAround.
-/// The density [1/m^2] of a start point sums over all ways to choose the point:
+/// Start points of parallel light. A photon starts with probability kUniform uniformly on a disc of the scene sphere's
+/// radius R in front of the scene. Else it chooses sphere k with probability w_k and starts uniformly on the disc of
+/// radius r_k that the sphere covers, seen along the light. The constructor adds larger spheres around all given ones,
+/// each twice as wide as the one before, up to the scene's; together they have the share kAround.
+/// The pdf [1/m^2] of a start point sums over all ways to choose the point:
 ///     p = kUniform / (pi R^2) + (1 - kUniform) sum_k w_k [disc k holds the point] / (pi r_k^2)
 /// A photon's flux is divided by p, so the expected light does not depend on the spheres or their weights. Flux is at
 /// most 1 / kUniform times the flux without spheres, so badly placed spheres cost little.
@@ -30,7 +29,9 @@ class Aim {
  public:
   static constexpr double kUniform = kUnguidedShare, kAround = kUnguidedShare;  ///< derived in docs/methods/aim.md
 
+  /// No aim: empty().
   Aim() = default;
+  /// Radii and weights must be above 0. Without spheres or scene the aim is empty. Scene space, m.
   Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius);
 
   bool empty() const { return discs_.empty(); }
@@ -40,9 +41,10 @@ class Aim {
     Vec3 origin{};    ///< of the photon; scene space, in front of the scene sphere
     double flux = 0;  ///< flux as a multiple of an unaimed photon's flux: 1 / (p pi R^2); 0 outside the scene's disc
   };
-  /// Start point of light that travels along `travel` (unit). u and v are in [0, 1): u chooses the disc and, stretched,
-  /// is the first coordinate on the disc; v is the second. Neighbouring numbers give neighbouring points. The mean of
-  /// flux over u and v is 1, also where spheres reach out of the scene sphere. Must not be called if empty().
+  /// Start point of light that travels along `travel` (unit). u and v are in [0, 1). u chooses the disc; its place
+  /// inside the disc's part of [0, 1) is the first coordinate on the disc, v the second. Neighbouring numbers give
+  /// neighbouring points. The mean of flux over u and v is 1, also where spheres reach out of the scene sphere. Must not
+  /// be called if empty().
   Start start(Vec3 travel, double u, double v) const;
 
   /// True if one of the given spheres holds the point (scene space).
@@ -54,19 +56,19 @@ class Aim {
     Vec3 direction;              ///< unit
     double pdf_solid_angle = 0;  ///< [1/sr]; sums over all spheres that lie in this direction
   };
-  /// u.x chooses the sphere and, stretched, is the first coordinate in its cone. Must not be called if empty() or
-  /// holds(place).
+  /// u.x chooses the sphere and gives the angle to the cone's axis, u.y the angle around the axis. Must not be called if
+  /// empty() or holds(place).
   Way towards(Vec3 place, Vec2 u) const;
   /// pdf [1/sr] with which towards() gives this direction (unit).
   double pdf_solid_angle(Vec3 place, Vec3 direction) const;
-  /// share of the bounces outside the spheres that go towards a sphere: docs/methods/aim.md
+  /// Share of the bounces outside the spheres that go towards a sphere. Derived in docs/methods/aim.md.
   static constexpr float kTowards = 0.5f;
 
  private:
   struct Disc {
-    Vec3d centre;  // relative to the scene sphere's centre
+    Vec3d centre;  // relative to the scene sphere's centre, m
     double radius;
-    double below;  // probability of the scene's whole disc and of all earlier discs: kUniform + sum of their shares
+    double below;  // probability of choosing the scene's disc or an earlier disc: kUniform + sum of their shares
     double share;  // probability of this disc
     double gain;   // share R^2 / r^2 with the scene's radius R: term of the disc in p pi R^2 (Start::flux)
   };
@@ -74,7 +76,7 @@ class Aim {
   double pdf_solid_angle(Vec3d place, Vec3 direction, std::size_t chosen) const;
   std::vector<Disc> discs_;  ///< the given spheres come first
   std::size_t given_ = 0;
-  double given_share_ = 0;  ///< of all discs
+  double given_share_ = 0;  ///< probability of choosing any of the given spheres
   Vec3 scene_centre_{};
   double scene_radius_ = 0;
 };

@@ -13,7 +13,7 @@ namespace {
 /// is not 0 after rounding.
 constexpr float kSamePlace = 0x1p-20f;
 
-/// By vertex, the number of the first vertex at the same place.
+/// For each vertex, the number of the first vertex at the same place.
 std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& positions) {
   Box3 box;
   for (const Vec3 p : positions) box.add(p);
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> first_at_place(const std::vector<Vec3>& positions) {
   return first;
 }
 
-/// Groups of triangles that are joined step by step.
+/// Disjoint sets of triangles; a set is named by one of its triangles.
 struct Groups {
   std::vector<std::uint32_t> parent;
   explicit Groups(std::size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
@@ -47,12 +47,12 @@ struct Groups {
   void join(std::uint32_t a, std::uint32_t b) { parent[of(a)] = of(b); }
 };
 
-/// An edge of a triangle from `low` to the vertex `high`, or back.
+/// An edge of a triangle from the vertex `low` to the vertex `high`; `back`: from high to low.
 struct Edge {
   std::uint32_t low, high, triangle;
   bool back;
   bool operator<(const Edge& o) const { return std::tie(low, high, back) < std::tie(o.low, o.high, o.back); }
-  bool same_place(const Edge& o) const { return low == o.low && high == o.high; }
+  bool joins_same(const Edge& o) const { return low == o.low && high == o.high; }
 };
 
 bool is_opaque(const Material& m) { return m.alpha_mode == Material::Alpha::opaque && m.transmission == 0 && !m.unlit; }
@@ -82,15 +82,15 @@ std::vector<Box3> closed_parts(const SceneFrame& frame, std::uint32_t surface) {
   std::vector<std::uint32_t> torn;  // triangles at edges that do not belong to two triangles of opposite winding
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t last = i + 1;
-    for (; last < edges.size() && edges[last].same_place(edges[i]); ++last)
+    for (; last < edges.size() && edges[last].joins_same(edges[i]); ++last)
       groups.join(edges[i].triangle, edges[last].triangle);
     if (last - i != 2 || edges[i].back == edges[i + 1].back) torn.push_back(edges[i].triangle);
     i = last;
   }
-  std::vector<std::uint8_t> open(triangles.size());  // by group, as all below
+  std::vector<std::uint8_t> open(triangles.size());  // by group, like `box` and `volume`
   for (const std::uint32_t t : torn) open[groups.of(t)] = 1;
   std::vector<Box3> box(triangles.size());
-  std::vector<double> volume(triangles.size());  // six times, in m^3
+  std::vector<double> volume(triangles.size());  // six times the signed volume, m^3
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const std::uint32_t group = groups.of(t);
     const Vec3d origin(positions[triangles[group][0]]);

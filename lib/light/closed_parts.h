@@ -8,11 +8,11 @@
 
 namespace tempolux {
 
-/// By triangle of the surface, the box [m, scene space] around the closed part that the triangle belongs to; an empty
-/// box for other triangles. A part is all triangles that are joined by edges. The part is closed if it is opaque, each
-/// of its edges belongs to two triangles of opposite winding, and its signed volume is positive. From a point outside
-/// the box the part hides the backs of all its triangles; a part that crosses itself may still show some. Exporters
-/// often make such lamps two-sided.
+/// For each triangle of the surface, the box [m, scene space] around the closed part that holds the triangle; an empty
+/// box if no closed part does. A part is a set of triangles that edges join. A part is closed if it is opaque, each of
+/// its edges belongs to two triangles of opposite winding, and its signed volume is positive. Seen from outside the
+/// box, a closed part hides the backs of its triangles, unless it crosses itself. Exporters often make such lamps
+/// two-sided, although nobody sees their backs.
 std::vector<Box3> closed_parts(const SceneFrame& frame, std::uint32_t surface);
 
 }  // namespace tempolux

@@ -13,14 +13,9 @@
 namespace tempolux {
 namespace {
 
-/// Least share of the photons for the environment, and for all other lights together: a share by flux misleads where
-/// most of the flux falls outside of the picture, and costs at most four times the variance.
-constexpr double kLeastShare = kUnguidedShare;
-
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 
-/// Updates `weights`, the largest weight of each slot over the frames seen so far, with the weights of one more
-/// frame.
+/// Raises `weights`, the largest weight of each slot over several frames, by the weights of one more frame.
 void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vector<double>& weights) {
   std::size_t slot = 0;
   const auto join = [&](Rgbd flux) {
@@ -33,13 +28,15 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
   for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
 }
 
-/// Appends the environment's weight to the weights of the other slots.
+/// Appends the environment's weight to the weights of the other slots. Most of the flux may fall outside of the
+/// picture, so a share by flux may mislead: the environment and the others each get at least kUnguidedShare.
 void add_environment(const EmissionTable& table, std::vector<double>& weights) {
   const double disc = kPiD * table.sphere_radius * table.sphere_radius;
   double weight = emission_weight(table.environment->integral() * disc), others = 0;
   for (const double w : weights) others += w;
   if (weight > 0 && others > 0)
-    weight = std::clamp(weight, others * kLeastShare / (1 - kLeastShare), others * (1 - kLeastShare) / kLeastShare);
+    weight = std::clamp(weight, others * kUnguidedShare / (1 - kUnguidedShare),
+                        others * (1 - kUnguidedShare) / kUnguidedShare);
   weights.push_back(weight);
 }
 

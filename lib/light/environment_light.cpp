@@ -47,9 +47,10 @@ EnvironmentLight::Corners EnvironmentLight::corners(std::uint32_t row, std::uint
   return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right]};
 }
 
-/// Integrates radiance over the sphere. The mean over a row is the mean of its pixels at any latitude. Between two
-/// rows at the polar angles a and b, radiance is (1 - t) first + t second; its integral with the sine has the parts
-/// int (1 - t) sin = cos a - (sin b - sin a) / (b - a) and int t sin = (sin b - sin a) / (b - a) - cos b.
+/// Integrates radiance over the sphere. Between two rows of pixels at the polar angles a and b, the mean radiance over
+/// all longitudes is (1 - t) first + t second, where first and second are the means of both rows' pixels. The weights
+/// of both rows are int (1 - t) sin = cos a - (sin b - sin a) / (b - a) and int t sin = (sin b - sin a) / (b - a) -
+/// cos b.
 void EnvironmentLight::integrate() {
   std::vector<double> weight(height_, 0.0);
   for (std::uint32_t row = 0; row <= height_; ++row) {
@@ -98,7 +99,7 @@ void EnvironmentLight::build_distribution() {
   for (const double w : row_weight) row_end_.push_back(total > 0 ? (sum += w) / total : 0);
 }
 
-/// The row of cells that u1 falls in.
+/// The row of cells whose part of [0, 1) holds u1.
 std::uint32_t EnvironmentLight::row_for(double u1) const {
   return std::uint32_t(std::upper_bound(row_end_.begin(), row_end_.end() - 1, u1) - row_end_.begin());
 }
@@ -116,7 +117,7 @@ EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
   // Position along the row in columns, counted from the first column's centre, in [0, width).
   double along = (0.5 - longitude / (2 * kPiD)) * width_ - 0.5;
   along -= std::floor(along / width_) * width_;
-  // position in rows of cells; the caps at the poles have half a row each
+  // Position in rows of cells from the pole +Y. The first and last row of cells are half as high as the others.
   const double down = polar_angle / kPiD * height_ + 0.5;
   Place place{std::min(std::uint32_t(down), height_), std::min(std::uint32_t(along), width_ - 1), 0, 0};
   place.x = std::clamp(along - place.column, 0.0, 1.0);
@@ -131,7 +132,8 @@ double EnvironmentLight::probability(std::uint32_t row, std::uint32_t column) co
   return all > 0 ? of_row * cell / all : 0;
 }
 
-/// A cap is uniform over its area, all else bilinear over longitude and latitude.
+/// The luminance of a cell in the first or last row does not vary with latitude, so `across` is uniform over the area
+/// there. In other cells the pdf is bilinear over longitude and latitude.
 double EnvironmentLight::pdf_solid_angle(const Place& place, const Luminances& at, double sin_polar) const {
   const double of_cell = probability(place.row, place.column);
   if (!(of_cell > 0)) return 0;
@@ -162,8 +164,8 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   const double a = polar(row), b = polar(row + 1);
   double angle;
   if (polar_cap(row)) {
-    // Uniform in the cosine, which is held as 1 - cos of the angle from the cap's own pole: small angles keep their
-    // digits.
+    // The cosine of the angle from the cap's own pole is uniform. Its half angle's sine keeps the digits of small
+    // angles.
     const double half = std::sqrt(row == 0 ? across : 1 - across) * std::sin(0.5 * (b - a));
     angle = row == 0 ? 2 * std::asin(half) : kPiD - 2 * std::asin(half);
     place.y = (angle - a) / (b - a);

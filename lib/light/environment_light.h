@@ -13,22 +13,24 @@ namespace tempolux {
 /// Samples directions of an environment map. A cell lies between the centres of four neighbouring pixels; radiance is
 /// bilinear in longitude and latitude inside a cell. The cells of the first and last row reach to the poles. A cell is
 /// drawn in proportion to the mean luminance of its corners times its solid angle; a direction inside the cell is drawn
-/// in proportion to its bilinear luminance. A direction of density 0 is black. radiance / density is nearly constant:
-/// only colour varies, and the sine of the polar angle inside a cell, which is replaced by the cell's mean.
+/// in proportion to its bilinear luminance. A direction of pdf 0 is black. radiance / pdf is nearly constant, so light
+/// samples have little noise: only colour varies, and sin(polar angle) within a cell.
 class EnvironmentLight {
  public:
   /// The environment must outlive this object. Memory: 4 bytes per pixel.
   explicit EnvironmentLight(const Environment& environment);
 
-  /// A place in the map: the cell (row, column) and the position inside it, in [0, 1]. Look-ups that need several
-  /// values for one direction compute the place once.
+  /// A place in the map: the cell (row, column), and the position (x, y) inside the cell, in [0, 1]. A caller that
+  /// needs several values for one direction computes its place once.
   struct Place {
     std::uint32_t row, column;
     double x, y;
   };
+  /// The place of a direction (unit, towards the environment).
   Place place_of(Vec3 direction) const;
   /// Radiance [W/m^2/sr] that arrives from `direction` (unit).
   Rgb radiance(Vec3 direction) const { return radiance_at(place_of(direction)); }
+  /// Radiance [W/m^2/sr] at a place.
   Rgb radiance_at(const Place& place) const { return corners(place.row, place.column).radiance(place.x, place.y); }
   /// Integral of radiance over all directions [W/m^2], in closed form.
   Rgbd integral() const { return integral_; }
@@ -41,11 +43,11 @@ class EnvironmentLight {
   /// u1 in [0, 1) chooses the row of cells and, stretched, the position across the row. u2 in [0, 1) chooses the cell
   /// and the position along the row. False if the environment is black.
   bool sample(double u1, double u2, Sample& sample) const;
-  /// Density [1/sr] with which sample() gives `direction` (unit).
-  double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
+  /// pdf [1/sr] with which sample() gives `direction` (unit); `place` is its place.
   double pdf_solid_angle(const Place& place, Vec3 direction) const;
 
  private:
+  /// Radiance at the corners of a cell, W/m^2/sr.
   struct Corners {
     const Rgb &upper_left, &upper_right, &lower_left, &lower_right;
     Rgb radiance(double x, double y) const;
@@ -57,7 +59,7 @@ class EnvironmentLight {
   };
   static Luminances luminances(const Corners& corners);
   Corners corners(std::uint32_t row, std::uint32_t column) const;
-  double polar(std::uint32_t row) const;  ///< angle from +Y of a row's upper edge
+  double polar(std::uint32_t row) const;  ///< polar angle from +Y of the upper edge of a row of cells
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
   double probability(std::uint32_t row, std::uint32_t column) const;
   double pdf_solid_angle(const Place& place, const Luminances& at, double sin_polar) const;

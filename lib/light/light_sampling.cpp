@@ -19,11 +19,13 @@ double sun_weight(const PlacedLight& placed, Vec3 normal) {
   return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
 }
 
-/// Density [1/sr] of a direction of the environment that is drawn by radiance or from a grid.
+/// pdf [1/sr] of a direction of the environment that is drawn by radiance or from a grid.
 double mixed_pdf(double by_radiance, const SkyGuide::Grid& grid, Vec3 direction) {
-  return Lights::kUnguided * by_radiance + (1 - Lights::kUnguided) * grid.pdf_solid_angle(direction);
+  return kUnguidedShare * by_radiance + (1 - kUnguidedShare) * grid.pdf_solid_angle(direction);
 }
 
+/// Probability of choosing a distant light. `distant` and `others` are irradiances from both kinds of light, the second
+/// only an estimate; so if both are above 0, each kind gets at least a fifth.
 double share_of_distant(double distant, double others) {
   return others > 0 ? std::clamp(distant / (distant + others), 0.2, 0.8) : 1;
 }
@@ -43,9 +45,7 @@ double Lights::sum_distant(Vec3 normal) const {
   return total;
 }
 
-/// Probability of choosing a distant light (environment or directional): its share in an estimate of the irradiance. If
-/// both distant lights and others can reach the point, either kind gets at least a fifth. `total` receives the weight
-/// of the distant lights.
+/// Probability of choosing a distant light at a point. `total` receives the weight of the distant lights.
 double Lights::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
   total = distant_irradiance(normal, from);
   return total > 0 ? share_of_distant(total, tree_.start(point, normal).sum) : 0;
@@ -84,8 +84,8 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, double u, double probability, L
   return true;
 }
 
-/// u was computed from u_float, which has 24 bits. Where choosing has used these up, bits of the other coordinate fill
-/// up u.
+/// u was stretched from u_float.x, which has 24 random bits. Choosing used some of them, so bits made from the other
+/// coordinate are added in their places; likewise for u_float.y.
 bool Lights::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability,
                                 LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
@@ -96,8 +96,8 @@ bool Lights::sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u,
   if (!grid) {
     if (!environment_->sample(u1, u2, found)) return false;
   } else {
-    if (u1 >= kUnguided) found.direction = grid->sample((u1 - kUnguided) / (1 - kUnguided), u2);
-    else if (!environment_->sample(u1 / kUnguided, u2, found)) return false;
+    if (u1 >= kUnguidedShare) found.direction = grid->sample((u1 - kUnguidedShare) / (1 - kUnguidedShare), u2);
+    else if (!environment_->sample(u1 / kUnguidedShare, u2, found)) return false;
     const EnvironmentLight::Place place = environment_->place_of(found.direction);
     found.radiance = environment_->radiance_at(place);
     found.pdf_solid_angle = mixed_pdf(environment_->pdf_solid_angle(place, found.direction), *grid, found.direction);
@@ -116,7 +116,7 @@ bool Lights::sample_placed(const PlacedLight& placed, Vec3 point, double probabi
   const Vec3d to = Vec3d(placed.position) - Vec3d(point);
   const double distance = length(to);
   if (!(distance > 0)) return false;
-  // Closer than a millionth of the scene's radius, irradiance no longer grows.
+  // Irradiance must stay finite: closer than a millionth of the scene's radius it no longer grows.
   const double nearest = std::max(distance, 1e-6 * sphere_radius_);
   s.wi = Vec3(to / distance);
   s.position = placed.position;
@@ -128,8 +128,8 @@ bool Lights::sample_placed(const PlacedLight& placed, Vec3 point, double probabi
   return falloff > 0;
 }
 
-/// Draws a point on the light in the slot, which was chosen with this probability. With `joint`, `left` is the
-/// remainder of the number that chose the slot and replaces u.x.
+/// Draws a point on the light of a slot that was chosen with this probability. `left` is the remainder of the number
+/// that chose the slot; with `joint` it replaces u.x.
 inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
                                 LightSample& sample) const {
   if (slot >= triangles_.size())
@@ -137,7 +137,7 @@ inline bool Lights::sample_slot(std::uint32_t slot, Vec3 point, double probabili
            is_finite(sample.facing_irradiance);
   const TriangleLight& t = triangles_[slot];
   if (joint) {
-    // The float u.x had 24 random bits. The choice of the slot used some of them; bits made from u.y fill their places.
+    // u.x had 24 random bits. The choice of the slot used some of them; bits made from u.y are added in their places.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
     u.x = to_float(std::min(left + fill * step, 1.0));
   }
@@ -159,8 +159,7 @@ bool Lights::sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool jo
   const double distant = distant_irradiance(normal, from),
                share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
-    // The environment always takes the remainder of the choice's number in place of u.x, also if u_choice and u.x
-    // differ.
+    // Distant lights use the remainder of u_choice in place of u.x, even if u_choice and u.x are different numbers.
     return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) &&
            is_finite(sample.facing_irradiance);
   }

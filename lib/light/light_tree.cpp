@@ -13,7 +13,7 @@ namespace {
 // Bounds must stay valid under rounding, so cosines are widened by this.
 constexpr float kSlack = 4e-6f;
 constexpr int kBucketCount = 16;
-// From this depth on nodes are halved by count, so that no input makes the tree a list
+// From this depth on, nodes are halved by the number of lights. So no input makes the tree a list.
 constexpr int kDepthOfHalving = 32;
 
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
@@ -62,8 +62,8 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   return a;
 }
 
-/// A group of lights during the search for a split. Its spread comes from the length of the mean normal, which avoids
-/// the arc cosines of exact cones.
+/// A group of lights during the search for a split. Its spread is estimated from the length of the mean normal, which
+/// costs less than the exact cone's arc cosines.
 struct Group {
   Box3 box;
   Vec3d normals{};
@@ -99,7 +99,7 @@ struct LightTree::Item {
   std::uint32_t light;
 };
 
-/// A node of the binary tree that is built first.
+/// A node of the binary tree that the constructor builds before it joins nodes to eight children.
 struct LightTree::Pair {
   LightBounds bounds;
   std::uint32_t second = 0;  ///< the second child; the first child is the next node
@@ -141,7 +141,8 @@ LightBounds LightTree::build_pairs(std::vector<Item>& items, std::size_t first, 
   return pairs[at].bounds;
 }
 
-/// Replaces the pair with the largest weight x size by its two children until the node has eight children.
+/// Makes a node of eight children from a binary tree: replaces the child with the largest weight x size^2 by its own
+/// two children until there are eight.
 void LightTree::collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent) {
   std::uint32_t chosen[kWidth] = {pair};
   int count = 1;
@@ -192,9 +193,9 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.weight[lane] = bounds.weight;
 }
 
-/// Returns the index at which to divide [first, last), which holds at least two items. Of 15 planes per axis it takes
-/// the plane with the least sum of both sides' costs. If no plane separates the centres, it takes the middle by
-/// count.
+/// Returns the index at which to divide [first, last), which holds at least two items. The function compares 15 planes
+/// per axis and takes the plane with the least sum of both sides' costs. If no plane separates the centres, it takes
+/// the median along the longest side.
 std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost) {
   Box3 centres;
   for (std::size_t i = first; i < last; ++i) centres.add(items[i].centre);
@@ -292,7 +293,7 @@ bool LightTree::choose(const Start& start, Vec3 point, Vec3 normal, float u, Cho
       const double sum = first ? start.sum / whole_ : importances(*node, point, normal, below);
       if (!(sum > 0)) return false;
       left *= sum;
-      // Finds the lane in which the running sum passes `left`; if rounding keeps the sum below, the last lane with a
+      // The lane in which the running sum passes `left`. If rounding keeps the sum below `left`, the last lane with a
       // weight.
       for (int i = 0; i < kWidth; ++i) {
         if (!(each[i] > 0)) continue;

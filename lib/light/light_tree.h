@@ -18,12 +18,13 @@ struct LightBounds {
   Box3 box;
   Vec3 axis{0, 0, 1};      ///< unit; axis of the cone of normals
   double weight = 0;       ///< greatest irradiance at 1 m: L A of an area light, I of a point light; summed
-  float cos_spread = 1;    ///< cosine of the largest angle between a normal and the axis
+  float cos_spread = 1;    ///< cosine of the largest angle between any light's normal and the axis
   float cos_reach = 0;     ///< cosine of the largest angle from its normal at which a light shines (at most pi/2)
   bool two_sided = false;  ///< true if any of the lights shines backwards, too
-  Box3 backs_within;       ///< backs of further lights are seen from this box alone (closed_parts); empty: none
+  Box3 backs_within;       ///< holds all points that see the backs of lights in closed_parts(); empty: no such lights
 };
 
+/// A tree over lights that chooses one light for a point.
 class LightTree {
  public:
   /// Weights must be positive and finite; boxes must be finite.
@@ -35,32 +36,32 @@ class LightTree {
     double probability = 0;  ///< of choosing this light at this point and normal
     double left = 0;         ///< the remainder of u after the choice, in [0, 1): uniform again
   };
-  static constexpr int kWidth = 8;  ///< children of a node
+  static constexpr int kWidth = 8;  ///< largest number of a node's children
   /// Importances of the root's children, with which choose() begins.
   struct Start {
-    double each[kWidth];  ///< importance of each child over the tree's whole weight
-    /// Estimate of the irradiance at the point from all lights, in the unit of weight / m^2. 0 only if no light can
-    /// reach the point.
+    double each[kWidth];  ///< importance of each child divided by the weight of all lights, 1/m^2
+    /// Upper estimate of the irradiance at the point from all lights: weight / m^2. 0 only if no light can reach the
+    /// point.
     double sum = 0;
   };
-  /// Importances at a point; a normal of zero means that lights below the surface count as well.
+  /// Importances at a point. `normal` is unit; if zero, lights below the surface count as well.
   Start start(Vec3 point, Vec3 normal) const;
   /// Walks down from the root. At each node a child is chosen in proportion to its importance, an upper bound of weight
-  /// cos cos / distance^2. `normal` is unit; zero means that lights below the surface count as well. u in [0, 1). False
-  /// if the walk ends at a node of which no light can reach the point. `start`: of the same point and normal.
+  /// x cos(light) cos(surface) / distance^2. `start` is that of the same point and normal. u in [0, 1). False if the
+  /// walk ends at a node from which no light can reach the point. The tree must not be empty.
   bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
-  /// Probability with which choose() takes this light. [1]
+  /// Probability [1] with which choose() takes this light; 0 if it cannot.
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
 
  private:
   struct alignas(32) Node {
     float centre[3][kWidth], radius[kWidth];  ///< sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
-    /// m^2: square of the distance from the centre within which backs are seen; -1: nowhere
+    /// m^2; square of the distance from the centre within which backs may be seen; -1: backs are seen nowhere
     float backs_within2[kWidth];
-    double weight[kWidth];        ///< over the whole tree's weight; 0: no child
+    double weight[kWidth];        ///< of the child, divided by the weight of all lights; 0: no child
     std::uint32_t child[kWidth];  ///< number of the child node, or of the light
-    std::uint32_t parent;         ///< kWidth x node + lane of the parent
+    std::uint32_t parent;         ///< kWidth x (number of the parent node) + this node's lane in it
     std::uint8_t leaf[kWidth], count;
   };
   struct Item;
@@ -74,8 +75,8 @@ class LightTree {
   double importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const;
 
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> place_;  ///< by light: kWidth x node + lane
-  double whole_ = 0;                  ///< sum of all weights
+  std::vector<std::uint32_t> place_;  ///< for each light, kWidth x (number of its node) + its lane
+  double whole_ = 0;                  ///< sum of all lights' weights
 };
 
 }  // namespace tempolux

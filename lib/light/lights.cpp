@@ -12,16 +12,7 @@
 namespace tempolux {
 namespace {
 
-EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
-  switch (kind) {
-    case PunctualLight::Kind::point: return EmissionSlot::Kind::point;
-    case PunctualLight::Kind::spot: return EmissionSlot::Kind::spot;
-    case PunctualLight::Kind::directional: return EmissionSlot::Kind::directional;
-  }
-  return EmissionSlot::Kind::point;
-}
-
-/// backs_within: the box around the closed part of which the triangle is; empty: none.
+/// `backs_within` is the box around the closed part that holds the triangle; empty if there is none (closed_parts.h).
 LightBounds bounds_of(const TriangleLight& t, const Box3& backs_within) {
   LightBounds b;
   b.box.add(t.corner);
@@ -34,6 +25,8 @@ LightBounds bounds_of(const TriangleLight& t, const Box3& backs_within) {
   return b;
 }
 
+bool is_directional(const PlacedLight& placed) { return placed.light.kind == PunctualLight::Kind::directional; }
+
 LightBounds bounds_of(const PlacedLight& placed) {
   LightBounds b;
   b.box.add(placed.position);
@@ -41,7 +34,8 @@ LightBounds bounds_of(const PlacedLight& placed) {
   b.weight = max_component(placed.light.intensity);
   b.cos_spread = -1;
   if (placed.light.kind == PunctualLight::Kind::spot) {
-    // The spot's axis is the only normal; light reaches as far as the outer cone.
+    // The normals fill the inner cone. A direction of the outer cone's edge makes the angle outer - inner with the
+    // closest of them.
     b.cos_spread = std::cos(std::min(placed.light.inner_cone_rad, placed.light.outer_cone_rad));
     b.cos_reach = std::max(0.0f, std::cos(placed.light.outer_cone_rad - std::acos(b.cos_spread)));
   }
@@ -64,7 +58,8 @@ Lights::Lights(const SceneFrame& frame, const EmissionTable& table, Which which)
 }
 
 bool Lights::shines(const EmissionSlot& slot) const {
-  const bool distant = slot.kind == EmissionSlot::Kind::directional || slot.kind == EmissionSlot::Kind::environment;
+  const bool distant = slot.kind == EmissionSlot::Kind::environment ||
+                       (slot.light != kNone && is_directional(frame_->lights[slot.light]));
   switch (which_) {
     case Which::placed: return !distant;
     case Which::distant: return distant;
@@ -83,7 +78,7 @@ void Lights::add_slots(const EmissionTable& table) {
     triangles_.insert(triangles_.end(), lights.begin(), lights.end());
   }
   for (std::uint32_t i = 0; i < frame_->lights.size(); ++i)
-    slots_.push_back({slot_kind(frame_->lights[i].light.kind), kNone, 0, i, 0});
+    slots_.push_back({EmissionSlot::Kind::punctual, kNone, 0, i, 0});
   if (environment_) slots_.push_back({EmissionSlot::Kind::environment, kNone, 0, kNone, 0});
   TEMPOLUX_CHECK(slots_.size() == table.probability.size());
   double sum = 0, all = which_ == Which::all ? 1 : 0;
@@ -112,7 +107,7 @@ void Lights::build_tree() {
     } else {
       if (slots_[i].kind == EmissionSlot::Kind::environment) continue;
       if (!(max_component(frame_->lights[slots_[i].light].light.intensity) > 0)) continue;
-      if (slots_[i].kind == EmissionSlot::Kind::directional) {
+      if (is_directional(frame_->lights[slots_[i].light])) {
         suns_.push_back(slots_[i].light);
         continue;
       }

@@ -6,13 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "lib/core/pi.h"
 #include "lib/core/sampling.h"
-#include "lib/core/statistics.h"
 #include "lib/core/vec.h"
 #include "lib/light/aim.h"
 #include "lib/light/environment_light.h"
@@ -25,13 +24,13 @@ namespace tempolux {
 
 class SkyGuide;
 
-/// One slot of the emission table: an emissive triangle (both sides with twice the flux if its material is double
-/// sided), a punctual light, or the environment. Slots and probabilities stay the same over a segment: a lamp that is
-/// dimmed or moved keeps its slot, and only the flux of its photons changes.
+/// An entry of the emission table: an emissive triangle, a punctual light, or the environment. A triangle of a double
+/// sided material is one slot with the flux of both sides. Slots and probabilities stay the same over a segment: a lamp
+/// that is dimmed or moved keeps its slot, and only the flux of its photons changes.
 struct EmissionSlot {
-  enum class Kind : std::uint8_t { triangle, point, spot, directional, environment };
+  enum class Kind : std::uint8_t { triangle, punctual, environment };
   Kind kind = Kind::triangle;
-  std::uint32_t surface = kNone, triangle = 0;  ///< of a triangle
+  std::uint32_t surface = kNone, triangle = 0;  ///< index into SceneFrame::surfaces; index of the triangle in it
   std::uint32_t light = kNone;                  ///< index into SceneFrame::lights
   double probability = 0;                       ///< of choosing this slot for a photon; sums to 1 over the table
 };
@@ -42,8 +41,8 @@ struct EmissionSlot {
 /// or by 5 % of the largest channel if that is more, so that blue lamps count. A directional light's flux is its
 /// irradiance times the area pi R^2 of the scene sphere's disc; the environment's is pi R^2 times the integral of its
 /// radiance. A triangle whose emission is textured counts with its mean.
-/// Little of the environment's light may enter a building, or lamps may hardly matter outdoors. If there is both an
-/// environment and another light, each gets at least a fifth.
+/// Little of the environment's light may enter a building, or lamps may hardly matter outdoors. So if there are an
+/// environment and other lights, the environment gets at least kUnguidedShare of the photons, and so do the others.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of the surfaces that emit at some frame
   std::vector<EmissionShares> shares;   ///< of `surfaces`, at the first frame
@@ -63,26 +62,28 @@ EmissionTable build_emission_table(const Scene& scene, const Segment& segment, c
 /// the same order). To get the segment's table, pass all frames at which an emitter's size differs.
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
-/// Hash of all that the table fixes for a segment besides its static geometry: probabilities of lights, distance scales
-/// and aim. If two tables have the same hash, a light path of one map may replace the path of that number in the other
-/// map.
+/// Hash of the numbers that decide where photons start, apart from the static geometry: probabilities of slots, the
+/// scene sphere, the segment's origin and bounds, and aim. If two tables have the same hash, a light path of one photon
+/// map may replace the path with the same number in the other map.
 std::string emission_hash(const EmissionTable& table, const Segment& segment);
 
+/// A place or direction of a light that was drawn for a point.
 struct LightSample {
   Vec3 wi{};                  ///< unit, from the point towards the light
   Vec3 position{};            ///< on the light; outside the scene for directional lights and the environment
   float position_offset = 0;  ///< m; the shadow ray ends this far before `position`
-  /// W/m^2 on a surface that faces wi: radiance / pdf, or I / d^2 or E of a delta light. Times f cos: reflected
-  /// radiance
+  /// W/m^2 on a surface that faces wi: radiance / pdf; for a delta light I / (d^2 P) or E / P, where P is the
+  /// probability of choosing the light. Multiplied by f cos it gives reflected radiance.
   Rgb facing_irradiance{0.0f};
   float pdf_solid_angle = 0;  ///< [1/sr], includes the choice of the light; 0 for a delta light
   bool delta = false;
   bool distant = false;  ///< true for the environment and directional lights
 };
 
+/// A photon at its light.
 struct PhotonEmission {
-  Vec3 origin{}, travel{};  ///< travel: unit direction of flight
-  float origin_offset = 0;  ///< the photon starts this far along the emitting side's normal
+  Vec3 origin{}, travel{};  ///< scene space, m; unit direction of flight
+  float origin_offset = 0;  ///< m; the photon starts this far along the emitting side's normal
   Vec3 normal{};            ///< of the emitting side; zero for punctual lights
   Rgb flux{0.0f};           ///< W, of one photon if one photon is emitted: the caller divides by the number of photons
   std::uint32_t slot = 0;
@@ -91,26 +92,28 @@ struct PhotonEmission {
 /// All lights of one frame: draws light samples and photons.
 class Lights {
  public:
-  /// Which lights shine: all; those inside the scene; directional lights and environment; those without extent.
+  /// Which lights shine: all; triangles, point and spot lights; directional lights and environment; punctual lights.
   enum class Which : std::uint8_t { all, placed, distant, punctual };
   /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
   /// emitted.
   Lights(const SceneFrame& frame, const EmissionTable& table, Which which = Which::all);
 
-  /// The same lights with a guide: where the guide has a grid, sample() draws a direction of the environment from the
-  /// grid with probability 1 - kUnguided, else by radiance. Densities are those of the mixture, so means do not change,
-  /// and a guide that misleads costs at most 1 / kUnguided times the variance. Photons are emitted as without.
+  /// The same lights with a guide. Where the guide has a grid, sample() draws a direction of the environment from the
+  /// grid with probability 1 - kUnguidedShare, else by radiance. All pdfs are those of this mixture, so expected values
+  /// do not change, and a misleading guide costs at most 1 / kUnguidedShare times the variance. emit() does not use the
+  /// guide.
   Lights guided(std::shared_ptr<const SkyGuide> guide) const;
-  static constexpr double kUnguided = kUnguidedShare;
 
   /// True if a directional light shines or the environment is not black.
   bool has_distant() const { return environment_weight_ > 0 || !suns_.empty(); }
   /// True if any light inside the scene shines.
   bool has_placed() const { return !tree_.empty(); }
-  /// Which lights sample() chooses from. A caller that samples the directional lights separately passes not_suns.
+  /// Which lights sample() chooses from. A caller that samples directional lights by sample_sun() passes not_suns.
   enum class From : std::uint8_t { all, not_suns };
+  /// True if a directional light shines.
   bool has_suns() const { return !suns_.empty(); }
-  /// Chooses a directional light in proportion to its irradiance; u in [0, 1). False if none is above the surface.
+  /// Chooses a directional light in proportion to its irradiance on the surface of `normal` (unit); u in [0, 1). False
+  /// if none is above the surface.
   bool sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const;
 
   bool empty() const { return slots_.empty(); }
@@ -120,56 +123,56 @@ class Lights {
   /// disc.
   Rgbd total_flux() const;
 
-  /// Chooses a light for the point with u_choice, by an importance that includes distance and orientation, in O(log n);
-  /// then a point on the light with u. False if no light can reach the point. Lights below the surface of `normal` are
-  /// left out; a zero normal leaves out none.
+  /// Chooses a light for the point with u_choice, in O(log n), by an importance that includes distance and orientation;
+  /// then a point on the light with u. All numbers are in [0, 1). False if no light can reach the point. Lights below
+  /// the surface of `normal` (unit) are excluded; a zero normal excludes none.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
     return sample_any(point, normal, u_choice, u, false, From::all, sample);
   }
-  /// The same from one stratified pair: u.x chooses the light and, stretched, is the first coordinate on it. Samples
-  /// that are stratified over the square are stratified over every light.
+  /// The same from two numbers. u.x chooses the light; its place inside the light's part of [0, 1), stretched to
+  /// [0, 1), is the first coordinate on the light. Samples that are stratified over the square are stratified over
+  /// every light.
   bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const {
     return sample_any(point, normal, u.x, u, true, from, sample);
   }
-  /// Density [1/sr] with which sample() at (point, normal) chooses the position `on_light` of this emissive triangle,
-  /// seen from its front (or back, if two-sided); 0 if it emits nothing. The triangle's own plane decides which side is
-  /// seen, as in sample().
+  /// pdf [1/sr] with which sample() at (point, normal) chooses the position `on_light` of a triangle; 0 if the triangle
+  /// emits nothing towards the point. The triangle's own plane decides which side is seen, as in sample().
   float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
                         From from = From::all) const;
   /// Radiance [W/m^2/sr] that the material emits at a hit towards `wo` (unit, away from the surface). Textures are
   /// averaged over `width` m. Zero from the back of a one-sided emitter.
   Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;
 
+  /// True if the environment shines and is not black. The next four functions need an environment.
   bool has_environment() const { return environment_weight_ > 0; }
-  /// Radiance [W/m^2/sr] of the environment in `direction` (unit). Needs an environment.
+  /// Radiance [W/m^2/sr] that arrives from `direction` (unit, towards the environment).
   Rgb environment(Vec3 direction) const { return environment_->radiance(direction); }
-  /// Density [1/sr] with which sample() at (point, normal) chooses this direction of the environment. Needs an
-  /// environment.
-  float pdf_environment(Vec3 point, Vec3 normal, Vec3 direction, From from = From::all) const {
-    return pdf_environment(point, normal, environment_->place_of(direction), direction, from);
-  }
-  /// The same for a place that was looked up once.
+  /// The place of a direction in the map, for the next two functions.
   EnvironmentLight::Place environment_place(Vec3 direction) const { return environment_->place_of(direction); }
+  /// Radiance [W/m^2/sr] of the environment at a place.
   Rgb environment_at(const EnvironmentLight::Place& place) const { return environment_->radiance_at(place); }
+  /// pdf [1/sr] with which sample() at (point, normal) chooses `direction` (unit), whose place is `place`.
   float pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction, From from) const;
 
-  /// Emits a photon. u[0] chooses the slot and, stretched, is the first coordinate on it; u[1] is the second; u[2] and
-  /// u[3] give the direction. On a two-sided triangle u[2] below 1/2 means the front. Point and spot lights have no
-  /// extent: u[0] and u[1] give the direction. For directional lights they give the point on the scene sphere's disc;
-  /// the environment takes them for the direction, and u[2] and u[3] for the point on the disc. Neighbouring numbers
-  /// give neighbouring photons. The table must not be empty.
+  /// Emits a photon from four numbers in [0, 1); neighbouring numbers give neighbouring photons. u[0] chooses the slot.
+  /// Its place inside the slot's part of [0, 1), stretched to [0, 1), replaces u[0] below.
+  /// Triangle: u[0] and u[1] give the point, u[2] and u[3] the direction; if two-sided, u[2] below 1/2 means the front.
+  /// Point or spot light: u[0] and u[1] give the direction. Directional light: u[0] and u[1] give the point on the
+  /// scene sphere's disc. Environment: u[0] and u[1] give the direction, u[2] and u[3] the point on the disc.
+  /// The table must not be empty.
   ///
-  /// flux = (flux of the slot at this frame) / probability, so the mean over u is total_flux(). A triangle emits pi L A
-  /// (twice, if two-sided) by the cosine; a point light 4 pi I, uniformly; a spot by its intensity; a directional light
-  /// E pi R^2 from the disc of radius R outside the scene; the environment the same with radiance / density in place of
-  /// E. With table.aim the start points of the last two are drawn by Aim, and flux is divided by Aim's density. Flux is
+  /// flux = (flux of the slot at this frame) / probability, so the mean over u is total_flux(). A triangle's flux is
+  /// pi L A, twice as much if two-sided, and its directions have the pdf cos / pi. A point light's flux is 4 pi I, with
+  /// uniform directions; a spot's directions are drawn by intensity. A directional light's flux is E pi R^2, from the
+  /// disc of the scene sphere's radius R; the environment's is the same with radiance / pdf in place of E. With
+  /// table.aim the start points of the last two are drawn by Aim, and flux is multiplied by Aim::Start::flux. Flux is
   /// zero if the slot emits nothing at this frame. Throws InputError if flux / probability overflows float32.
   PhotonEmission emit(const std::array<double, 4>& u) const {
     PhotonEmission photon;
     emit({&u, 1}, {&photon, 1});
     return photon;
   }
-  /// The same for up to kMostEmitted photons, photons[i] from u[i]; twice as fast.
+  /// The same for up to kMostEmitted photons, photons[i] from u[i]; twice as fast per photon.
   void emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const;
   static constexpr std::size_t kMostEmitted = 64;
 
@@ -177,7 +180,7 @@ class Lights {
   const Aim& aim() const { return aim_; }
 
  private:
-  /// sample() with `joint`: u_choice is u.x, so the remainder of the choice replaces u.x.
+  /// Both forms of sample(). `joint`: u_choice is u.x, so the remainder of the choice replaces u.x.
   bool sample_any(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
   bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
                    bool joint, LightSample& sample) const;
@@ -198,7 +201,8 @@ class Lights {
   void build_tree();
   std::vector<LightBounds> tree_bounds() const;
   Rgbd slot_flux(std::size_t slot) const;  ///< W
-  double disc_area() const { return std::numbers::pi * sphere_radius_ * sphere_radius_; }
+  double disc_area() const { return kPiD * sphere_radius_ * sphere_radius_; }
+  /// m; from any point of the scene sphere this distance reaches its surface.
   float distance_beyond() const { return float(sphere_radius_ > 0 ? 2 * sphere_radius_ : 1); }
   /// Radiance of a point on a slot's triangle, by barycentric coordinates.
   Rgb emitted_at(std::size_t slot, double b1, double b2) const {
@@ -209,6 +213,7 @@ class Lights {
   void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
                      PhotonEmission& e) const;
   void emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
+  void start_distant(double u, double v, Rgbd flux, PhotonEmission& e) const;
   void emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
   /// Maps u from the part [first, first + width) of [0, 1) to [0, 1).
   static double stretch(double u, double first, double width) {
@@ -226,7 +231,7 @@ class Lights {
   std::vector<Rgb> photon_flux_;           ///< by slot: flux / probability, if all its photons carry the same flux
   std::vector<std::uint32_t> first_slot_;  ///< first slot of each surface; kNone: the surface emits nothing
   std::vector<std::uint32_t> tree_index_;  ///< by slot: number of its light in the tree; kNone: it emits nothing
-  std::vector<std::uint32_t> tree_slot_;   ///< and back
+  std::vector<std::uint32_t> tree_slot_;   ///< slot of each light in the tree
   std::vector<std::uint32_t> suns_;        ///< indices of the directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment_;
   std::shared_ptr<const SkyGuide> guide_;  ///< nullptr: none

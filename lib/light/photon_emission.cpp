@@ -19,15 +19,17 @@ namespace {
 
 }  // namespace
 
-/// The first slot whose part of [0, 1) ends above u; rounding may leave the sum a little below 1.
+/// The first slot whose part of [0, 1) ends above u. Rounding may make the parts end a little below 1; then the last
+/// slot with a probability above 0.
 std::size_t Lights::slot_at(double u) const {
   auto slot = std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u) - cumulative_.begin());
   while (slot > 0 && !(slots_[slot].probability > 0)) --slot;
   return slot;
 }
 
-/// On a two-sided triangle u[2] below 1/2 means the front, else the back; each half is stretched to [0, 1). The floor
-/// of 2 u[2] is 1 for the back and avoids an unpredictable branch.
+/// The two numbers for the direction of a photon. On a two-sided triangle u[2] below 1/2 means the front, else the
+/// back, and each half is stretched to [0, 1). The floor of 2 u[2], which is 1 for the back, avoids an unpredictable
+/// branch.
 Vec2 Lights::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
   const bool halves = slot < triangles_.size() && triangles_[slot].two_sided;
   return {to_float(halves ? 2 * u[2] - std::floor(2 * u[2]) : u[2]), to_float(u[3])};
@@ -59,37 +61,32 @@ void Lights::emit_punctual(const PlacedLight& placed, double u0, const std::arra
     return;
   }
   e.travel = placed.direction;
-  if (!aim_.empty()) {
-    const Aim::Start start = aim_.start(e.travel, u0, u[1]);
-    e.origin = start.origin;
-    e.flux = Rgb(Rgbd(e.flux) * start.flux);
-    return;
-  }
-  const Vec2 disc = sample_disc_concentric({to_float(u0), to_float(u[1])});
-  const Frame frame_of_light(placed.direction);
-  const float r = float(sphere_radius_);
-  e.origin = sphere_centre_ + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
+  start_distant(u0, u[1], Rgbd(e.flux), e);
 }
 
-/// Flux is radiance / density x pi R^2, or Aim's weight in place of pi R^2.
+/// Sets the start and flux of distant light along e.travel. `flux` is that of a photon with a uniform start on the
+/// scene sphere's disc.
+void Lights::start_distant(double u, double v, Rgbd flux, PhotonEmission& e) const {
+  if (aim_.empty()) {
+    const Vec2 disc = sample_disc_concentric({to_float(u), to_float(v)});
+    const float r = float(sphere_radius_);
+    e.origin = sphere_centre_ + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
+  } else {
+    const Aim::Start start = aim_.start(e.travel, u, v);
+    e.origin = start.origin;
+    flux = flux * start.flux;
+  }
+  e.flux = Rgb(flux);
+}
+
 void Lights::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const {
   EnvironmentLight::Sample from;
   if (!environment_->sample(u0, u[1], from)) {
     e.travel = {0, -1, 0};
     return;
   }
-  const Rgbd flux = Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots_[slot].probability;
   e.travel = -from.direction;
-  if (!aim_.empty()) {
-    const Aim::Start start = aim_.start(e.travel, u[2], u[3]);
-    e.origin = start.origin;
-    e.flux = Rgb(flux * start.flux);
-    return;
-  }
-  const Vec2 disc = sample_disc_concentric({to_float(u[2]), to_float(u[3])});
-  const float r = float(sphere_radius_);
-  e.origin = sphere_centre_ + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
-  e.flux = Rgb(flux);
+  start_distant(u[2], u[3], Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots_[slot].probability, e);
 }
 
 void Lights::emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const {

@@ -34,7 +34,7 @@ double SpotProfile::solid_angle() const { return 2 * kPiD * (inner + (outer - in
 double SpotProfile::sample_one_minus_cos(double u) const {
   const double x = u * (inner + (outer - inner) / 3);
   if (x < inner || !(outer > inner)) return std::min(x, outer);
-  // In the penumbra the share of light outside angle t is (outer - inner) s^3 / 3.
+  // The integral of s^2 from t to the outer cone is 2 pi (outer - inner) s^3 / 3.
   const double outside = std::max(0.0, 1 - (x - inner) / ((outer - inner) / 3));
   return outer - (outer - inner) * std::cbrt(outside);
 }

@@ -23,10 +23,10 @@ struct SpotProfile {
   double sample_one_minus_cos(double u) const;
 };
 
-/// Flux [W] of a light. A directional light counts with the flux through a disc of this radius [m].
+/// Flux [W] of a light. A directional light's flux is that through a disc of this radius [m].
 Rgbd punctual_flux(const PunctualLight& light, double disc_radius);
 
-/// Unit direction in which a point or spot light emits a photon, from u1 and u2. The density is in proportion to
+/// Unit direction in which a point or spot light emits a photon, from u1 and u2 in [0, 1). The pdf is in proportion to
 /// intensity: uniform over the sphere for a point light.
 Vec3 sample_punctual_direction(const PlacedLight& placed, double u1, double u2);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCells = SkyGuide::kRows * SkyGuide::kColumns;
 
-/// Cell of a direction: rows by height, which makes all cells equal.
+/// Number of the cell that holds a direction. Rows divide the height y evenly, so all cells have the same solid angle.
 std::size_t cell_of(Vec3 d) {
   const double turn = std::atan2(double(d.z), double(d.x)) / (2 * kPiD) + 0.5;
   const int row = std::clamp(int((1 - double(d.y)) / 2 * SkyGuide::kRows), 0, SkyGuide::kRows - 1),
@@ -26,7 +26,7 @@ std::size_t side_of(Vec3 n) {
   return y >= z ? 2 + (n.y < 0) : 4 + (n.z < 0);
 }
 
-/// The first entry above u, and u stretched to [0, 1) over it.
+/// Index of the first entry of `ends` above u. Replaces u by its place inside that entry's part, stretched to [0, 1).
 std::size_t find(std::span<const float> ends, double& u) {
   const auto after =
       std::upper_bound(ends.begin(), ends.end() - 1, u, [](double x, float end) { return x < double(end); });
@@ -83,7 +83,7 @@ SkyGuide::Grid::Grid(std::span<const Hit> hits) {
     below += row;
     row_end_[std::size_t(r)] = float(below / sum);
   }
-  // The density is that of the rounded shares.
+  // sample() draws by shares that are rounded to float, so the pdf is computed from the rounded shares.
   for (int r = 0; r < kRows; ++r)
     for (int c = 0; c < kColumns; ++c) {
       const auto row = std::size_t(r), cell = std::size_t(r * kColumns + c);
@@ -101,7 +101,7 @@ std::uint32_t SkyGuide::Builder::leaf(std::size_t places_in, std::span<const Hit
   return std::uint32_t(guide.nodes_.size() - 1);
 }
 
-/// Adds the node of these places and their hits; returns its number.
+/// Adds the node of these places and their hits, and all nodes below. Returns the node's number.
 std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hit> hits) const {
   if (hits.size() < 2 * kLeastHits) return leaf(of.size(), hits);
   const auto position = [&](const Hit& hit) { return places[hit.place].position; };
@@ -116,11 +116,11 @@ std::uint32_t SkyGuide::Builder::build(std::span<std::uint32_t> of, std::span<Hi
   for (const Hit& hit : hits) at.push_back(position(hit)[axis]);
   std::ranges::nth_element(at, at.begin() + std::ptrdiff_t(at.size() / 2));
   const float split = at[at.size() / 2];
-  // Stable, so that sums of weights do not depend on how a library sorts.
+  // A stable partition keeps the order of the hits, so sums of weights do not depend on the library.
   const auto upper_hits =
       std::stable_partition(hits.begin(), hits.end(), [&](const Hit& hit) { return position(hit)[axis] < split; });
   const auto below = std::size_t(upper_hits - hits.begin());
-  if (below < kLeastHits / 2) return leaf(of.size(), hits);  // many places at one coordinate
+  if (below < kLeastHits / 2) return leaf(of.size(), hits);  // many places have the same coordinate
   const auto upper_places =
       std::stable_partition(of.begin(), of.end(), [&](std::uint32_t i) { return places[i].position[axis] < split; });
   const auto places_below = std::size_t(upper_places - of.begin());

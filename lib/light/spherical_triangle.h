@@ -10,7 +10,7 @@ namespace tempolux {
 /// Three corners on the unit sphere.
 using SphericalTriangle = std::array<Vec3d, 3>;
 
-/// Unit directions to the three corners. A corner that lies at the point itself may get any direction.
+/// Unit directions to three corners, from the vectors to them [m]. A zero vector gives a direction of length 0.
 SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2);
 
 /// Draws a direction uniformly in the triangle of the given solid angle [sr]; u in [0, 1)^2. u.y = 0 gives corner 1,

@@ -35,7 +35,9 @@ struct View {
   /// True if the triangle is large enough to be sampled by solid angle and the point is not so close to its plane that
   /// directions degenerate.
   bool large() const {
-    // tan(0.001 sr / 2): the solid angle must be at least 0.001 sr, and at most 2 pi - 0.001 sr
+    // tan(omega / 2) of the least solid angle, 0.001 sr. A smaller triangle is at most sqrt(.002) = .045 of its distance
+    // wide if both sides are alike, so the pdf d^3 / (area x height) of points drawn by area varies by 13 %: less than
+    // Arvo's method is worth.
     constexpr float kTangent = 0.0005f;
     return adjacent > 0 ? opposite > kTangent * adjacent : opposite > -kTangent * adjacent;
   }

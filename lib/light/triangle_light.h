@@ -9,11 +9,11 @@
 
 namespace tempolux {
 
-/// For each triangle, the mean share of the material's emission that textures and alpha let through. Frames at which
-/// the material has the same alpha have the same shares.
+/// For each triangle, the mean of texture x alpha, by which the material's emission is multiplied. Frames at which the
+/// material has the same alpha have the same shares.
 struct EmissionShares {
   float alpha = 1;
-  std::vector<Rgb> of;  ///< by triangle; empty if nothing varies: all are 1
+  std::vector<Rgb> of;  ///< one per triangle, or empty if no texture or alpha changes the emission
 
   EmissionShares() = default;
   EmissionShares(const SceneFrame& frame, std::uint32_t surface);
@@ -23,11 +23,11 @@ struct EmissionShares {
 struct TriangleLight {
   Vec3 corner{}, edge1{}, edge2{};
   Vec3 normal{};       ///< unit; zero if the triangle has no area
-  float offset = 0;    ///< m; rays that leave or reach the triangle keep this distance from its plane
+  float offset = 0;    ///< m; rays start or end at this distance from the triangle's plane
   double area = 0;     ///< m^2
   Rgb radiance{0.0f};  ///< W/(m^2 sr)
   bool two_sided = false;
-  /// if true, `radiance` is the mean over the triangle and emitted_at gives the radiance of a point
+  /// If true, `radiance` is the mean over the triangle; emitted_at() gives the radiance of a point.
   bool varies = false;
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
@@ -53,14 +53,14 @@ struct TrianglePoint {
   double pdf_solid_angle = 0;  ///< [1/sr]
 };
 
-/// Draws a point of the triangle for the point `from`. False if an emitting side does not face `from`, or the triangle
-/// is seen edge-on.
+/// Draws a point of the triangle for the point `from`, from u in [0, 1)^2. False if no emitting side faces `from`, or
+/// the triangle is seen edge-on.
 ///
-/// If the triangle's solid angle is between 0.02 sr and 2 pi - 0.02 sr, the direction is drawn by solid angle (Arvo,
-/// "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995). Otherwise a point is drawn by area, nearly in
-/// proportion to 1 / distance^3, by Heitz' map. pdf_triangle makes the same choice from the same numbers.
+/// If the triangle's solid angle is between 0.001 sr and 2 pi - 0.001 sr, the direction is drawn by solid angle (Arvo,
+/// "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995). Otherwise a point is drawn uniformly over the area, by
+/// Heitz' map. pdf_triangle() makes the same choice from the same numbers.
 bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample);
-/// Density [1/sr] with which sample_triangle draws `position`; 0 where sample_triangle returns false.
+/// pdf [1/sr] with which sample_triangle() draws `position` for `from`; 0 where sample_triangle() returns false.
 double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position);
 
 }  // namespace tempolux

@@ -128,7 +128,7 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
       const float near = 1e-4f * s.radiance.g + 1e-6f * (m == 1 ? 1e4f : 1.0f);
       EXPECT_NEAR(light.radiance(s.direction).g, s.radiance.g, near);
       if (s.radiance.g > 0.01f) {
-        EXPECT_NEAR(light.pdf_solid_angle(s.direction), s.pdf_solid_angle, 2e-3 * s.pdf_solid_angle) << m;
+        EXPECT_NEAR(light.pdf_solid_angle(light.place_of(s.direction), s.direction), s.pdf_solid_angle, 2e-3 * s.pdf_solid_angle) << m;
       }
       area += 1 / s.pdf_solid_angle;
     }
@@ -151,7 +151,7 @@ TEST(EnvironmentSampling, DensityIntegratesToOne) {
       const double cosine = 1 - 2 * (j + 0.5) / kRows, sine = std::sqrt(1 - cosine * cosine);
       const double phi = 2 * kPiD * (k + 0.5) / kColumns;
       const Vec3 d(Vec3d{sine * std::sin(phi), cosine, sine * std::cos(phi)});
-      const double pdf = light.pdf_solid_angle(d);
+      const double pdf = light.pdf_solid_angle(light.place_of(d), d);
       sum += pdf;
       ASSERT_EQ(pdf > 0, max_component(light.radiance(d)) > 0) << j << ' ' << k;
     }
@@ -163,7 +163,7 @@ TEST(EnvironmentSampling, NothingFromBlack) {
   const EnvironmentLight light(map);
   EnvironmentLight::Sample sample;
   EXPECT_FALSE(light.sample(0.3, 0.7, sample));
-  EXPECT_EQ(light.pdf_solid_angle({0, 1, 0}), 0);
+  EXPECT_EQ(light.pdf_solid_angle(light.place_of({0, 1, 0}), {0, 1, 0}), 0);
 }
 
 // A sun of 10^4 times the sky fills four pixels at 45 degrees. The error of independent samples falls as 1/sqrt(n)
@@ -218,7 +218,7 @@ TEST(EnvironmentAmongLights, SumsAndDensitiesAgree) {
     const PathRandom random(1, std::uint64_t(i));
     if (!lights.sample({}, normal, random.get2(0, Purpose::light_point), s) || s.delta) continue;
     if (s.position_offset > 0) continue;  // the lamp
-    EXPECT_NEAR(lights.pdf_environment({}, normal, s.wi), s.pdf_solid_angle, 2e-3f * s.pdf_solid_angle);
+    EXPECT_NEAR(pdf_environment(lights, {}, normal, s.wi), s.pdf_solid_angle, 2e-3f * s.pdf_solid_angle);
   }
 }
 

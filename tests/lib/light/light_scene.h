@@ -53,6 +53,11 @@ struct LightScene {
   Lights lights() const { return Lights(frame, table()); }
 };
 
+/// pdf [1/sr] with which sample() chooses a direction of the environment.
+inline float pdf_environment(const Lights& lights, Vec3 point, Vec3 normal, Vec3 direction) {
+  return lights.pdf_environment(point, normal, lights.environment_place(direction), direction, Lights::From::all);
+}
+
 /// Square of side 2 `half` around the centre, in a plane of constant z, facing down.
 inline std::vector<Vec3> square_facing_down(Vec3 centre, float half) {
   return {centre + Vec3{-half, -half, 0}, centre + Vec3{-half, half, 0}, centre + Vec3{half, half, 0},

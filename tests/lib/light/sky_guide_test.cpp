@@ -105,7 +105,7 @@ TEST(SkyGuide, MeansAreTheSameAndWindowsHaveLessNoise) {
       LightSample s;
       const Vec3 place{0.3f, 0, 0};
       if (!lights.sample(place, kUp, random.get2(0, Purpose::light_point), s)) return 0.0;
-      if (s.distant) { EXPECT_NEAR(lights.pdf_environment(place, kUp, s.wi) / s.pdf_solid_angle, 1, 1e-3); }
+      if (s.distant) { EXPECT_NEAR(pdf_environment(lights, place, kUp, s.wi) / s.pdf_solid_angle, 1, 1e-3); }
       return window && !(s.distant && through_window(s.wi))
                  ? 0.0
                  : double(s.facing_irradiance.g) * std::max(0.0f, dot(s.wi, kUp));
@@ -114,9 +114,9 @@ TEST(SkyGuide, MeansAreTheSameAndWindowsHaveLessNoise) {
   for (const bool window : {false, true}) {
     const Mean a = irradiance(plain, window), b = irradiance(guided, window);
     EXPECT_NEAR(a.mean, b.mean, 3 * std::hypot(a.error, b.error)) << window;
-    // The mean square is at most 1 / kUnguided times that without a guide.
+    // The mean square is at most 1 / kUnguidedShare times that without a guide.
     const double square = a.error * a.error + (window ? 0 : a.mean * a.mean / kSamples);
-    EXPECT_LT(b.error * b.error, (window ? 0.25 : 1 / Lights::kUnguided) * square);
+    EXPECT_LT(b.error * b.error, (window ? 0.25 : 1 / kUnguidedShare) * square);
   }
 }
 
