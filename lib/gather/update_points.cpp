@@ -31,7 +31,7 @@ bool lights_change(const SceneFrame& frame) {
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
     if (frame.materials[frame.surfaces[s].material].emissive()) return true;
   for (const PlacedLight& placed : frame.lights)
-    if (placed.node < frame.segment.node_moves.size() && frame.segment.node_moves[placed.node]) return true;
+    if (frame.segment.moves(placed.node)) return true;
   return false;
 }
 

@@ -172,8 +172,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   const SceneFrame& frame = tracer.frame();
   for (const EmissionSlot& slot : lights.slots()) {
     const bool surface_moves = slot.surface != kNone && slot.surface >= frame.static_count;
-    const bool light_moves = slot.light != kNone && frame.lights[slot.light].node < frame.segment.node_moves.size() &&
-                             frame.segment.node_moves[frame.lights[slot.light].node];
+    const bool light_moves = slot.light != kNone && frame.segment.moves(frame.lights[slot.light].node);
     slot_moves_.push_back(surface_moves || light_moves);
   }
 }

@@ -32,7 +32,7 @@ Value slerp(const Value& a, Value b, double s) {
     for (double& c : b) c = -c;
   }
   if (a == b) return a;
-  if (cosine > 1 - 1e-9) return unit(lerp(a, b, s));  // for smaller angles the sine below loses its digits
+  if (cosine > 1 - 1e-9) return unit(lerp(a, b, s));  // the sine of smaller angles has too few digits
   const double angle = std::acos(cosine), sine = std::sin(angle);
   const double wa = std::sin((1 - s) * angle) / sine, wb = std::sin(s * angle) / sine;
   Value v;
@@ -40,8 +40,8 @@ Value slerp(const Value& a, Value b, double s) {
   return unit(v);
 }
 
-/// Cubic Hermite spline of glTF appendix C. It is written as v0 + (v1 - v0) (...) + ..., so the result is exactly v0 if
-/// both values are equal and the tangents are zero.
+/// Cubic Hermite spline of glTF appendix C. The form v0 + (v1 - v0) (...) + ... gives exactly v0 if v0 = v1 and the
+/// tangents are zero.
 void spline(const AnimationTrack& track, std::size_t key, double s, double dt_s, std::span<double> out) {
   const std::size_t n = track.components;
   const double* v0 = &track.values[(3 * key + 1) * n];

@@ -10,12 +10,13 @@
 
 namespace tempolux {
 
-/// Writes the value of a track at a time [s] to `out`, which has room for its components. Before the first key and
-/// after the last one the value is that key's. LINEAR rotations turn along the shorter arc at constant speed (slerp);
-/// splines of rotations are normalised. If a time equals a key's time after both are rounded to float32, as files store
-/// them, the value is exactly the key's; between equal keys it is exactly their value. glTF 2.0, 3.11 and appendix C.
+/// Writes the value of a track at a time [s] to `out`, which has room for the track's components. Before the first key
+/// the value is the first key's, after the last key the last key's. LINEAR rotations turn along the shorter arc at
+/// constant speed (slerp); splines of rotations are normalised. Files store times as float32: if a time equals a key's
+/// after both are rounded to float32, the value is exactly the key's. Between two equal keys the value is exactly
+/// theirs. Source: glTF 2.0, 3.11 and appendix C.
 void evaluate(const AnimationTrack& track, double time_s, std::span<double> out);
-/// The same for a track of up to four components: xyz, or a unit quaternion xyzw. Missing components are 0.
+/// The value of a track of up to four components: xyz, or a unit quaternion xyzw. Missing components are 0.
 std::array<double, 4> evaluate(const AnimationTrack& track, double time_s);
 
 /// The shape of a node's mesh: two equal poses have equal vertices.
@@ -26,14 +27,15 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// The tracks of a scene sorted by target, so that evaluating many frames needs no search.
+/// The tracks of a scene sorted by target, so that evaluating many frames needs no search. The scene must outlive it.
 class Animator {
  public:
   explicit Animator(const Scene& scene);
 
   /// World transform of every node at a time [s].
   std::vector<Affine> world_from_node(double time_s) const;
-  /// Morph weights and joints of a node's mesh at a time, from the nodes' world transforms. Empty for a rigid mesh.
+  /// Morph weights and joints of a node's mesh at a time [s]; `world_from_node` is that of the same time. Empty for a
+  /// rigid mesh.
   Pose pose(std::size_t node, double time_s, const std::vector<Affine>& world_from_node) const;
   /// True if the scene has any track.
   bool anything_animated() const { return anything_animated_; }
@@ -42,8 +44,9 @@ class Animator {
   /// The tracks of materials, lights and cameras.
   const std::vector<const AnimationTrack*>& property_tracks() const { return property_tracks_; }
 
-  /// Materials, a light or a camera at a time. Properties without a track are as in the scene; values that a spline
-  /// takes out of their range are clamped.
+  /// All materials, or the light or camera of an index, at a time [s]. Properties without a track are as in the scene.
+  /// A value that a spline takes out of its range is clamped. Throws InputError if colour times strength overflows
+  /// float32.
   std::vector<Material> materials(double time_s) const;
   PunctualLight light(std::size_t index, double time_s) const;
   Camera camera(std::size_t index, double time_s) const;
@@ -54,7 +57,8 @@ class Animator {
   const Scene* scene_;
   std::vector<std::vector<const AnimationTrack*>> tracks_;
   std::vector<const AnimationTrack*> property_tracks_;
-  std::vector<std::vector<std::uint8_t>> joint_used_;  ///< per node with a skin: by joint
+  /// For each node with a skin and each joint of the skin: 1 if a vertex of the mesh follows the joint.
+  std::vector<std::vector<std::uint8_t>> joint_used_;
   bool anything_animated_ = false;
 };
 

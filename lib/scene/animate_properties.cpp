@@ -10,9 +10,6 @@ namespace {
 
 using Path = AnimationTrack::Path;
 
-/// Narrowest soft edge of a spot, the same as for a file with a hard edge (gltf_material.cpp).
-constexpr double kSharpestCone = 0.9999;
-
 float limited(double value, double lower, double upper = 3e38) { return float(std::clamp(value, lower, upper)); }
 
 Rgb limited_colour(const std::array<double, 4>& v, double upper = 3e38) {
@@ -60,10 +57,9 @@ std::vector<Material> Animator::materials(double time_s) const {
     Material& material = materials[std::size_t(track->target)];
     ColorFactors emission = scene_->emission_factors[std::size_t(track->target)];
     // The emission is a product of factors that may have separate tracks, so all of these tracks are evaluated.
-    const bool emits = track->path == Path::emissive_factor || track->path == Path::emissive_strength;
+    const bool emits = track->changes_emission();
     for (const AnimationTrack* other : property_tracks_)
-      if (other == track || (emits && other->target == track->target &&
-                             (other->path == Path::emissive_factor || other->path == Path::emissive_strength)))
+      if (other == track || (emits && other->target == track->target && other->changes_emission()))
         set(material, emission, other->path, evaluate(*other, time_s));
     if (emits) material.emission = emission.color * emission.strength;
     check_product(*scene_, "materials", track->target, material.emission);
@@ -94,7 +90,7 @@ PunctualLight Animator::light(std::size_t index, double time_s) const {
     }
     outer = std::clamp(outer, 1e-4, std::numbers::pi / 2);
     light.outer_cone_rad = float(outer);
-    light.inner_cone_rad = float(std::clamp(inner, 0.0, outer * kSharpestCone));
+    light.inner_cone_rad = float(std::clamp(inner, 0.0, outer * kSharpestSpot));
   }
   if (product) light.intensity = factors.color * factors.strength;
   check_product(*scene_, "extensions.KHR_lights_punctual.lights", int(index), light.intensity);

@@ -28,7 +28,7 @@ std::vector<PlacedLight> place_lights(const Scene& scene, const Animator& animat
     placed.position = Vec3(world[n].translation - origin);
     placed.direction = Vec3(normalize(world[n].direction({0, 0, -1})));
     if (!is_finite(placed.position) || !(max_component(abs(placed.position)) < kMaxCoordinate))
-      throw InputError(node_place(scene, n) + ": its light stands beyond 1e15 m");
+      throw InputError(node_place(scene, n) + ": its light is farther than 1e15 m from the origin");
     const bool needs_direction = placed.light.kind != PunctualLight::Kind::point;
     if (needs_direction && !(length2(placed.direction) > 0.5f && length2(placed.direction) < 2))
       throw InputError(node_place(scene, n) + ": its light has no direction; the node's scale must not be 0");
@@ -37,7 +37,7 @@ std::vector<PlacedLight> place_lights(const Scene& scene, const Animator& animat
   return lights;
 }
 
-/// Right, up and backward axes of the node, made orthonormal; the view direction keeps its direction.
+/// Places a camera at its node. The node's axes are made orthonormal without changing the direction of view.
 PlacedCamera place_camera(const Scene& scene, const Camera& camera, std::size_t n, Vec3d origin, const Affine& world) {
   PlacedCamera placed{camera, {}};
   const Vec3d backward = normalize(world.direction({0, 0, 1}));

@@ -20,41 +20,46 @@ class Media;  // lib/volume/medium.h
 
 /// A material, light or camera that an animation changes within a segment (KHR_animation_pointer).
 struct PropertyChange {
-  std::string name, why;  ///< such as "Glass" and "roughness of Glass"
+  std::string name, why;  ///< name of the object, and what changes: "Glass" and "roughness of Glass"
   std::string carries;    ///< kind of the changed object: "material", "light" or "camera"
 };
 
 /// An interval of frames within which static objects do not change (docs/methods/formulas.md). Both ends belong to it.
 struct Segment {
   int first = 0, last = 0;
-  /// Per node: 1 if its state differs between two frames: its world transform, the morph weights and joints of its
+  /// For each node, 1 if its state differs between two frames: its world transform, the morph weights and joints of its
   /// mesh, its materials or its light.
   std::vector<std::uint8_t> node_moves;
-  std::vector<std::string> why_moves;   ///< per node: "" or what differs, e.g. "translation of MovingBox"
+  std::vector<std::string> why_moves;   ///< for each node, what differs: "translation of MovingBox"; "": nothing
   std::vector<PropertyChange> changes;  ///< materials, lights and cameras that differ between two frames
-  /// World position of scene space's origin: 0 unless the scene is far from the world's origin for its size.
+  /// World position of scene space's origin. 0, unless the scene is so far from the world's origin that float32 would
+  /// lose digits.
   Vec3d origin{};
   Box3d world_bounds;  ///< of all geometry over the whole segment, world space, m
+
+  /// True if the node's state differs between two frames. False in a scene made by hand, which has no nodes.
+  bool moves(std::uint32_t node) const { return node < node_moves.size() && node_moves[node] != 0; }
 };
 
+/// How frames, segments and units of light follow from the file.
 struct TimeOptions {
   double fps = 24;                  ///< frame f is at time f / fps seconds
   int segment_length = 24;          ///< frames; segments begin at multiples of it
   std::string light_units = "raw";  ///< "raw", or "spec": punctual lights are divided by 683
 };
 
-/// The frame that tools evaluate for `frame`: clamped to the animation's frames, which run from 0 to the frame of the
-/// last key (rounded up). Without animation every frame from 0 on is valid.
+/// The frame that tools evaluate for `frame`: clamped to the animation's frames, which are 0 to the frame of the last
+/// key (rounded up). Without animation only negative frames are clamped.
 int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options);
 
-/// The segment that holds `frame`: [k length, (k+1) length - 1], clamped to the animation's frames. Without animation
-/// the segment has the full length.
+/// The segment that holds `frame`: frames k length to (k+1) length - 1, cut at the animation's last frame. Throws
+/// std::invalid_argument unless fps and segment length are above 0; InputError if geometry overflows double.
 Segment segment_of(const Scene& scene, int frame, const TimeOptions& options);
 
 /// World transforms of all nodes at a frame. Frames outside the animation have its first or last state.
 std::vector<Affine> world_from_node(const Scene& scene, int frame, const TimeOptions& options);
 
-/// A constant array that its copies share: static surfaces use the same memory in every frame.
+/// A constant array whose copies share memory: a static surface is stored once for all frames.
 template <class T>
 class SharedArray {
  public:
@@ -75,10 +80,10 @@ class SharedArray {
 };
 
 /// The triangles of one primitive of one node, in scene space (world - Segment::origin). Cheap to copy.
-/// A transform may shrink triangles to zero area at some frames: their normal is then zero, not NaN, and they can
-/// neither be hit nor emit.
+/// A transform may shrink triangles to zero area at some frames. Such a triangle has a normal of zero, not NaN; no ray
+/// hits it and it emits nothing.
 /// If many nodes or instances share a large primitive, the surface is `instanced`: it stores no vertices, and
-/// position() and normal() transform the primitive's. The numbers are the same either way.
+/// position() and normal() transform the primitive's. Both forms give the same numbers.
 struct Surface {
   std::uint32_t object = 0;  ///< id.object
   std::uint32_t node = 0;
@@ -87,8 +92,8 @@ struct Surface {
   const Primitive* primitive = nullptr;  ///< has triangles and uvs; the Scene owns it
   SharedArray<Vec3> positions;           ///< scene space, m; computed in double, rounded once; empty: instanced
   SharedArray<Vec3> normals;             ///< unit; empty: flat shading, or instanced
-  SharedArray<Vec3> tangents;            ///< of a deforming shape with tangents; not unit
-  Affine scene_from_node;                ///< of an instance; includes the instance's own transform
+  SharedArray<Vec3> tangents;            ///< not unit; empty unless the shape deforms and the primitive has tangents
+  Affine scene_from_node;                ///< includes the transform of an instance (Node::instances)
 
   bool instanced() const { return positions.empty(); }
   /// Scene space, m.
@@ -107,16 +112,18 @@ struct Surface {
   }
 };
 
+/// A punctual light at a frame.
 struct PlacedLight {
   PunctualLight light;
-  Vec3 position;   ///< scene space
+  Vec3 position;   ///< scene space, m
   Vec3 direction;  ///< unit, direction in which the light travels
   std::uint32_t node = 0;
 };
 
+/// A camera at a frame.
 struct PlacedCamera {
   Camera camera;
-  Affine scene_from_camera;  ///< rigid; columns: right, up, backward; scale removed
+  Affine scene_from_camera;  ///< a rotation and translation; columns: right, up, backward
 };
 
 /// Hashes of all that a stage may depend on, by concern; 32 hexadecimal digits each (formats/plan/plan.md).
@@ -141,8 +148,8 @@ struct SceneFrame {
   std::shared_ptr<const TextureImages> images;  ///< images of the materials' textures; nullptr: none
   std::vector<PlacedLight> lights;
   const Environment* environment = nullptr;  ///< the scene's; nullptr: none
-  std::shared_ptr<const Media> media;        ///< nullptr: none. at() sets nullptr; the reader of the volumes sets it
-  Vec3d origin{};                            ///< world position = origin + scene space position
+  std::shared_ptr<const Media> media;        ///< nullptr: none. SegmentScene::at() leaves it to the reader of volumes
+  Vec3d origin{};                            ///< world position of the origin of scene space, m
   Box3 bounds;                               ///< of all geometry over the segment; scene space
   std::vector<Affine> world_from_node;       ///< per node, at this frame
   std::vector<Camera> cameras;               ///< evaluated
@@ -153,7 +160,7 @@ struct SceneFrame {
   PlacedCamera camera(int camera_node) const;
 };
 
-/// Identity of the scene's state at this frame, for files made from it.
+/// Identity of the scene's state at this frame, for files that are made from the frame.
 formats::Identity identity_of(const SceneFrame& frame);
 /// Hash of one placed camera; SceneHashes::camera covers all cameras of the scene.
 std::string camera_hash(const PlacedCamera& placed);
@@ -163,10 +170,12 @@ std::string camera_hash(const PlacedCamera& placed);
 ///     const SegmentScene stage(scene, segment_of(scene, 0, options), options);
 ///     for (int f = stage.segment().first; f <= stage.segment().last; ++f) use(stage.at(f));
 ///
-/// The cost of at() is linear in the moving objects and independent of the static ones; it may be called by several
-/// threads. The Scene must outlive this object.
+/// The cost of at() is linear in the number of moving objects and independent of the static ones. Several threads may
+/// call at(). The Scene must outlive this object.
 class SegmentScene {
  public:
+  /// Throws std::invalid_argument for unknown units of light; InputError if static geometry is out of the range of
+  /// coordinates.
   SegmentScene(const Scene& scene, Segment segment, const TimeOptions& options);
 
   const Segment& segment() const { return segment_; }

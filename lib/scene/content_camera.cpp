@@ -18,17 +18,19 @@ constexpr int kTimes = 8;  ///< times of an animation, evenly spaced, that are e
 constexpr std::size_t kMostTriangles = 400'000;
 /// A triangle belongs to a ground if it is longer than this many diagonals of all smaller triangles.
 constexpr double kGap = 2;
-constexpr double kDetail = 0.75;   ///< least share of all triangles that must be smaller
-constexpr double kStrays = 0.005;  ///< share of the total length that may be left out at each end of an axis ...
-constexpr double kShrink = 0.5;    ///< ... if this shortens the axis to less than this share
+constexpr double kDetail = 0.75;  ///< least share of all triangles that must be smaller
+/// Share of the triangles' total length that may be dropped at each end of an axis, if this shortens the axis to less
+/// than kShrink of its length.
+constexpr double kStrays = 0.005, kShrink = 0.5;
 constexpr double kYfov_rad = 0.7, kAspect = 4.0 / 3.0, kMargin = 1.06;
 /// glTF's front is +z: the view comes from the front, a little from the right and from above.
 const Vec3d kTowardsEye = normalize(Vec3d{0.5, 0.4, 1});
 
+/// A triangle of the scene.
 struct Piece {
   std::array<Vec3, 3> corners;  ///< scene space, m
   float length = 0;             ///< diagonal of the triangle's box, m
-  float count = 1;              ///< number of triangles that this one represents
+  float count = 1;              ///< number of triangles of the surface that this one represents
   Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) * (1 / 3.0f); }
 };
 
@@ -48,7 +50,7 @@ void add_surfaces(const std::vector<Surface>& surfaces, std::vector<Piece>& piec
   }
 }
 
-/// All triangles at the first time, and the moving ones at the other times.
+/// All triangles at time 0, and those of moving nodes at the other times.
 std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   const Animator animator(scene);
   const Sharing sharing(scene);
@@ -66,8 +68,8 @@ std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
   return pieces;
 }
 
-/// Leaves out triangles that are far larger than all smaller ones together: a ground, a backdrop, a sky. The smaller
-/// ones must be most of the triangles.
+/// Drops the triangles of a ground, a backdrop or a sky: those longer than kGap times the diagonal of all smaller
+/// triangles, if at least kDetail of all triangles are smaller.
 void leave_out_grounds(std::vector<Piece>& pieces) {
   std::ranges::stable_sort(pieces, {}, &Piece::length);
   double count = 0, whole = 0;
@@ -82,15 +84,14 @@ void leave_out_grounds(std::vector<Piece>& pieces) {
   pieces.resize(kept);
 }
 
-double coordinate(Vec3d p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
-/// The range of the coordinate `axis` of centres that leaves out a share of all weight at either end.
+/// The range of the triangles' centres along an axis without the outermost ones, which have kStrays of the total length
+/// at each end.
 std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
   std::vector<std::pair<double, double>> centres;
   double whole = 0;
   for (const Piece& piece : pieces) {
     const double weight = double(piece.length) * double(piece.count);
-    centres.emplace_back(coordinate(Vec3d(piece.centre()), axis), weight);
+    centres.emplace_back(piece.centre()[axis], weight);
     whole += weight;
   }
   std::ranges::sort(centres);
@@ -103,13 +104,14 @@ std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
   return {at_share(kStrays), at_share(1 - kStrays)};
 }
 
-/// True if leaving out a share of all weight at either end surely leaves kShrink of the axis from `low` to `high`,
-/// because either end of this length holds more. Most scenes pass this test, which needs no sorting.
+/// True if dropping strays cannot shorten the axis from `low` to `high` to less than kShrink, because either end of
+/// length (1 - kShrink) / 2 holds more than kStrays of the total length. Most scenes pass this test, which needs no
+/// sorting.
 bool has_full_ends(const std::vector<Piece>& pieces, int axis, double low, double high) {
   const double end = (high - low) * (1 - kShrink) / 2;
   double whole = 0, first = 0, last = 0;
   for (const Piece& piece : pieces) {
-    const double at = coordinate(Vec3d(piece.centre()), axis), weight = double(piece.length) * double(piece.count);
+    const double at = double(piece.centre()[axis]), weight = double(piece.length) * double(piece.count);
     whole += weight;
     first += at <= low + end ? weight : 0;
     last += at >= high - end ? weight : 0;
@@ -117,35 +119,35 @@ bool has_full_ends(const std::vector<Piece>& pieces, int axis, double low, doubl
   return std::min(first, last) > kStrays * whole;
 }
 
-/// Leaves out a few stray triangles if an axis would otherwise be more than twice as long.
+/// Drops stray triangles where this shortens an axis to less than kShrink.
 void leave_out_strays(std::vector<Piece>& pieces) {
   for (int axis = 0; axis < 3; ++axis) {
     Box3d all, inner;
     for (const Piece& piece : pieces)
       for (const Vec3 p : piece.corners) all.add(Vec3d(p));
-    if (has_full_ends(pieces, axis, coordinate(all.lower, axis), coordinate(all.upper, axis))) continue;
+    if (has_full_ends(pieces, axis, all.lower[axis], all.upper[axis])) continue;
     const auto range = inner_range(pieces, axis);
     const auto inside = [&](const Piece& piece) {
-      const double at = coordinate(Vec3d(piece.centre()), axis);
+      const double at = double(piece.centre()[axis]);
       return at >= range[0] && at <= range[1];
     };
     for (const Piece& piece : pieces)
       for (const Vec3 p : piece.corners)
         if (inside(piece)) inner.add(Vec3d(p));
-    if (coordinate(inner.upper - inner.lower, axis) < kShrink * coordinate(all.upper - all.lower, axis))
+    if (inner.upper[axis] - inner.lower[axis] < kShrink * (all.upper[axis] - all.lower[axis]))
       std::erase_if(pieces, [&](const Piece& piece) { return !inside(piece); });
   }
 }
 
-/// Right, up and backward of a camera that looks against `backward`.
+/// Axes right, up and backward of a camera that looks along -`backward`.
 std::array<Vec3d, 3> axes_of(Vec3d backward) {
   const Vec3d right = normalize(cross(Vec3d{0, 1, 0}, backward));
   return {right, cross(backward, right), backward};
 }
 
-/// The nearest point from which a picture of aspect kAspect contains all corners. In the camera's axes a corner (x,
-/// y, z) is visible from the eye (ex, ey, ez) if |y - ey| <= t (ez - z), with t the tangent of half the view angle.
-/// So each corner gives lower limits for ey + t ez and for t ez - ey; x likewise.
+/// The closest point from which a picture of aspect kAspect contains all corners. In the camera's axes a corner
+/// (x, y, z) is visible from the eye (ex, ey, ez) if |y - ey| <= t (ez - z), where t is the tangent of half the angle
+/// of view. So each corner gives lower limits of ey + t ez and of t ez - ey; x likewise.
 Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes) {
   const double ty = std::tan(kYfov_rad / 2) / kMargin, tx = ty * kAspect;
   constexpr double kNone = -1e300;
@@ -161,8 +163,8 @@ Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes
   return axes[0] * ((right - left) / 2) + axes[1] * ((up - down) / 2) + axes[2] * distance;
 }
 
-/// The rotation that takes x, y, z to these axes, as a quaternion x y z w. The largest component is computed first, so
-/// that no division by a small number occurs.
+/// The rotation that takes the axes x, y, z to `a`, as a quaternion x y z w. The largest component is computed first,
+/// so that no division by a small number occurs.
 std::array<double, 4> quaternion_of(const std::array<Vec3d, 3>& a) {
   const double m00 = a[0].x, m11 = a[1].y, m22 = a[2].z;
   const std::array<double, 4> squares{1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22,

@@ -8,10 +8,9 @@
 namespace tempolux {
 
 /// Adds a static camera that shows the scene's content; Scene::camera_node("auto") then finds it. Returns a line for
-/// people that describes its position. The camera depends on the scene alone, not on frames, picture size or tool, so
-/// all tools use the same one. Method, and how large grounds, stray triangles and rooms are treated:
-/// docs/methods/content-camera.md.
-/// Throws InputError if geometry is out of the range of coordinates.
+/// people that gives its position. The camera depends on the scene alone, not on frames, picture size or tool, so all
+/// tools use the same camera. docs/methods/content-camera.md has the method, also for large grounds, stray triangles
+/// and rooms. Throws InputError if geometry is out of the range of coordinates.
 std::string add_content_camera(Scene& scene);
 
 }  // namespace tempolux

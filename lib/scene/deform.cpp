@@ -8,6 +8,7 @@
 namespace tempolux {
 namespace {
 
+/// A vertex attribute with the weighted displacements of all morph targets.
 Vec3d sum(const std::vector<Vec3>& rest, const std::vector<MorphTarget>& targets,
           std::vector<Vec3> MorphTarget::*displacements, const std::vector<double>& weights, std::size_t vertex) {
   Vec3d value(rest[vertex]);
@@ -17,6 +18,7 @@ Vec3d sum(const std::vector<Vec3>& rest, const std::vector<MorphTarget>& targets
   return value;
 }
 
+/// world_from_mesh of a skinned vertex: the weighted sum over its joints.
 Affine blended(const Primitive& primitive, const Pose& pose, std::size_t vertex) {
   const std::size_t n = primitive.influences_per_vertex;
   Affine m;
@@ -81,7 +83,7 @@ PoseBounds::PoseBounds(const Scene& scene, const Node& node) {
     }
     displacement_.resize(primitive.targets.size());
     for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
-      // Vertices of other primitives, or targets without positions, have no displacement.
+      // Other primitives may have vertices without displacement.
       displacement_[t].add(Vec3d{});
       for (const Vec3& d : primitive.targets[t].positions) displacement_[t].add(Vec3d(d));
     }

@@ -13,8 +13,8 @@
 namespace tempolux {
 namespace {
 
-/// W/m^2/sr: largest radiance of a map. Products of radiance, solid angle, area and 1 / probability then stay below
-/// float32's largest number, 3.4e38.
+/// Largest radiance of a map, W/m^2/sr. Products of radiance, solid angle, area and 1 / probability then stay below the
+/// largest number of float32, 3.4e38.
 constexpr double kMostRadiance = 1e30;
 
 std::string pixel_place(std::size_t pixel, int width) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -20,18 +21,13 @@ using Interpolation = AnimationTrack::Interpolation;
 constexpr std::array kInterpolations{std::pair{"LINEAR", Interpolation::linear}, std::pair{"STEP", Interpolation::step},
                                      std::pair{"CUBICSPLINE", Interpolation::cubic_spline}};
 
-bool is_known(const std::string& interpolation) {
-  return std::ranges::any_of(kInterpolations, [&](const auto& known) { return interpolation == known.first; });
-}
-
-/// An unknown name means LINEAR, glTF's default: the keys themselves stay valid.
-Interpolation interpolation_of(const std::string& name) {
+std::optional<Interpolation> interpolation_of(const std::string& name) {
   for (const auto& [known, interpolation] : kInterpolations)
     if (name == known) return interpolation;
-  return Interpolation::linear;
+  return std::nullopt;
 }
 
-/// True if the channel's target is a node of the scene; returns its path.
+/// True if the channel's target is a node of the scene; sets `path`.
 bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, const std::string& place, Path& path) {
   static const std::map<std::string, Path> paths{{"translation", Path::translation},
                                                  {"rotation", Path::rotation},
@@ -49,7 +45,7 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
   return import.node_from_source[std::size_t(channel.target_node)] != -1;
 }
 
-/// Numbers per value; for weights the number of morph targets of the node's mesh.
+/// Numbers per value of a track; for weights, the number of morph targets of the node's mesh.
 std::size_t components_of(const Import& import, Path path, int target, const std::string& place) {
   switch (path) {
     case Path::weights: break;
@@ -97,7 +93,8 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int
   track.target = target;
   track.path = path;
   track.components = components_of(import, path, target, place);
-  track.interpolation = interpolation_of(sampler.interpolation);
+  const std::optional<Interpolation> interpolation = interpolation_of(sampler.interpolation);
+  track.interpolation = interpolation.value_or(Interpolation::linear);  // glTF's default; the keys stay valid
   track.times_s = read_numbers(import, sampler.input, 1, place + ".input");
   for (std::size_t i = 1; i < track.times_s.size(); ++i)
     if (!(track.times_s[i] > track.times_s[i - 1]))
@@ -106,7 +103,7 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int
   if (path < Path::weights && import.scene.nodes[std::size_t(target)].has_matrix)
     import.fail(place, "animates a node that is given by a matrix; export it as translation, rotation, scale");
   read_values(import, sampler, place, track);
-  if (!is_known(sampler.interpolation))
+  if (!interpolation)
     import.mend(place,
                 "channels whose interpolation \"" + one_line(sampler.interpolation, 40) +
                     "\" glTF does not have are played as LINEAR",
@@ -138,8 +135,7 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
 
 namespace {
 
-/// Reads the tracks of one animation. An invalid channel is left out with a warning; with `strict` it throws
-/// InputError.
+/// Reads the tracks of one animation. An invalid channel is dropped with a warning; with `strict` it throws InputError.
 std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool strict) {
   const tinygltf::Animation& source = import.model.animations[index];
   std::vector<AnimationTrack> tracks;

@@ -35,7 +35,7 @@ int component_count(int type) {
   }
 }
 
-/// offset + stride (count - 1) + size, or kNoLimit if that does not fit 64 bits.
+/// offset + stride (count - 1) + size, or kNoLimit if the sum does not fit 64 bits.
 std::uint64_t bytes_needed(std::uint64_t offset, std::uint64_t stride, std::uint64_t count, std::uint64_t size) {
   if (count == 0) return 0;
   std::uint64_t span = 0, end = 0;
@@ -194,7 +194,8 @@ Elements open_accessor(Import& import, int index, int components, const std::str
   return elements;
 }
 
-/// Calls put(element, component, value) for all numbers. `scale` is the factor from normalised integers to numbers.
+/// Calls put(element, component, value) for all numbers. If the accessor is normalised, integers are multiplied by
+/// `scale`; `scale` is 0 for floats, which stay as they are.
 template <class Stored, class Put>
 void convert(const Elements& elements, double scale, Put put) {
   for (std::uint64_t i = 0; i < elements.count; ++i) {
@@ -202,14 +203,14 @@ void convert(const Elements& elements, double scale, Put put) {
     for (int c = 0; c < elements.components; ++c) {
       Stored stored;
       std::memcpy(&stored, bytes + std::size_t(c) * sizeof(Stored), sizeof(Stored));
-      put(i, c, elements.normalized ? std::max(double(stored) * scale, -1.0) : double(stored));
+      put(i, c, elements.normalized && scale > 0 ? std::max(double(stored) * scale, -1.0) : double(stored));
     }
   }
 }
 
-/// Reads components of any type as numbers and calls put(element, component, value); 32-bit integers are refused,
-/// since glTF keeps them for indices. Returns the elements with NaN or infinity, each once, ascending: the caller
-/// must replace their values.
+/// Reads components of any type as numbers and calls put(element, component, value). 32-bit integers are refused: glTF
+/// allows them for indices only. Returns the elements with NaN or infinity, each once, ascending; the caller must
+/// replace their values.
 template <class Put>
 std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, const std::string& place, int index,
                                     Put put_value) {
@@ -219,14 +220,7 @@ std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, co
     put_value(i, c, value);
   };
   switch (elements.component_type) {
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      for (std::uint64_t i = 0; i < elements.count; ++i)
-        for (int c = 0; c < elements.components; ++c) {
-          float value;
-          std::memcpy(&value, elements.first + i * elements.stride + std::size_t(c) * 4, 4);
-          put(i, c, double(value));
-        }
-      break;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: convert<float>(elements, 0, put); break;
     case TINYGLTF_COMPONENT_TYPE_BYTE: convert<std::int8_t>(elements, 1 / 127.0, put); break;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: convert<std::uint8_t>(elements, 1 / 255.0, put); break;
     case TINYGLTF_COMPONENT_TYPE_SHORT: convert<std::int16_t>(elements, 1 / 32767.0, put); break;
@@ -236,7 +230,7 @@ std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, co
   return unusable;
 }
 
-/// Elements as vectors; at(vector, c) is component c. The unusable ones become 0.
+/// Elements as vectors; at(vector, c) is component c. Unusable elements become 0.
 template <class Vector, class At>
 std::vector<Vector> read_vectors(Import& import, int accessor, const std::string& place,
                                  std::vector<std::uint32_t>& unusable, const At& at) {

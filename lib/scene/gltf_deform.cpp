@@ -69,7 +69,7 @@ Skin read_skin(Import& import, std::size_t index) {
   return skin;
 }
 
-/// Index of the node's skin, which is read at its first use; -1 if the mesh does not follow joints.
+/// Index in the scene of the skin `source` of the file, which is read at its first use; -1 if the mesh has no joints.
 int skin_of(Import& import, const Node& node, int source, std::vector<int>& skin_from_source) {
   const std::string place = place_of("nodes", node.source_index, node.name);
   if (source < 0 || std::size_t(source) >= import.model.skins.size())
@@ -113,8 +113,8 @@ std::vector<double> weights_of(const Import& import, const Node& node) {
   return given.empty() ? std::vector<double>(count, 0) : given;
 }
 
-/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if the attribute is missing. `usable` has a mark for each
-/// instance, which is cleared if one of its numbers is not finite.
+/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if the attribute is missing. Sets usable[i] to false if a
+/// number of instance i is not finite.
 std::vector<double> instance_numbers(Import& import, const tinygltf::Value& attributes, const char* name,
                                      std::size_t components, std::vector<bool>& usable, const std::string& place) {
   if (!attributes.Has(name)) return {};

@@ -15,8 +15,8 @@ struct Extension {
   bool is_of_textures = false;  ///< stores images in its own format, which this program does not decode
 };
 
-// Commands that unpack: `gltf-transform cp` writes unpacked geometry. `gltf-transform png` converts WebP only if asked
-// to; `ktxdecompress` calls the program ktx. gltfpack reads packed files from version 0.22 on.
+// The remedies name commands that unpack. `gltf-transform cp` writes unpacked geometry; `gltf-transform png` converts
+// WebP only with --formats. gltfpack reads packed files from version 0.22 on.
 constexpr const char* kToPng = "convert its textures with `gltf-transform png IN.glb OUT.glb --formats '*'`";
 constexpr std::array kExtensions{
     Extension{"KHR_draco_mesh_compression",
@@ -37,10 +37,10 @@ constexpr std::array kExtensions{
   throw InputError(file + ": " + place + ": " + name.substr(0, 80) + " is not supported; " + remedy);
 }
 
-/// Places where the file uses an extension.
+/// How a file uses an extension of textures.
 struct Use {
   bool used = false;
-  std::string only;  ///< place of the first data without a fallback; empty: all data has one
+  std::string only;  ///< place of the first texture without an image that this program reads; empty: there is none
 };
 
 Use use_by_textures(const Json& document, const char* name) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
-// Extensions that are read, in full or as far as this version renders them (gltf_material.cpp names what is left out).
+// Extensions that this program reads. Properties of them that it does not render cause warnings (gltf_material.cpp).
 const std::set<std::string> kKnown{"KHR_lights_punctual",     "KHR_materials_emissive_strength",
                                    "KHR_materials_specular",  "KHR_materials_ior",
                                    "KHR_mesh_quantization",   "KHR_materials_transmission",
@@ -102,33 +103,28 @@ void check_version(const Json& document, const std::string& path) {
   }
 }
 
-std::vector<std::string> names(const Json& document, const char* key) {
-  return document.contains(key) ? document[key].get<std::vector<std::string>>() : std::vector<std::string>{};
-}
-
 void check_extensions(Json& document, const std::string& path, Gated& gated) {
   std::set<std::string> handled;
   check_packing(document, path, kKnown, handled, gated.warnings);
   std::set<std::string> unknown;
   prune(document, kKnown, unknown, path);
-  for (const std::string& name : names(document, "extensionsUsed"))
-    if (!kKnown.contains(name)) unknown.insert(name);
+  for (const Json& used : array_of(document, "extensionsUsed"))
+    if (const auto name = used.get<std::string>(); !kKnown.contains(name)) unknown.insert(name);
   std::string ignored;
   for (const std::string& name : unknown)
     if (!handled.contains(name)) ignored += (ignored.empty() ? "" : ", ") + name.substr(0, 80);
   if (!ignored.empty()) gated.warnings.push_back(path + ": ignored extensions: " + ignored);
 }
 
-/// Keeps the `extras` of nodes as text; tinygltf would make values of 200 bytes each of them.
+/// Keeps the `extras` of nodes as text, since tinygltf would need 200 bytes for each of their values.
 void keep_node_extras(const Json& document, Gated& gated) {
-  const auto nodes = document.find("nodes");
-  if (nodes == document.end()) return;
-  for (std::size_t i = 0; i < nodes->size(); ++i)
-    if (const auto extras = (*nodes)[i].find("extras"); extras != (*nodes)[i].end())
+  const Json& nodes = array_of(document, "nodes");
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (const auto extras = nodes[i].find("extras"); extras != nodes[i].end())
       gated.node_extras.emplace(i, extras->dump());
 }
 
-/// Keeps these channels separately, since tinygltf drops them silently.
+/// Moves channels of KHR_animation_pointer to `gated`, since tinygltf drops them silently.
 void keep_pointer_channels(Json& document, Gated& gated) {
   if (!document.contains("animations")) return;
   for (std::size_t a = 0; a < document["animations"].size(); ++a) {
@@ -149,22 +145,16 @@ void keep_pointer_channels(Json& document, Gated& gated) {
   }
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
 std::string percent_decoded(const std::string& uri, const std::string& path, const std::string& place) {
   std::string decoded;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     char c = uri[i];
     if (c == '%') {
-      const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
-      const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
-      if (low < 0)
+      const char *digits = uri.data() + i + 1, *const end = uri.data() + std::min(i + 3, uri.size());
+      unsigned char byte = 0;
+      if (end - digits != 2 || std::from_chars(digits, end, byte, 16).ptr != end)
         fail(path, place, "\"" + uri.substr(0, 80) + "\" has a % that is not followed by two hexadecimal digits");
-      c = char(high * 16 + low);
+      c = char(byte);
       i += 2;
     }
     if (c == '\0') fail(path, place, "holds a zero byte");
@@ -178,8 +168,8 @@ bool has_scheme(const std::string& uri) {
   return end != std::string::npos && end > 0 && uri[end] == ':';
 }
 
-/// The file that a relative URI names. Symbolic links and `..` are resolved before the check that the file is inside
-/// the folder.
+/// The file that a relative URI names. Symbolic links and `..` are resolved before the function checks that the file is
+/// inside the scene's folder.
 std::string resolved(const std::string& uri, const std::string& path, const std::string& place) {
   const std::string shown = "\"" + uri.substr(0, 80) + "\"";
   if (uri.empty()) fail(path, place, "is empty");
@@ -196,14 +186,14 @@ std::string resolved(const std::string& uri, const std::string& path, const std:
   return (folder / relative).string();
 }
 
-/// The text after the comma of a data URI; nothing unless it is base64.
+/// The text after the comma of a data URI; nullopt unless the text is base64.
 std::optional<std::string_view> base64_of(std::string_view uri) {
   const std::size_t comma = uri.find(',');
   if (comma == uri.npos || comma > 200 || !uri.substr(0, comma).ends_with(";base64")) return std::nullopt;
   return uri.substr(comma + 1);
 }
 
-/// Checks a data URI and rewrites it in the one form that tinygltf accepts for any media type.
+/// Checks a data URI and rewrites its head, of which tinygltf accepts only certain media types.
 std::string checked_data_uri(const std::string& uri, std::uint64_t length, const std::string& path,
                              const std::string& place) {
   const std::optional<std::string_view> coded = base64_of(uri);
@@ -284,7 +274,7 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
   return approved;
 }
 
-/// Checks the total size: many buffers that name one file could make a small file large.
+/// Limits the total size: many buffers that name one file would make a small scene large.
 void check_total(const std::string& path, const GltfOptions& options, const Gated& gated) {
   std::uint64_t on_disk = 0, wanted = 0;
   for (const std::string& file : gated.files) on_disk += ByteFile(file).size();

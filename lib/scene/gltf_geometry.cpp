@@ -32,13 +32,14 @@ std::vector<Triangle> triangles_from(const std::vector<std::uint32_t>& indices, 
   return triangles;
 }
 
-/// Differences of floats are so exact in double that only collinear corners give zero.
+/// True unless the corners are collinear. Double precision holds the differences and products of floats so exactly that
+/// no other triangle gives zero.
 bool has_area(const std::vector<Vec3>& positions, const Triangle& t) {
   const Vec3d a(positions[t[0]]), b(positions[t[1]]), c(positions[t[2]]);
   return length2(cross(b - a, c - a)) > 0;
 }
 
-/// Keeps the vertices that are used: exporters may put many primitives on one shared vertex accessor.
+/// Drops the vertices that no triangle uses: exporters may put the vertices of many primitives into one accessor.
 void drop_unused_vertices(Primitive& primitive) {
   std::vector<std::uint32_t> new_index(primitive.positions.size(), 0), used;
   for (const Triangle& t : primitive.triangles)
@@ -84,15 +85,15 @@ void read_normals(Import& import, int accessor, const std::string& place, Primit
   mend_normals(import, place, unusable, primitive);
 }
 
-/// True if the texture transform neither turns nor mirrors the map. Otherwise the file's tangents, which follow its
-/// untransformed coordinates, are wrong and are computed anew.
+/// True if the texture transform neither turns nor mirrors the map. If false, the file's tangents, which follow the
+/// untransformed coordinates, are wrong and must be computed.
 bool keeps_axes(const Texture& texture) {
   const auto& m = texture.transform;
   return m[0] > 0 && m[4] > 0 && m[1] == 0 && m[3] == 0;
 }
 
-/// Reads tangents: a unit vector and the sign of the third axis (glTF 2.0, 3.7.2.1). They are read only if the
-/// primitive has normals and its material a normal map; if the file has none, make_tangents() computes them.
+/// Reads tangents: a unit vector and the sign of the third axis (glTF 2.0, 3.7.2.1). Reads nothing unless the primitive
+/// has normals and its material a normal map that keeps the axes; read_primitive() then computes tangents if needed.
 void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("TANGENT");
   const Material& material = import.scene.materials[primitive.material];
@@ -131,8 +132,8 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   return uvs;
 }
 
-/// Reads vertex colours (glTF 2.0, 3.7.2.1: RGB or RGBA, linear) and marks the material. Colours that are all white
-/// are dropped.
+/// Reads vertex colours (glTF 2.0, 3.7.2.1: RGB or RGBA, linear) and notes in the material that it has some. Colours
+/// that are all white are dropped.
 void read_colors(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("COLOR_0");
   if (found == source.attributes.end()) return;
@@ -197,9 +198,10 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   import.take_memory(order.size() * sizeof(Triangle), place);
   primitive.triangles = triangles_from(order, source.mode);
   const std::size_t before = primitive.triangles.size();
-  // The primitive may have an area in another pose.
-  const bool opens = !source.targets.empty() || source.attributes.contains("JOINTS_0");
-  if (!opens) std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
+  // A triangle of a deforming primitive may have an area in another pose.
+  const bool deforms = !source.targets.empty() || source.attributes.contains("JOINTS_0");
+  if (!deforms)
+    std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
   if (before > primitive.triangles.size()) import.ignore("triangles of zero area", before - primitive.triangles.size());
   if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
     read_normals(import, normal->second, place + ".NORMAL", primitive);

@@ -40,8 +40,8 @@ class Counter final : public nlohmann::json_sax<Json> {
  private:
   std::size_t depth_ = 0, values_ = 0;
 
-  /// Shortens the parser's message "[json...101] parse error at line 1, column 2: WHAT - DETAIL; last read: ...":
-  /// without parts for programmers and without bytes of the file.
+  /// Shortens the parser's message "[json...101] parse error at line 1, column 2: WHAT - DETAIL; last read: ..." to
+  /// "column 2: WHAT - DETAIL", without bytes of the file.
   static std::string what_is_wrong(std::string text) {
     text = text.substr(0, text.find("; last read"));
     if (const std::size_t at = text.find("column "); at != std::string::npos) text = text.substr(at);
@@ -252,7 +252,7 @@ void check_property(Json& value, const Rule& rule, const std::string& place, con
       check_object(value[i], *rule.inside, place + "[" + std::to_string(i) + "]", file);
 }
 
-/// The recursion is as deep as the rules, not as the file.
+/// Checks an object against the rules of its properties. The recursion is as deep as the rules, not as the file.
 void check_object(Json& object, const Rules& rules, const std::string& place, const std::string& file) {
   const auto inside = [&](std::string_view key) { return (place.empty() ? "" : place + ".") + std::string(key); };
   for (const Rule& rule : rules) {
@@ -278,7 +278,8 @@ std::size_t value_count(const Json& value) {
   return count;
 }
 
-/// Returns the number of values kept inside extensions. Recursion is bounded by parse_json's depth limit.
+/// Removes extras and unknown extensions. Returns the number of values in known extensions. parse_json() has limited
+/// the depth of the recursion.
 std::size_t prune_value(Json& value, const std::set<std::string>& known, std::set<std::string>& unknown) {
   std::size_t kept = 0;
   if (value.is_object()) {

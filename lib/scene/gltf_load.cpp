@@ -53,7 +53,7 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
 
 bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
-/// Never decodes: images do not reach tinygltf.
+/// tinygltf wants an image loader, but never gets an image.
 bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
                     void*) {
   return true;
@@ -70,7 +70,8 @@ tinygltf::Model parse(const std::string& path, Gated& gated) {
   return model;
 }
 
-/// Largest ratio of geometry to file size: 8-bit indices and positions grow twelvefold.
+/// Largest ratio of geometry in memory to the files' size: 8-bit indices and positions grow twelvefold. Files may
+/// always use kSmallScene bytes.
 constexpr std::uint64_t kGrowth = 32, kSmallScene = 64u << 20;
 
 Scene import_scene(const std::string& path, const GltfOptions& options) {

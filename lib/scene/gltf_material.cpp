@@ -15,9 +15,6 @@ using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
 
-/// Blender writes inner = outer for a spot without a soft edge, which glTF forbids: the edge gets this width.
-constexpr double kSharpestCone = 0.9999;
-
 constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
 
 /// Clamps a number to [lower, upper], with a warning if it was outside; fails if it is not finite.
@@ -168,7 +165,7 @@ PunctualLight read_light(Import& import, std::size_t index) {
     const double outer = source.spot.outerConeAngle, inner = source.spot.innerConeAngle;
     if (!(outer > 0 && outer <= std::numbers::pi / 2 + 1e-6 && inner >= 0 && inner <= outer))
       import.fail(place + ".spot", "cone angles must be 0 <= inner < outer <= pi/2");
-    light.inner_cone_rad = float(std::min(inner, outer * kSharpestCone));
+    light.inner_cone_rad = float(std::min(inner, outer * kSharpestSpot));
     light.outer_cone_rad = float(outer);
   }
   if (source.range > 0) import.ignore("range of lights (light follows the inverse square)");
@@ -183,15 +180,11 @@ Camera read_camera(Import& import, std::size_t index) {
   if (source.type == "perspective") {
     camera.kind = Camera::Kind::perspective;
     camera.yfov_rad = source.perspective.yfov;
-    camera.z_near_m = source.perspective.znear;
-    camera.z_far_m = source.perspective.zfar;
     if (!(camera.yfov_rad > 0 && camera.yfov_rad < std::numbers::pi))
       import.fail(place + ".perspective.yfov", "must lie between 0 and pi");
   } else if (source.type == "orthographic") {
     camera.kind = Camera::Kind::orthographic;
     camera.ymag_m = source.orthographic.ymag;
-    camera.z_near_m = source.orthographic.znear;
-    camera.z_far_m = source.orthographic.zfar;
     if (!(camera.ymag_m > 0 && std::isfinite(camera.ymag_m)))
       import.fail(place + ".orthographic.ymag", "must be above 0");
   } else {

@@ -7,7 +7,7 @@
 namespace tempolux::gltf {
 namespace {
 
-/// Position of a vertex in the list; the list's size if it is missing.
+/// Index of a vertex in the list; the list's size if the vertex is not there.
 std::size_t find(const std::vector<std::uint32_t>& sorted, std::uint32_t vertex) {
   const auto at = std::ranges::lower_bound(sorted, vertex);
   return at != sorted.end() && *at == vertex ? std::size_t(at - sorted.begin()) : sorted.size();

@@ -23,33 +23,33 @@ struct Import {
   Scene& scene;
   const Gated* gated = nullptr;
   const GltfOptions* options = nullptr;
-  std::uint64_t geometry_budget = 0;               ///< bytes that may still be allocated for geometry
-  std::vector<int> node_from_source{};             ///< node index of the file -> of the scene, -1: not in the scene
-  std::vector<int> mesh_from_source{};             ///< the same for meshes; -1: not used or without triangles
-  std::vector<EncodedImage> images{};              ///< of the scene, as they are met
-  std::vector<std::uint32_t> image_from_source{};  ///< image of the file -> of the scene, kNone: not read
+  std::uint64_t geometry_budget = 0;    ///< bytes that may still be allocated for geometry
+  std::vector<int> node_from_source{};  ///< index in the scene of each node of the file; -1: not in the scene
+  std::vector<int> mesh_from_source{};  ///< likewise for meshes; -1: not used or without triangles
+  std::vector<EncodedImage> images{};   ///< images of the scene, in the order in which textures name them
+  std::vector<std::uint32_t> image_from_source{};  ///< index in `images` of each image of the file; kNone: not read
+  /// Counts one kind of repair or ignored feature.
   struct Mended {
     std::string first_place;
     std::size_t count = 0, places = 0;
   };
-  std::map<std::string, Mended> mended{};   ///< what was wrong and what became of it; warnings at the end
-  std::map<std::string, Mended> ignored{};  ///< what was ignored, and where first if that helps; warnings at the end
+  std::map<std::string, Mended> mended{};   ///< by the text of mend(); each becomes a warning
+  std::map<std::string, Mended> ignored{};  ///< by the text of ignore(); each becomes a warning
 
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     gltf::fail(scene.path, place, what);
   }
-  /// Takes `bytes` from the budget before they are allocated; fails if a file asks for far more memory than its size
+  /// Subtracts `bytes` from the budget before they are allocated. Fails if the file needs far more memory than its size
   /// can explain.
   void take_memory(std::uint64_t bytes, const std::string& place);
-  /// Lists something that is ignored. `place` is where the user finds it, as 'materials[3] "Oak"'; "" if a place
-  /// would not help.
+  /// Notes a feature that is ignored. `place` helps the user to find it, as 'materials[3] "Oak"'; "": no place.
   void ignore(const std::string& what, std::size_t count = 1, const std::string& place = "") {
     Mended& of = ignored[what];
     if (of.count == 0) of.first_place = place;
     of.count += count;
   }
-  /// Lists something that was repaired. `what` names the things in the plural and what was done, as "weights below 0
-  /// are left out"; `count` of them are at `place`.
+  /// Notes `count` repairs at `place`. `what` names the invalid values in the plural and what was done: "weights below
+  /// 0 are left out".
   void mend(const std::string& place, const std::string& what, std::size_t count);
 };
 
@@ -61,9 +61,10 @@ struct TextureUse {
   int index = -1, uv_set = 0;
   const tinygltf::Value* transform = nullptr;  ///< KHR_texture_transform
 };
-/// gltf_texture.cpp. Reads the image's bytes and size at its first use; refuses images that cannot be decoded.
+/// Reads a reference to a texture, and the bytes and size of its image at the image's first use. An empty Texture if
+/// the index is -1. Throws InputError for an image that cannot be decoded.
 Texture read_texture(Import& import, const TextureUse& use, const std::string& place);
-/// The same from a textureInfo inside an extension.
+/// Reads a reference to a texture from a textureInfo inside an extension.
 Texture read_texture(Import& import, const tinygltf::Value& info, const std::string& place);
 
 /// Number of morph targets of a mesh; glTF requires the same number for all its primitives.
@@ -76,8 +77,8 @@ void import_lights(Import& import);       ///< gltf_material.cpp: KHR_lights_pun
 void import_cameras(Import& import);      ///< gltf_material.cpp
 void import_meshes(Import& import);       ///< gltf_geometry.cpp: the meshes that nodes use
 void import_deformation(Import& import);  ///< gltf_deform.cpp: skins, morph weights, instances of nodes
-/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all animations.
-/// Invalid channels are left out with a warning: the property then stays at rest.
+/// gltf_animation.cpp: the animation named `only` (an unnamed one is called "animation INDEX"), or all if `only` is
+/// empty. Invalid channels are dropped with a warning; with `only` they throw InputError.
 void import_animations(Import& import, const std::string& only);
 
 }  // namespace tempolux::gltf

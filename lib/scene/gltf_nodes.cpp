@@ -87,7 +87,7 @@ bool normalize_rotation(std::array<double, 4>& q) {
   return true;
 }
 
-/// Visits nodes depth first, children in order, with an explicit stack, so that depth is bounded by memory only.
+/// Visits nodes depth first, children in their order. An explicit stack lets nodes nest as deeply as memory allows.
 void import_nodes(Import& import) {
   struct Pending {
     int source, parent;

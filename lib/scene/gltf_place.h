@@ -9,7 +9,7 @@ namespace tempolux::gltf {
 /// Throws InputError "FILE: PLACE: WHAT".
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what);
 
-/// Returns the first line of `text`, cut to `length` bytes and without control characters. Messages quote text of files
+/// The first line of `text`, cut to `length` bytes, with ? in place of control characters. Messages quote text of files
 /// and libraries in this form.
 std::string one_line(std::string text, std::size_t length);
 

@@ -89,9 +89,9 @@ std::array<double, 2> pair(Import& import, const Value& object, const std::strin
   return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
 }
 
-/// KHR_texture_transform as a matrix: offset + R scale uv. By the specification's text and in all renderers the
-/// coordinates turn counter-clockwise as seen with v downwards: (1, 0) turns towards (0, -1). The specification's
-/// example code has the other sign (Khronos' issue 1563).
+/// Reads KHR_texture_transform as a matrix: offset + R scale uv. In the specification's text and in all renderers, a
+/// positive rotation turns coordinates counter-clockwise as seen with v downwards: (1, 0) turns towards (0, -1). The
+/// specification's example code has the opposite sign (Khronos' issue 1563).
 void read_transform(Import& import, const Value& value, const std::string& place, Texture& texture) {
   if (!value.IsObject()) import.fail(place, "is not an object");
   const auto offset = pair(import, value, "offset", 0, place), scale = pair(import, value, "scale", 1, place);

@@ -13,17 +13,17 @@
 namespace tempolux::gltf {
 namespace {
 
-/// Largest ratio of unpacked to packed size: Draco may need less than a bit for a triangle of a regular grid, which
-/// takes at least 12 bytes unpacked; meshopt shrinks at most 64 times.
+/// Largest ratio of unpacked to packed size. Draco may need less than a bit for a triangle of a regular grid, which has
+/// at least 12 bytes when unpacked; meshopt packs at most 64 to 1. Files may always unpack to kSmall bytes.
 constexpr std::uint64_t kMostGrowth = 1000, kSmall = 64u << 20;
 
-/// The packed pieces of a document and the places of their unpacked bytes.
+/// Collects the packed pieces of a document, and assigns places to their unpacked bytes.
 class Unpacking {
  public:
   Unpacking(Json& document, const std::string& path, const GltfOptions& options, Gated& gated)
       : document_(document), path_(path), options_(options), gated_(gated) {}
 
-  /// Adds a bufferView that meshopt packed.
+  /// Adds a bufferView that is packed by meshopt.
   void add_view(std::size_t index, const char* name) {
     Json& view = document_["bufferViews"][index];
     const std::string place = place_of("bufferViews", index) + ".extensions." + name;
@@ -43,8 +43,7 @@ class Unpacking {
     add(std::move(piece));
   }
 
-  /// Adds a primitive whose accessors are packed by Draco. Accessors shared with an earlier primitive are unpacked
-  /// already: a primitive that shares all of them is no longer packed.
+  /// Adds a primitive whose accessors are packed by Draco.
   void add_primitive(std::size_t mesh, std::size_t number) {
     Json& primitive = document_["meshes"][mesh]["primitives"][number];
     const std::string place =
@@ -106,7 +105,7 @@ class Unpacking {
     pieces_.push_back(std::move(piece));
   }
 
-  /// Points a bufferView to the next `bytes` unpacked bytes, which start `behind` bytes after the pieces added so far.
+  /// Points a bufferView to `bytes` unpacked bytes, which start `behind` bytes after the pieces that were added.
   void place_view(Json& view, std::uint64_t bytes, std::uint64_t behind = 0) const {
     view["buffer"] = gated_.buffers.size();
     view["byteOffset"] = unpacked_bytes_ + behind;
@@ -134,8 +133,8 @@ class Unpacking {
     add(std::move(piece));
   }
 
-  /// Appends the decoding settings and the size of one accessor to the piece. The accessor of the indices is the first
-  /// one to be appended.
+  /// Appends the decoding settings and the size of one accessor to the piece. The accessor of the indices must come
+  /// first.
   void add_part(const Part& part, PackedPiece& piece, const std::string& place) const {
     const Json& accessors = array_of(document_, "accessors");
     if (part.accessor >= accessors.size()) fail(place, "accessor " + std::to_string(part.accessor) + " does not exist");
@@ -254,7 +253,7 @@ void unpack_packed(Json& document, const std::string& path, const GltfOptions& o
     }
   use_webp_images(document, path);
   unpacking.finish();
-  if (document.contains("buffers"))  // packing leaves buffers without bytes, which must not be read
+  if (document.contains("buffers"))  // packed files have buffers without bytes, which tinygltf must not open
     for (Json& buffer : document["buffers"])
       if (is_stand_in(buffer)) buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
 }

@@ -8,13 +8,13 @@
 
 namespace tempolux::gltf {
 
-/// Unpacks data that the file has in no other form and rewrites the document, so that later readers need not know the
-/// extensions. A child process unpacks (lib/core/unpack.h); it is started only if something is packed.
+/// Unpacks data that the file has in no other form, and rewrites the document so that later readers need not know the
+/// extensions. A child process unpacks (lib/core/unpack.h); it starts only if something is packed.
 /// - KHR_draco_mesh_compression: accessors of the primitive get a bufferView with plain values.
 /// - EXT_meshopt_compression, KHR_meshopt_compression: the bufferView points to unpacked bytes.
 /// - EXT_texture_webp: the texture's source is the WebP image, which is decoded at its first use like any other image.
-/// The unpacked bytes are one more buffer at the end, Gated::unpacked. They may be invalid like the bytes of any file;
-/// accessors are checked later. The unpacked size is limited to a thousand times the packed bytes plus 64 MB, and to
+/// The unpacked bytes become the last buffer, Gated::unpacked. They may be invalid like the bytes of any file, so
+/// check_accessors() must check them. Their size is limited to a thousand times the packed bytes plus 64 MB, and to
 /// max_file_bytes.
 /// Call after check_types, check_packing and the approval of buffers. Throws InputError that names the primitive or
 /// bufferView, the extension, and the command that unpacks the file.

@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// cd or lux. A lamp of 500 cd has 9.2 W, and a sun of 500 lux has .73 W/m^2, if the exporter multiplied it by 683.
-/// Otherwise the lamp has 6.3 kW and the sun 500 W/m^2, which is doubtful.
+/// Intensity that makes the units doubtful, cd or lux. If the exporter multiplied by 683, a lamp of 500 cd has 9.2 W in
+/// Blender and a sun of 500 lux .73 W/m^2. If not, the lamp has 6.3 kW and the sun 500 W/m^2, which is unlikely.
 constexpr float kDoubtful = 500;
 
 bool is_from_blender(const std::string& generator) {

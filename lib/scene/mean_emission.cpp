@@ -25,7 +25,7 @@ class Spread {
   float extent() const {
     return std::max((upper_.x - lower_.x) * float(pyramid_.width()), (upper_.y - lower_.y) * float(pyramid_.height()));
   }
-  /// The texture level at which a texel is as large as one of cuts^2 equal parts of the triangle.
+  /// The level of the pyramid whose texels are as large as one of cuts^2 equal parts of the triangle; at least 0.
   float level(int cuts) const {
     const Vec2 a{at_[1].x - at_[0].x, at_[1].y - at_[0].y}, b{at_[2].x - at_[0].x, at_[2].y - at_[0].y};
     const float texels = 0.5f * std::abs(a.x * b.y - a.y * b.x) * float(pyramid_.width()) * float(pyramid_.height());

@@ -9,7 +9,7 @@
 
 namespace tempolux {
 
-/// The objects that have a moving surface in the segment.
+/// The objects (id.object) that have a moving surface in the segment.
 class MovingObjects {
  public:
   explicit MovingObjects(std::vector<bool> moves = {}) : moves_(std::move(moves)) {}

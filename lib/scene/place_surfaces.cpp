@@ -10,9 +10,9 @@
 namespace tempolux {
 namespace {
 
-/// A copy costs 36 bytes, about 100 bytes of search tree and .35 us of building it per triangle, in each process. An
-/// instance costs about 1 kB, and a transform for every ray that enters its box: up to 8 % of a frame. So a small
-/// primitive is instanced only if its copies would take a tenth of a second.
+/// In each process a copy costs, per triangle, 36 bytes, about 100 bytes of search tree, and .35 us for building the
+/// tree. An instance costs about 1 kB, and a transform for every ray that enters its box: up to 8 % of a frame. So a
+/// primitive of few triangles is instanced only if building trees for its copies would take a tenth of a second.
 constexpr std::size_t kFewestTriangles = 4096, kFewestOfSmall = 256, kFewestCopied = 1 << 18;
 
 bool is_worth_sharing(std::size_t triangles, std::size_t uses) {
@@ -20,8 +20,8 @@ bool is_worth_sharing(std::size_t triangles, std::size_t uses) {
          (triangles >= kFewestTriangles || (triangles >= kFewestOfSmall && uses * triangles >= kFewestCopied));
 }
 
-/// The rounding error of a ray in the instance's space is some ulp times the condition number of the transform (the
-/// norm of the matrix times the norm of its inverse: 3 for a rotation). Above this number the surface is copied.
+/// Largest condition number of an instance's transform: the norm of the matrix times the norm of its inverse, 3 for a
+/// rotation. The rounding error of a ray in the instance's space is a few ulp times this number.
 constexpr double kLargestCondition = 30;
 
 double norm(const Affine& m) { return std::sqrt(length2(m.row[0]) + length2(m.row[1]) + length2(m.row[2])); }
@@ -42,14 +42,11 @@ bool may_emit(const Scene& scene, std::uint32_t material) {
   if (scene.materials[material].emissive()) return true;
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks)
-      if ((track.path == AnimationTrack::Path::emissive_factor ||
-           track.path == AnimationTrack::Path::emissive_strength) &&
-          std::uint32_t(track.target) == material)
-        return true;
+      if (track.changes_emission() && std::uint32_t(track.target) == material) return true;
   return false;
 }
 
-/// Transforms each point in double, subtracts the origin, then rounds once.
+/// Transforms each point in double precision, then rounds once.
 std::vector<Vec3> place_points(const std::vector<Vec3>& points, const Affine& scene_from_node) {
   std::vector<Vec3> placed;
   placed.reserve(points.size());
@@ -57,7 +54,8 @@ std::vector<Vec3> place_points(const std::vector<Vec3>& points, const Affine& sc
   return placed;
 }
 
-/// Transformed normals; empty (flat shading) if there are none, or if a flat transform leaves them no direction.
+/// Transformed unit normals. Empty, which means flat shading, if there are none or the transform leaves one without a
+/// direction.
 std::vector<Vec3> place_normals(const std::vector<Vec3>& normals, const Affine& scene_from_node) {
   std::vector<Vec3> placed;
   if (scene_from_node.determinant() == 0) return placed;
@@ -96,7 +94,7 @@ Sharing::Sharing(const Scene& scene) {
   for (std::size_t m = 0; m < uses.size(); ++m) {
     for (const Primitive& primitive : scene.meshes[m].primitives) {
       if (!is_worth_sharing(primitive.triangles.size(), uses[m]) || may_emit(scene, primitive.material)) continue;
-      // Rays test the copy's alpha.
+      // Rays test alpha, for which a surface must be a copy.
       if (scene.materials[primitive.material].alpha_mode != Material::Alpha::opaque) continue;
       Box3d& box = box_[&primitive];
       for (const Vec3& p : primitive.positions) box.add(Vec3d(p));

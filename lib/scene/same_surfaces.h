@@ -10,8 +10,8 @@
 
 namespace tempolux {
 
-/// For each surface of `here` the same surface of `other`: it has the same node, the same rank among that node's
-/// surfaces and the same number of triangles. nullptr: it does not exist there.
+/// For each surface of `here` the surface of `other` with the same node, the same rank among that node's surfaces and
+/// the same number of triangles; nullptr if there is none.
 inline std::vector<const Surface*> same_surfaces(const SceneFrame& here, const SceneFrame& other) {
   std::map<std::uint32_t, std::vector<const Surface*>> by_node;
   for (const Surface& surface : other.surfaces) by_node[surface.node].push_back(&surface);

@@ -8,6 +8,7 @@
 namespace tempolux {
 namespace {
 
+/// Replaces the values of all vertices, `per_vertex` each, by those of the vertices `sources`.
 template <class T>
 void take(std::vector<T>& values, const std::vector<std::uint32_t>& sources, std::size_t per_vertex = 1) {
   if (values.empty()) return;
@@ -65,8 +66,7 @@ void require_lights(const Scene& scene) {
   const auto emits = [&](const Primitive& primitive) { return scene.materials[primitive.material].emissive(); };
   for (const Animation& animation : scene.animations)  // a light may be dark at rest and shine at some time
     for (const AnimationTrack& track : animation.tracks)
-      if (track.path == AnimationTrack::Path::emissive_factor ||
-          track.path == AnimationTrack::Path::emissive_strength || track.path == AnimationTrack::Path::light_color ||
+      if (track.changes_emission() || track.path == AnimationTrack::Path::light_color ||
           track.path == AnimationTrack::Path::light_intensity)
         return;
   for (const Node& node : scene.nodes) {

@@ -20,25 +20,27 @@ namespace tempolux {
 
 class TextureImages;  // lib/image/texture_images.h
 
-inline constexpr std::uint32_t kNone = 0xffffffffu;
+inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< in place of an index: there is no such thing
 
 /// Properties of a material at one point: metallic-roughness of glTF 2.0 with the extensions that docs/scene-files.md
 /// lists.
 struct MaterialValues {
-  Rgb base_color{1.0f};         ///< reflectance, each channel in [0, 1]
-  float metallic = 1;           ///< [0, 1]
-  float roughness = 1;          ///< perceptual, [0, 1]; GGX' alpha is roughness^2
-  Rgb emission{0.0f};           ///< radiance [glTF nits], strength included; also from the back if double_sided
-  float specular = 1;           ///< KHR_materials_specular: factor of the dielectric lobe, [0, 1]
-  Rgb specular_color{1.0f};     ///< tint of F0, >= 0
-  float ior = 1.5f;             ///< >= 1, or 0
-  float transmission = 0;       ///< KHR_materials_transmission, [0, 1]: replaces this share of the Lambert lobe
-  bool thin_walled = true;      ///< false: the boundary of a refracting solid (KHR_materials_volume)
-  Rgb attenuation_color{1.0f};  ///< KHR_materials_volume: share of light that remains inside a solid ...
-  float attenuation_distance = std::numeric_limits<float>::infinity();  ///< ... after this distance, m, > 0
+  Rgb base_color{1.0f};      ///< reflectance, each channel in [0, 1]
+  float metallic = 1;        ///< [0, 1]
+  float roughness = 1;       ///< perceptual, [0, 1]; GGX' alpha is roughness^2
+  Rgb emission{0.0f};        ///< radiance [W/m^2/sr], strength included; from the back, too, if double_sided
+  float specular = 1;        ///< KHR_materials_specular: factor of the dielectric lobe, [0, 1]
+  Rgb specular_color{1.0f};  ///< tint of F0, >= 0
+  float ior = 1.5f;          ///< >= 1, or 0
+  float transmission = 0;    ///< KHR_materials_transmission, [0, 1]: replaces this share of the Lambert lobe
+  bool thin_walled = true;   ///< false: the boundary of a refracting solid (KHR_materials_volume)
+  /// KHR_materials_volume: transmittance of a path of length attenuation_distance [m, > 0] inside a solid.
+  Rgb attenuation_color{1.0f};
+  float attenuation_distance = std::numeric_limits<float>::infinity();
   bool double_sided = false;
   bool unlit = false;  ///< KHR_materials_unlit: shows base_color to camera and mirrors, scatters nothing
 
+  /// True if the material emits light where its texture is not black.
   bool emissive() const { return max_component(emission) > 0; }
   bool operator==(const MaterialValues&) const = default;
 };
@@ -49,7 +51,7 @@ struct Texture {
   std::uint32_t image = kNone;  ///< index into Scene::images; kNone: no texture
   std::uint32_t uv_set = 0;     ///< TEXCOORD_n of the primitive
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  bool nearest = false;  ///< magnified without interpolation
+  bool nearest = false;  ///< true: magnified texels have sharp edges; false: bilinear interpolation
   /// KHR_texture_transform: u' = m[0] u + m[1] v + m[2], v' = m[3] u + m[4] v + m[5].
   std::array<float, 6> transform{1, 0, 0, 0, 1, 0};
 
@@ -57,7 +59,7 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-/// The textures of a material; each multiplies the value of its name. Vertex colours multiply likewise.
+/// The textures of a material; each multiplies the property of its name. Vertex colours multiply base colour and alpha.
 struct MaterialTextures {
   Texture base_color;          ///< sRGB; its A multiplies Material::alpha
   Texture metallic_roughness;  ///< linear: B metallic, G roughness
@@ -76,9 +78,9 @@ struct Material : MaterialValues {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
   std::string name;
   Alpha alpha_mode = Alpha::opaque;
-  float alpha = 1;                           ///< share of rays that meet the surface (blend)
-  float alpha_cutoff = 0.5f;                 ///< below this alpha the surface does not exist (mask)
-  std::optional<MaterialTextures> textures;  ///< empty for most materials, which then cost one test
+  float alpha = 1;                           ///< blend: share of rays that meet the surface
+  float alpha_cutoff = 0.5f;                 ///< mask: no ray meets the surface where alpha is smaller
+  std::optional<MaterialTextures> textures;  ///< empty if the material has none
 
   bool operator==(const Material&) const = default;
 };
@@ -101,9 +103,9 @@ struct Primitive {
   std::vector<Vec2> uvs, uvs1;  ///< TEXCOORD_0, TEXCOORD_1; empty: none
   /// COLOR_0, linear, in [0, 1]: multiplies base colour and alpha, interpolated linearly. Empty: 1.
   std::vector<std::array<float, 4>> colors;
-  /// The tangent along the normal map's x, and the sign of its y axis: +1 if y is along normal x tangent, -1 if
-  /// against. Empty: texture lookups take the directions of the texture coordinates. Only for primitives with normals
-  /// and a normal map.
+  /// For each vertex, the direction of the normal map's x axis, and a sign: +1 if the map's y axis has the direction
+  /// normal x tangent, -1 if the opposite. Only primitives with normals and a normal map have tangents. If empty,
+  /// texture lookups take the axes from the texture coordinates.
   std::vector<Vec3> tangents;
   std::vector<float> tangent_sides;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from the front
@@ -117,6 +119,7 @@ struct Primitive {
 /// indices.
 void take_vertices(Primitive& primitive, const std::vector<std::uint32_t>& sources);
 
+/// A mesh of the file: primitives that share nodes.
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;  ///< all with the same number of morph targets
@@ -128,14 +131,18 @@ struct Skin {
   std::vector<Affine> joint_from_mesh;  ///< inverse bind matrices
 };
 
+/// A camera looks along its node's -Z, with +Y up.
 struct Camera {
   enum class Kind { perspective, orthographic };
   std::string name;
   Kind kind = Kind::perspective;
-  double yfov_rad = 0.8;             ///< full vertical angle, perspective
-  double ymag_m = 1;                 ///< half height of the view, orthographic
-  double z_near_m = 0, z_far_m = 0;  ///< far 0: none. Not used: nothing is clipped
+  double yfov_rad = 0.8;  ///< full vertical angle, perspective
+  double ymag_m = 1;      ///< half height of the view, orthographic
 };
+
+/// Largest inner cone of a spot, as a share of the outer cone. Blender writes inner = outer for a spot without a soft
+/// edge, which glTF forbids.
+inline constexpr double kSharpestSpot = 0.9999;
 
 /// A light of KHR_lights_punctual. It shines along the node's -Z; the node's scale has no effect. Light sampling,
 /// emission of photons and flux use the same falloff (SpotProfile in lib/light/punctual.h). A member that changes the
@@ -150,20 +157,22 @@ struct PunctualLight {
   bool operator==(const PunctualLight&) const = default;
 };
 
+/// A node of the file's graph, and what it carries.
 struct Node {
   std::string name;
   int parent = -1;                 ///< smaller than the node's own index: parents come first
   std::uint32_t source_index = 0;  ///< index in the file, for messages
-  // Local transform at rest, as T R S. If the file gives a matrix (which cannot be animated), it is in `matrix`.
+  // parent_from_node at rest: translation x rotation x scale, or `matrix` if has_matrix. A matrix cannot be animated.
   Vec3d translation{};
   std::array<double, 4> rotation{0, 0, 0, 1};  ///< unit quaternion x y z w
   Vec3d scale{1, 1, 1};
   bool has_matrix = false;
   Affine matrix{};
   int mesh = -1, camera = -1, light = -1;  ///< -1: none
-  int skin = -1;                           ///< -1: none; else the mesh's skinned primitives ignore the node's transform
-  std::vector<double> weights;             ///< morph weights of its mesh at rest
-  /// EXT_mesh_gpu_instancing: node_from_instance of each occurrence of the mesh; empty: one occurrence.
+  int skin = -1;                           ///< -1: none. Skinned primitives ignore the node's transform
+  std::vector<double> weights;             ///< morph weights of the mesh at rest
+  /// EXT_mesh_gpu_instancing: node_from_instance of each occurrence of the mesh. Empty: one occurrence, not
+  /// transformed.
   std::vector<Affine> instances;
   std::uint32_t object = kNone;  ///< id.object of its mesh: 0, 1, 2 ... in node order
   std::string extras;            ///< the node's custom properties as JSON text; empty: none
@@ -203,15 +212,19 @@ struct AnimationTrack {
   Interpolation interpolation = Interpolation::linear;
   std::size_t components = 3;   ///< numbers per value: 4 for a rotation, one per morph target for weights
   std::vector<double> times_s;  ///< strictly increasing
-  std::vector<double> values;   ///< value after value; for a spline in-tangent, value and out-tangent of each key
+  std::vector<double> values;   ///< `components` numbers per key; a spline has in-tangent, value, out-tangent per key
+
+  /// True if the track changes the emission of a material.
+  bool changes_emission() const { return path == Path::emissive_factor || path == Path::emissive_strength; }
 };
 
-/// The factors of a colour, if KHR_animation_pointer may change one factor alone.
+/// The factors of an emission or intensity: KHR_animation_pointer may animate only one of them.
 struct ColorFactors {
   Rgb color{1.0f};
   float strength = 1;
 };
 
+/// Tracks that play together.
 struct Animation {
   std::string name;
   std::vector<AnimationTrack> tracks;
@@ -230,16 +243,18 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::shared_ptr<const Environment> environment;  ///< nullptr: none. glTF has no environment; callers set it
   std::vector<Skin> skins;
-  std::vector<ColorFactors> emission_factors, light_factors;  ///< by material and by light, at rest
-  std::vector<Animation> animations;      ///< all play together (GltfOptions::animation selects one)
+  std::vector<ColorFactors> emission_factors,
+      light_factors;                      ///< by material and by light, at rest; empty: not animated
+  std::vector<Animation> animations;      ///< all play at once (GltfOptions::animation selects one)
   std::vector<std::string> object_names;  ///< by object id
   double duration_s = 0;                  ///< time of the last key of all animations
   std::vector<std::string> warnings;      ///< ignored features, one line each
 
   /// True if a node of the scene has a camera.
   bool has_camera() const;
-  /// Index into `nodes` of the camera to use, by camera or node name (an unnamed one is "camera INDEX"); "auto" is the
-  /// first camera in the file. Throws InputError that lists the names, or explains how to export cameras.
+  /// Index into `nodes` of the node whose camera has this name, or which has this name itself. An unnamed camera is
+  /// called "camera INDEX"; "auto" is the first camera in the file. Throws InputError that lists the names, or explains
+  /// how to export cameras.
   int camera_node(const std::string& name) const;
 };
 

@@ -35,7 +35,7 @@ void add_shape(Hasher& hasher, const Surface& surface) {
   add_values(hasher, surface.primitive->triangles);
 }
 
-/// Adds nothing for a primitive without colours and tangents.
+/// Adds vertex colours and tangents if the primitive has any.
 void add_colors_and_tangents(Hasher& hasher, const Primitive& primitive) {
   if (!primitive.colors.empty()) {
     hasher.add(std::string_view("vertex colours"));

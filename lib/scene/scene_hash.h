@@ -13,19 +13,19 @@
 
 namespace tempolux {
 
-/// Marks nodes (by index) that are left out: the hash is then that of the scene without their meshes. Empty: no node is
-/// left out.
+/// For each node, 1 if the hash excludes its mesh, as if the scene did not have it. Empty: no mesh is excluded.
 using LeftOut = std::span<const std::uint8_t>;
 
-/// Geometry of surfaces in order: object, winding, material number, positions, normals, texture coordinates and
-/// triangles; and the origin of their coordinates.
+/// Hash of the geometry of surfaces in their order: object, winding, material number, positions, normals, texture
+/// coordinates and triangles; and of the origin of their coordinates.
 std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces, LeftOut left_out = {});
-/// Reflecting properties of the materials in use at a frame, in order of first use. Emission belongs to lights_hash.
+/// Hash of the scattering properties of the materials in use at a frame, in order of first use. lights_hash() has their
+/// emission.
 std::string materials_hash(const Scene& scene, std::span<const Material> materials, LeftOut left_out = {});
-/// Placed punctual lights, all emitting triangles with their emission, and the environment.
+/// Hash of the placed punctual lights, all emitting triangles with their emission, and the environment.
 std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const PlacedLight> lights,
                         std::span<const Material> materials, std::span<const Surface> surfaces);
-/// Participating media: a constant, since scenes do not describe media.
+/// Hash of the participating media: a constant, since volumes are no part of the scene file.
 std::string media_hash();
 
 }  // namespace tempolux

@@ -16,7 +16,8 @@ namespace {
 
 using Path = AnimationTrack::Path;
 
-/// Scene space gets its own origin if coordinates relative to the world's origin lose 6 of float32's 24 bits.
+/// Scene space gets its own origin if the scene is farther from the world's origin than this many times its diagonal:
+/// coordinates in world space would then lose 6 of float32's 24 bits.
 constexpr double kFarRatio = 64;
 
 int floor_to_multiple(int value, int step) {
@@ -61,7 +62,8 @@ std::string name_of(const Node& node) {
   return node.name.empty() ? "node " + std::to_string(node.source_index) : node.name;
 }
 
-/// Why a node moves: which of its own properties differ between two frames, or that its parent or a joint moves.
+/// Why a node moves, for people: the animated properties of the node that differ between two frames; else its parent or
+/// a joint.
 std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n, double fps) {
   std::string properties;
   const Node& node = scene.nodes[n];
@@ -143,7 +145,7 @@ Box3d local_box(const Mesh& mesh) {
   return box;
 }
 
-/// Adds every vertex of static surfaces; for instances and posed meshes their boxes.
+/// Adds the vertices of static surfaces to the segment's bounds; for instances and posed meshes, their boxes.
 void add_static_bounds(const Scene& scene, const Animator& animator, const std::vector<Affine>& world, double time_s,
                        Segment& segment) {
   const Sharing sharing(scene);
@@ -164,7 +166,7 @@ void add_static_bounds(const Scene& scene, const Animator& animator, const std::
   }
 }
 
-/// Adds a moving mesh's box at every frame; for a deforming mesh the boxes of its poses.
+/// Adds the boxes of moving meshes at every frame to the segment's bounds.
 void add_moving_bounds(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
   std::vector<std::pair<std::size_t, Box3d>> rigid;
   std::vector<std::pair<std::size_t, PoseBounds>> deforming;
@@ -185,7 +187,7 @@ void add_moving_bounds(const Scene& scene, const Animator& animator, double fps,
   }
 }
 
-/// The origin of scene space. Its coordinates are multiples of a power of two, about four diagonals, so that small
+/// The origin of scene space. Its coordinates are multiples of a power of two, four to eight diagonals, so that small
 /// edits do not move it.
 Vec3d scene_origin(const Box3d& bounds) {
   const Vec3d centre = bounds.centre();

@@ -11,22 +11,19 @@ namespace {
 
 /// Boxes are widened by this share of the largest coordinate, as in the search trees (trees.h).
 constexpr float kMargin = 0x1p-18f;
-/// Least triangles in a piece: the pieces of a surface then take less memory than its vertices and indices.
+/// Least mean number of triangles per piece. With it the pieces of a surface take less memory than its vertices and
+/// indices.
 constexpr double kTrianglesOfPiece = 4;
-constexpr std::size_t kMostAlong = 4;  ///< cells along each axis (docs/methods/dynamic.md)
+constexpr std::size_t kMostAlong = 4;  ///< largest number of cells along an axis (docs/methods/dynamic.md)
 
-bool moves(const SceneFrame& frame, std::uint32_t node) {
-  return node < frame.segment.node_moves.size() && frame.segment.node_moves[node] != 0;
-}
-
-/// Moves all vertices to one place: a surface without area can neither be hit nor emit.
+/// Moves all vertices to one place. No ray hits a surface without area, and it emits nothing.
 void shrink(Surface& surface) {
   surface.positions = std::vector<Vec3>(surface.primitive->positions.size());
   surface.normals = {};
   surface.tangents = {};
 }
 
-/// Widens a box by a share of the largest coordinate.
+/// Widens a box by kMargin of the largest coordinate.
 Box3 widened(const Box3& box) {
   if (box.empty()) return box;
   const float margin = kMargin * max_component(max(abs(box.lower), abs(box.upper)));
@@ -64,7 +61,7 @@ SceneFrame static_scene_of(SceneFrame frame) {
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) shrink(frame.surfaces[s]);
   std::vector<PlacedLight> static_lights;
   for (PlacedLight& placed : frame.lights) {
-    if (moves(frame, placed.node)) placed.light.intensity = Rgb(0.0f);
+    if (frame.segment.moves(placed.node)) placed.light.intensity = Rgb(0.0f);
     else static_lights.push_back(placed);
   }
   if (!frame.scene) return frame;  // the scene is not from a file, so there is no other frame to compare with
@@ -78,13 +75,6 @@ SceneFrame static_scene_of(SceneFrame frame) {
   return frame;
 }
 
-bool light_moves(const SceneFrame& frame) {
-  if (frame.static_count < frame.surfaces.size()) return true;
-  for (const PlacedLight& placed : frame.lights)
-    if (moves(frame, placed.node)) return true;
-  return false;
-}
-
 void MovingBoxes::add(const MovingBoxes& other) {
   const std::size_t known = surfaces.size();
   surfaces.resize(std::max(known, other.surfaces.size()));
@@ -93,7 +83,7 @@ void MovingBoxes::add(const MovingBoxes& other) {
     surfaces[i].add(other.surfaces[i]);
     const std::span<const Box3> more = other.pieces_of(i);
     if (i >= known) pieces[i].assign(more.begin(), more.end());
-    // The pieces of two frames can only be joined one by one. If their numbers differ, the surface keeps its own box
+    // Pieces of two frames are joined by their numbers. If there are not equally many, the surface has its own box
     // only.
     else if (pieces[i].size() != more.size()) pieces[i].clear();
     else

@@ -10,20 +10,17 @@
 namespace tempolux {
 
 /// The static scene of a segment: static surfaces, and lights that neither move nor change. `frame` is any frame of the
-/// segment. Moving surfaces stay in the list, shrunk to a point, so that surface indices and slots of the emission
-/// table are the same as in every frame; no ray hits them and they emit nothing. Lights of moving nodes have intensity
-/// 0. Bounds, origin and segment are the frame's. The hashes equal those of the same file without the moving nodes'
-/// meshes and lights, unless that file's origin differs.
+/// segment. Moving surfaces stay in the list, shrunk to a point: no ray hits them and they emit nothing, but indices of
+/// surfaces and slots of the emission table are the same as in every frame. Lights of moving nodes have intensity 0.
+/// Bounds, origin and segment are the frame's. The hashes are those that the file would have without the meshes and
+/// lights of moving nodes and with the same origin.
 SceneFrame static_scene_of(SceneFrame frame);
-
-/// True if anything moves that light can hit or come from.
-bool light_moves(const SceneFrame& frame);
 
 /// Boxes of everything that moves; scene space, m, slightly widened.
 struct MovingBoxes {
   std::vector<Box3> surfaces;  ///< one for each moving surface
-  /// Boxes of each surface's pieces, which together hold the whole surface; some may be empty. A surface without pieces
-  /// has its own box only.
+  /// For each surface the boxes of its pieces, which together hold the whole surface; some may be empty. A surface of
+  /// few triangles has no pieces.
   std::vector<std::vector<Box3>> pieces;
   Box3 all;  ///< empty if nothing moves
 

@@ -8,15 +8,15 @@
 
 namespace tempolux {
 
-/// What shading needs at a hit; all in scene space.
+/// What shading needs at a hit; scene space.
 struct SurfacePoint {
-  Vec3 position;          ///< interpolated from the triangle's corners, not from t: exact to a few ulp
+  Vec3 position;          ///< m; interpolated from the triangle's corners, so it is exact to a few ulp
   Vec3 normal_geometric;  ///< unit, towards the triangle's front
   Vec3 normal;            ///< shading normal: unit, on the front side
   Vec2 uv;
-  float offset = 0;  ///< m: rays that leave start this far above their side
+  float offset = 0;  ///< m; rays that leave start this far above the side on which they leave
   std::uint32_t surface = kNone, triangle = 0, object = 0, material = 0;
-  float u = 0, v = 0;
+  float u = 0, v = 0;  ///< barycentric coordinates of corners 1 and 2
 };
 
 }  // namespace tempolux

@@ -17,7 +17,7 @@ using Corner = std::uint32_t;  // 3 x triangle + number of the corner (0, 1, 2)
 Corner next(Corner c) { return c % 3 == 2 ? c - 2 : c + 1; }
 Corner previous(Corner c) { return c % 3 == 0 ? c + 2 : c - 1; }
 
-/// Attributes that must be equal for two corners to be one vertex.
+/// The attributes of a vertex. Corners with equal attributes are one vertex.
 struct VertexKey {
   std::array<float, 8> values;  // + 0.0f turns -0 into 0
   VertexKey(Vec3 p, Vec3 n, Vec2 uv)
@@ -48,7 +48,7 @@ struct Gradient {
   Vec3d along_u(Vec3d edge1, Vec3d edge2) const { return (edge1 * v2 - edge2 * v1) * (area < 0 ? -1.0 : 1.0); }
 };
 
-/// Groups corners that share a tangent. Depends on the shape at rest only.
+/// Groups corners that share a tangent. The groups depend on the shape at rest only.
 class TangentGroups {
  public:
   TangentGroups(const Primitive& primitive, const Texture& normal_map)
@@ -64,7 +64,7 @@ class TangentGroups {
   std::size_t count() const { return side_.size(); }
   std::uint32_t group(Corner c) const { return group_[c]; }
   float side(std::uint32_t group) const { return side_[group]; }
-  /// Unit tangents by group for the same triangles in another shape, with these positions and normals by vertex.
+  /// The unit tangent of each group, for vertices with these positions and normals; zero if a group has no direction.
   std::vector<Vec3> tangents(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const;
 
  private:
@@ -80,14 +80,15 @@ class TangentGroups {
 
   const Primitive& primitive_;
   const Texture& normal_map_;
-  std::vector<std::uint32_t> joined_;  // by vertex: the first vertex that is equal
-  std::vector<bool> has_tangent_;      // by triangle: true if the triangle has area and its coordinates have area
-  // One entry per triangle. +1: u and v have the orientation of the corners. -1: they have the opposite one. 0:
-  // unknown.
+  std::vector<std::uint32_t> joined_;  // for each vertex, the first vertex with the same attributes
+  std::vector<bool> has_tangent_;      // for each triangle: the triangle and its texture coordinates have area
+  // For each triangle: +1 if u and v have the orientation of the corners, -1 if the opposite orientation, 0 if unknown.
   std::vector<std::int8_t> turns_;
-  std::vector<std::uint32_t> across_;  // by corner: the corner across the edge from it to the next corner, or kNone
-  std::vector<std::uint32_t> group_;   // by corner
-  std::vector<float> side_;            // by group
+  // For each corner: the edge from it to the next corner also belongs to a neighbour; this is the neighbour's corner at
+  // which that edge starts. kNone: no neighbour.
+  std::vector<std::uint32_t> across_;
+  std::vector<std::uint32_t> group_;  // of each corner
+  std::vector<float> side_;           // of each group: the sign of its tangents
 };
 
 void TangentGroups::join_vertices() {
@@ -137,7 +138,7 @@ void TangentGroups::join_edges() {
   }
 }
 
-/// Starts a group at a corner and grows it over all edges at the corner's vertex.
+/// Starts a group at a corner, and adds the corners of its vertex that are joined to it by edges at the vertex.
 void TangentGroups::grow(Corner first) {
   const auto group = std::uint32_t(side_.size());
   const std::int8_t turns = turns_[first / 3];
@@ -157,7 +158,7 @@ void TangentGroups::grow(Corner first) {
   }
 }
 
-/// Corners of triangles without area that no group reached take the first tangent of their vertex.
+/// Corners that have no group, since their triangles have no area, take the first group of their vertex.
 void TangentGroups::lend() {
   std::vector<std::uint32_t> lender(joined_.size(), kNone);
   for (Corner c = 0; c < group_.size(); ++c)
@@ -184,7 +185,7 @@ std::vector<Vec3> TangentGroups::tangents(const std::vector<Vec3>& positions, co
   return unit;
 }
 
-/// The displacement that a morph target adds to the tangents of each group; empty: none.
+/// The displacement that a morph target adds to the tangents of each group; empty if the target moves nothing.
 std::vector<Vec3> added_by(const MorphTarget& target, const Primitive& primitive, const TangentGroups& groups,
                            const std::vector<Vec3>& at_rest) {
   if (target.positions.empty() && target.normals.empty()) return {};
@@ -206,7 +207,7 @@ void make_tangents(Primitive& primitive, const Texture& normal_map) {
   if (primitive.normals.empty() || texture_coordinates(primitive, normal_map.uv_set).empty()) return;
   const TangentGroups groups(primitive, normal_map);
   std::vector<Vec3> at_rest = groups.tangents(primitive.positions, primitive.normals);
-  at_rest.push_back({});  // of no group
+  at_rest.push_back({});  // for vertices without a group
   std::vector<std::vector<Vec3>> added;
   for (const MorphTarget& target : primitive.targets) added.push_back(added_by(target, primitive, groups, at_rest));
 

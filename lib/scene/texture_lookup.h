@@ -12,9 +12,9 @@
 namespace tempolux {
 
 /// Reads textures at a point of a triangle. All constructor arguments must outlive this object.
-/// The level of a texture is the one at which a texel is as large as the footprint: log2(width sqrt(texels per m^2)).
-/// It uses the triangle's mean texels per area, one number for both directions: a texture that is stretched, or seen at
-/// a slant, is a little too sharp along one direction and too smooth along the other.
+/// A texture is read at the level whose texels are as large as the footprint: log2(width sqrt(texels per m^2)), with
+/// the triangle's mean number of texels per area. One level serves both directions, so a texture that is stretched, or
+/// seen at a slant, is too sharp along one direction and too smooth along the other.
 class TextureSpot {
  public:
   /// u and v are the barycentric coordinates of corners 1 and 2. `width` [m] is the width of the footprint; 0 reads the
@@ -34,10 +34,11 @@ class TextureSpot {
   /// Interpolated vertex colour; 1 if the primitive has none.
   Rgba vertex_color() const;
 
-  /// Bends `normal` (unit) by a normal map of glTF 2.0: x along the image's axis to the right, y along its upward axis,
-  /// both perpendicular to `normal`, times scale. The result is at least 3 degrees above the triangle's plane. The axes
-  /// are the primitive's tangents, else the directions of the texture coordinates on the triangle; without either the
-  /// result is `normal`. `geometric` is the triangle's normal on the same side.
+  /// The shading normal (unit) that a normal map of glTF 2.0 makes of `normal` (unit): the map's x along the image's
+  /// axis to the right, y along its upward axis, both perpendicular to `normal` and multiplied by `scale`, and z along
+  /// `normal`. The result is at least 3 degrees above the triangle's plane, on the side of `geometric`, the triangle's
+  /// unit normal. The axes come from the primitive's tangents, or else from the texture coordinates of the triangle;
+  /// without either the result is `normal`.
   Vec3 bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const;
 
  private:
@@ -63,13 +64,15 @@ std::array<Vec2, 3> corner_coordinates(const Primitive& primitive, const std::ar
 
 /// True if the material's emission or coverage varies over a surface.
 bool emission_varies(const Material& material);
-/// Radiance that the material emits at a point [glTF nits].
+/// Radiance [W/m^2/sr] that the material emits at a point, whose barycentric coordinates of corners 1 and 2 are u and
+/// v. The texture is averaged over `width` m; 0 reads its finest level.
 Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width);
 
 /// Share of rays that hit the surface at a point, from the finest level of the texture and the vertex colours: 1 for
 /// opaque materials, alpha for BLEND, 1 or 0 for MASK.
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
-/// The same for a material that lets rays pass; `texel` is the texture's alpha times the vertex colour's (1: none).
+/// Share of rays that hit a surface of a BLEND or MASK material; `texel` is the texture's alpha times the vertex
+/// colour's, 1 without them.
 inline float coverage(const Material& material, float texel) {
   const float alpha = material.alpha * texel;
   if (material.alpha_mode == Material::Alpha::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
@@ -77,17 +80,17 @@ inline float coverage(const Material& material, float texel) {
 }
 /// True if a ray can pass through a surface of this material.
 bool lets_rays_pass(const Material& material);
-/// False: light never goes straight through the surface, for any texture values (Bsdf::passed_straight).
+/// True if light may go straight through the surface at some values of the textures (Bsdf::passed_straight).
 inline bool may_be_pane(const Material& material) {
   return material.transmission > 0 && material.thin_walled && !material.unlit;
 }
 /// How the texture of the base colour is decoded.
 TextureTransfer base_color_transfer(const Material& material);
 
-/// Mean over a triangle of emission times coverage, as a share of the material's emission; 1 if neither varies. 0 only
-/// if it is 0 everywhere, else at least 0.01, so that no emitting triangle is chosen too rarely. The triangle is cut
-/// into 4 to 64 similar parts of about a texel, and each is read at its centre over its own size. The result depends
-/// neither on the material's emission nor on the surface's shape.
+/// Mean over a triangle of emission times coverage, as a share of the material's emission; 1 if neither varies. The
+/// triangle is cut into 4 to 64 similar parts of about a texel; each part is read at its centre, averaged over its
+/// size. The result is 0 if the texture is black everywhere on the triangle, else at least 0.01, so that no emitting
+/// triangle is sampled too rarely. It depends neither on the material's emission nor on the surface's shape.
 Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
 
 }  // namespace tempolux

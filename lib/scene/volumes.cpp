@@ -6,6 +6,7 @@
 
 #include "formats/error.h"
 #include "lib/core/json.h"
+#include "lib/scene/place_surfaces.h"
 #include "lib/volume/vdb_file.h"
 
 namespace tempolux {
@@ -13,8 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFarthest = 1e15,
-                 kSmallest = 1e-12;  ///< m, of a medium's box, so that its cells and their inverses fit into float32
+constexpr double kSmallest = 1e-12;  ///< least side of a medium's box, m: the inverse of a cell must fit into float32
 
 /// Reads and checks the values of one node's extras.
 class Extras {
@@ -83,8 +83,7 @@ std::vector<VolumeSource> volumes_of(const Scene& scene) {
     if (node.extras.empty() || node.extras.find("vdb_pattern") == std::string::npos) continue;
     const Json object = Json::parse(node.extras, nullptr, false);
     if (!object.is_object() || !object.contains("vdb_pattern")) continue;
-    const std::string place =
-        scene.path + ": node " + (node.name.empty() ? std::to_string(node.source_index) : node.name);
+    const std::string place = node_place(scene, std::size_t(&node - scene.nodes.data()));
     const Extras extras(object, place);
     const std::string pattern = extras.text("vdb_pattern");
     if (pattern.empty()) extras.fail("vdb_pattern", "a file name");
@@ -120,7 +119,7 @@ std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<
       media.pop_back();
       continue;
     }
-    if (!(max_component(max(abs(medium.bounds().lower), abs(medium.bounds().upper))) < kFarthest))
+    if (!(max_component(max(abs(medium.bounds().lower), abs(medium.bounds().upper))) < kMaxCoordinate))
       throw InputError(files[i] + ": its voxels lie beyond 1e15 m");
     if (const Vec3d size = medium.bounds().upper - medium.bounds().lower;
         !(std::min({size.x, size.y, size.z}) > kSmallest))

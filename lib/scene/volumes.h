@@ -14,13 +14,13 @@
 
 namespace tempolux {
 
-/// A medium as requested: one .vdb file per frame, and the optical properties of its density.
+/// A medium that a scene or command line asks for: one .vdb file per frame, and the optical properties of its density.
 struct VolumeSource {
   std::string place;    ///< for messages: an option, or "FILE: node NAME"
   std::string pattern;  ///< file name with ####, %04d or neither; relative to the working folder
-  std::string grid;     ///< "": the grid `density`, else the only grid that can be meant
+  std::string grid;     ///< name; "": the grid `density`, or else the file's only grid of densities
   MediumOptions options;
-  std::optional<std::pair<int, int>> frames;  ///< first and last frame with a file; other frames use the nearest one
+  std::optional<std::pair<int, int>> frames;  ///< first and last frame with a file; other frames use the closest one
 };
 
 /// The media that nodes of the scene name in their extras, as a JSON object of
@@ -30,14 +30,15 @@ struct VolumeSource {
 ///     sigma_t_scale         extinction of density 1, 1/m (default 1)
 ///     albedo                scattered share: three numbers from 0 to 1, or one (default 1)
 ///     anisotropy            mean cosine g (default 0)
-/// The transform in the .vdb file places the medium, in metres of world space; the node's transform has no effect.
-/// Throws InputError naming node and key for a wrong type or a value out of range, and for a file name that leaves the
+/// The transform in the .vdb file places the medium in world space [m]; the node's transform has no effect. Throws
+/// InputError that names node and key for a wrong type or a value out of range, and for a file name that leaves the
 /// scene's folder.
 std::vector<VolumeSource> volumes_of(const Scene& scene);
 
-/// Reads `files[i]` for sources[i] and places the media in scene space (world - origin). `max_memory`: bytes that the
-/// reading process may use; 0: by the file's size. `series` prefetches the next files. Throws InputError as read_vdb
-/// does.
+/// Reads files[i] for sources[i] and places the media in scene space (world - origin). Files without voxels and media
+/// of no extinction give no medium. `max_memory` limits the bytes of the reading process; 0 derives the limit from the
+/// file's size. `series` reads the next files ahead. Throws InputError as read_vdb() does, and for a medium outside the
+/// range of coordinates or of float32.
 std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<const std::string> files, Vec3d origin,
                                std::uint64_t max_memory, VdbSeries& series);
 

@@ -59,8 +59,6 @@ TEST(Standing, MoversAreThereAndHaveNoArea) {
   ASSERT_EQ(standing.surfaces.size(), 2u);
   for (const Vec3& p : standing.surfaces[1].positions) EXPECT_EQ(p, Vec3{});
   EXPECT_GT(length(standing.surfaces[0].position(1) - standing.surfaces[0].position(0)), 0);
-  EXPECT_TRUE(light_moves(frame_of(scene, 5)));
-  EXPECT_FALSE(light_moves(frame_of(scene_with(false), 5)));
 }
 
 TEST(Standing, MovingLampsAreOff) {
@@ -69,7 +67,6 @@ TEST(Standing, MovingLampsAreOff) {
   ASSERT_EQ(standing.lights.size(), 1u);
   EXPECT_EQ(standing.lights[0].light.intensity, Rgb(0.0f));
   EXPECT_NE(moving.lights[0].light.intensity, Rgb(0.0f));
-  EXPECT_TRUE(light_moves(moving));
 }
 
 TEST(Standing, WhatHasAnAnimatedMaterialMoves) {
