@@ -34,9 +34,7 @@ std::array<const std::vector<float>*, 3> colour(const tempolux::Image& image, co
 }
 
 void load(const PixelsRequest& request) {
-  tempolux::ImageReadOptions options;
-  options.max_pixels = request.max_pixels;
-  const tempolux::Image image = tempolux::load_image(request.path, options);
+  const tempolux::Image image = tempolux::load_image(request.path, request.max_pixels);
   const auto planes = colour(image, request.path);
   auto* to = static_cast<float*>(request.allocate(request.user, image.width, image.height, 3, 32));
   if (!to) throw std::bad_alloc();

@@ -22,7 +22,7 @@ int fast_transform_size(int n) {
 
 FourierTransform::FourierTransform()
     : entry_(reinterpret_cast<FourierEntry*>(module_symbol(
-          "tempolux-fourier.so", kFourierSymbol, default_module_folders(), "the model of vision",
+          "tempolux-fourier.so", kFourierSymbol, "the model of vision",
           "install all of tempolux together, or leave out --metric aqm and --flow for the error figures"))) {}
 
 FourierArray<std::complex<float>> FourierTransform::forward(FourierArray<float>& picture, int width, int height) const {

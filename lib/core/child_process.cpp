@@ -14,9 +14,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <new>
-#include <system_error>
 #include <thread>
 
 #include "formats/error.h"
@@ -40,10 +38,10 @@ constexpr bool kMemoryIsLimited = true;
 constexpr bool kMemoryIsLimited = true;
 #endif
 
-/// Only the first line of the child's standard error is passed on; the remainder is read and dropped, so that the child
-/// does not wait.
+/// Bytes that are kept of the child's standard error. The remainder is read and dropped, so that the child does not
+/// wait.
 constexpr std::size_t kMostWords = 1024;
-constexpr std::size_t kPiece = 1 << 16;  ///< bytes passed at once
+constexpr std::size_t kPiece = 1 << 16;  ///< bytes that are read or written at once
 
 [[noreturn]] void fail(const std::string& program, const std::string& what, int error) {
   throw ResourceError(program + ": " + what + ": " + std::strerror(error));
@@ -75,7 +73,7 @@ struct Stream {
   Descriptor ours, theirs;
 };
 
-/// Opens a socket, which is used in one direction. Writing to a socket whose reader has closed it returns an error;
+/// Opens a pair of sockets for one direction. Writing to a socket whose reader has closed it returns an error, while
 /// writing to such a pipe would send SIGPIPE.
 void open_stream(const std::string& program, Stream& stream) {
   std::array<int, 2> ends{};
@@ -192,7 +190,7 @@ std::string first_line(const std::string& words) {
   return line;
 }
 
-/// A sentence about how the child ended; "" for code 0.
+/// ChildResult::trouble of a child that ended by itself; "" for code 0.
 std::string ending(int status, const std::string& words, const ChildLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
@@ -280,18 +278,6 @@ class Exchange {
 std::uint64_t memory_that_fits(std::uint64_t wanted) {
   constexpr std::uint64_t least = 512ull << 20;
   return std::min(wanted, std::max(least, machine_memory() / 2));
-}
-
-std::string helper_program(const std::string& name, const std::string& purpose, const std::string& remedy,
-                           const std::vector<std::string>& folders) {
-  std::string looked;
-  for (const std::string& folder : folders) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(folder + "/" + name, ignored)) return folder + "/" + name;
-    looked += (looked.empty() ? "" : ", ") + folder;
-  }
-  throw InputError(purpose + " needs " + name + ", which was not built or not installed (looked in " + looked + "); " +
-                   remedy);
 }
 
 ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,

@@ -12,8 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "lib/core/module_folders.h"
-
 namespace tempolux {
 
 /// Limits of a child. The defaults suit a small job; large jobs set their own.
@@ -36,32 +34,26 @@ struct ChildResult {
   std::string words;  ///< the beginning of its standard error
 };
 
-/// Default memory limit of a child: `wanted`, but at most half of what this process may use (the machine's memory, or a
-/// container's limit), since this process also holds the child's output. At least 512 MiB, since RLIMIT_AS counts
-/// libraries, which are not all loaded. So a file that claims to need too much memory ends the child, not the machine.
+/// Memory limit of a child that needs `wanted` bytes: at most half of machine_memory(), since this process also holds
+/// the child's output, but at least 512 MiB, since RLIMIT_AS counts libraries that are not in memory. So a file that
+/// claims to need too much memory ends the child, not the machine.
 std::uint64_t memory_that_fits(std::uint64_t wanted);
 
-/// Path of a child program that was installed or built with this one. Throws InputError "PURPOSE needs NAME, which was
-/// not built or not installed (looked in ...); REMEDY".
-std::string helper_program(const std::string& name, const std::string& purpose,
-                           const std::string& remedy = "install all of tempolux together",
-                           const std::vector<std::string>& folders = default_module_folders());
-
-/// Runs a program to its end: writes `input` to its standard input and closes it, reads its standard output and
-/// standard error, and waits. The program gets `arguments` after its name, this process's environment, no other open
-/// files, and default signals. It leaves no core. A child that exceeds a
-/// limit is killed; no child outlives the call. If this process is killed, the child ends at the end of its input, at a
-/// closed output, or at its limit of processor time.
+/// Runs a program (installed_file) to its end: writes `input` to its standard input and closes it, reads its standard
+/// output and standard error, and waits. The program gets `arguments` after its name, this process's environment, no
+/// other open files, and default signals. It leaves no core. A child that exceeds a limit is killed; no child outlives
+/// the call. If this process is killed, the child ends at the end of its input, at a closed output, or at its limit of
+/// processor time.
 ///
 /// The limits are set after the start and before `input` is sent. So everything dangerous, including names of files,
 /// belongs into the input, which the child must read first.
 ///
 /// Several threads may call at once. Directory, signals and limits of this process do not change. If the program ends
-/// without reading all input, the remaining input is dropped: the output shows whether it read enough.
+/// without reading all input, the remaining input is dropped: the output shows whether it read enough. Children forbid
+/// themselves to open files, sockets and programs (modules/guard.h); a child that tries is killed by SIGSYS.
 ///
 /// Throws ResourceError if no process can be started or the result does not fit into memory. Builds with address or
-/// thread sanitizer do not limit memory, since these reserve terabytes of address space. Children give up opening
-/// files, sockets and programs (modules/guard.h); a child that tries is killed by SIGSYS.
+/// thread sanitizer do not limit memory, since the sanitizers reserve terabytes of address space.
 ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,
                       std::span<const unsigned char> input, const ChildLimits& limits);
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "formats/error.h"
+
 namespace tempolux {
 
 std::vector<std::string> default_module_folders() {
@@ -14,6 +16,17 @@ std::vector<std::string> default_module_folders() {
   for (const char* folder : {"lib/tempolux", "lib/x86_64-linux-gnu/tempolux", "lib64/tempolux", "modules"})
     folders.push_back(prefix / folder);
   return folders;
+}
+
+std::string installed_file(const std::string& name, const std::string& purpose, const std::string& remedy) {
+  std::string looked;
+  for (const std::string& folder : default_module_folders()) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(folder + "/" + name, ignored)) return folder + "/" + name;
+    looked += (looked.empty() ? "" : ", ") + folder;
+  }
+  throw InputError(purpose + " needs " + name + ", which was not built or not installed (looked in " + looked + "); " +
+                   remedy);
 }
 
 }  // namespace tempolux

@@ -11,4 +11,9 @@ namespace tempolux {
 /// environment is not read.
 std::vector<std::string> default_module_folders();
 
+/// Path of a module or child program that was installed or built with this program. Throws InputError "PURPOSE needs
+/// NAME, which was not built or not installed (looked in ...); REMEDY".
+std::string installed_file(const std::string& name, const std::string& purpose,
+                           const std::string& remedy = "install all of tempolux together");
+
 }  // namespace tempolux

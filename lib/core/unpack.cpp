@@ -6,6 +6,7 @@
 
 #include "formats/error.h"
 #include "lib/core/child_process.h"
+#include "lib/core/module_folders.h"
 
 namespace tempolux {
 namespace {
@@ -60,7 +61,7 @@ const PackedPiece& piece_at(const std::vector<PackedPiece>& pieces, std::uint64_
 std::vector<unsigned char> unpack(const std::vector<PackedPiece>& pieces) {
   if (pieces.empty()) return {};
   const std::string name = "tempolux-decode";
-  const std::string program = helper_program(name, pieces.front().place + ": unpacking");
+  const std::string program = installed_file(name, pieces.front().place + ": unpacking");
   const ChildLimits limits = limits_for(pieces);
   ChildResult result = run_child(program, {}, request_for(pieces), limits);
   const PackedPiece& piece = piece_at(pieces, result.output.size());

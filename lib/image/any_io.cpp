@@ -9,6 +9,7 @@
 
 #include "formats/error.h"
 #include "lib/core/child_process.h"
+#include "lib/core/module_folders.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/hdr_io.h"
@@ -19,7 +20,6 @@
 namespace tempolux {
 namespace {
 
-constexpr const char* kHelper = "tempolux-oiio";
 constexpr std::uint64_t kLibraries = 2ull << 30;  ///< address space of OpenImageIO with its 261 libraries, and a margin
 
 /// "exr", "hdr", "png", or OpenImageIO's name of a format that the child process may open; "" for any other format.
@@ -36,7 +36,7 @@ std::string format_of(const ByteFile& file) {
   return "";
 }
 
-/// The child process' output.
+/// The output of the child process: channels of a pixel together.
 struct Interleaved {
   std::vector<float> samples;
   int width = 0, height = 0, channels = 0, bits = 0;
@@ -57,9 +57,7 @@ Image to_image(const std::string& path, const std::string& format, const Interle
     const std::size_t offset = from.channels == 1 ? 0 : c;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const float sample = from.samples[i * std::size_t(from.channels) + offset];
-      if (!std::isfinite(sample))
-        throw InputError(path + ": pixel (" + std::to_string(i % std::size_t(image.width)) + ", " +
-                         std::to_string(i / std::size_t(image.width)) + "): not a finite number");
+      if (!std::isfinite(sample)) throw InputError(path + ": " + pixel_name(i, image.width) + ": not a finite number");
       values[i] = linear ? sample : srgb_to_linear(sample);
     }
   }
@@ -93,33 +91,32 @@ std::optional<Interleaved> parse(const std::vector<unsigned char>& printed, std:
   return image;
 }
 
-Image load_by_helper(const std::string& path, const std::string& format, const ImageReadOptions& options) {
-  const std::string program =
-      helper_program(kHelper, path + ": reading " + format,
-                     "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG", options.module_folders);
+Image load_by_child(const std::string& path, const std::string& format, std::uint64_t max_pixels) {
+  const std::string program = installed_file("tempolux-oiio", path + ": reading " + format,
+                                             "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG");
   // Memory for the pixels as floats of up to four channels, and as much again for decoding.
-  const std::uint64_t most = options.max_pixels * 4 * sizeof(float);
+  const std::uint64_t most = max_pixels * 4 * sizeof(float);
   ChildLimits limits;
   limits.memory_bytes = memory_that_fits(kLibraries + 2 * most);
   limits.output_bytes = memory_that_fits(most) + sizeof(ImagePipeHead);
-  const ChildResult result = run_child(program, {}, request_for(path, format, options.max_pixels), limits);
+  const ChildResult result = run_child(program, {}, request_for(path, format, max_pixels), limits);
   if (!result.trouble.empty()) throw InputError(path + ": " + format + ": " + one_line(result.trouble));
-  const std::optional<Interleaved> pixels = parse(result.output, options.max_pixels);
+  const std::optional<Interleaved> pixels = parse(result.output, max_pixels);
   if (!pixels) throw InputError(path + ": " + format + ": tempolux-oiio gave no whole image; is it of this version?");
   return to_image(path, format, *pixels);
 }
 
 }  // namespace
 
-Image load_image(const std::string& path, const ImageReadOptions& options) {
+Image load_image(const std::string& path, std::uint64_t max_pixels) {
   const std::string format = format_of(ByteFile(path));
-  if (format == "exr") return load_exr(path, {options.max_pixels, false});
-  if (format == "hdr") return load_hdr(path, options.max_pixels);
-  if (format == "png") return load_png(path, options.max_pixels);
+  if (format == "exr") return load_exr(path, {max_pixels, false});
+  if (format == "hdr") return load_hdr(path, max_pixels);
+  if (format == "png") return load_png(path, max_pixels);
   if (format.empty())
     throw InputError(
         path + ": byte 0: not an image we read (OpenEXR, PNG, Radiance HDR, JPEG, TIFF); convert it to EXR or PNG");
-  return load_by_helper(path, format, options);
+  return load_by_child(path, format, max_pixels);
 }
 
 }  // namespace tempolux

@@ -15,7 +15,7 @@
 namespace tempolux {
 
 ByteFile::ByteFile(std::string path) : path_(std::move(path)) {
-  // Non-blocking: opening a pipe by mistake must give a message, not wait.
+  // O_NONBLOCK, since opening a pipe by mistake must give a message and not wait.
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) throw InputError(path_ + ": cannot open: " + std::strerror(errno));
   struct stat status;
@@ -40,6 +40,16 @@ void ByteFile::read_at(std::uint64_t offset, void* to, std::size_t count) const 
     offset += std::uint64_t(got);
     count -= std::size_t(got);
   }
+}
+
+void BufferedFile::read_at(std::uint64_t offset, void* to, std::size_t count) {
+  if (count >= buffer_.size() || offset + count > file_.size()) return file_.read_at(offset, to, count);
+  if (offset < start_ || offset + count > start_ + filled_) {
+    start_ = offset;
+    filled_ = std::size_t(std::min<std::uint64_t>(buffer_.size(), file_.size() - offset));
+    file_.read_at(start_, buffer_.data(), filled_);
+  }
+  std::memcpy(to, buffer_.data() + (offset - start_), count);
 }
 
 void write_pieces(const std::string& path, std::span<const std::string> pieces) {

@@ -10,9 +10,9 @@
 
 namespace tempolux {
 
-/// True if the channel belongs to the group. RGBA: R G B A; layers: the colours of emission, specular, direct, caustic,
-/// indirect and volume; id: id.object; motion: forward.*, backward.*, valid, speed; any other group: the channel of
-/// this name and GROUP.*.
+/// True if the channel belongs to the group. RGBA: R, G, B, A. layers: the colours of emission, specular, direct,
+/// caustic, indirect and volume. motion: forward.*, backward.*, valid, speed. Any other group: the channel of this
+/// name, and GROUP.*, as id.object of `id`.
 bool is_in_group(std::string_view channel, std::string_view group);
 
 /// True for R, G, B and A of the picture or of a layer.
@@ -26,7 +26,8 @@ inline bool asked(const std::vector<std::string>& groups, std::string_view group
   return std::ranges::find(groups, group) != groups.end();
 }
 
-/// Removes all channels outside these groups. Throws InputError for a group of which the image has no channel.
+/// Removes the channels that are in none of these groups. Throws InputError for a group of which the image has no
+/// channel.
 void keep_channels(const std::vector<std::string>& groups, Image& image);
 
 }  // namespace tempolux

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kGap = 2;
 
-/// Area average of linear light. A target pixel covers (source size / target size) source pixels; partly covered ones
-/// count by their covered share.
+/// Averages linear light over the area of each target pixel. A source pixel counts by the share of it that the target
+/// pixel covers.
 Picture shrink(const Picture& from, int width, int height) {
   std::array<float, 256> linear;
   for (std::size_t code = 0; code < linear.size(); ++code) linear[code] = srgb_to_linear(float(code) / 255);

@@ -9,7 +9,7 @@ namespace tempolux {
 std::string digest_of(const Image& image) {
   std::vector<const Channel*> sorted;
   for (const Channel& channel : image.channels) sorted.push_back(&channel);
-  std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
+  std::ranges::sort(sorted, {}, &Channel::name);
 
   Hasher hasher;
   hasher.add(std::uint32_t(image.width));

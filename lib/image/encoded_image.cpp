@@ -61,8 +61,8 @@ std::uint32_t little_endian(Bytes bytes, std::size_t at, int count) {
   return value;
 }
 
-/// Size in the first chunk of the RIFF container: of a lossy frame (RFC 6386, 9.1), of a lossless one, or of the canvas
-/// (Google's "WebP Container Specification" and "WebP Lossless Bitstream").
+/// Size in the first chunk of the RIFF container, which is a lossy frame (RFC 6386, 9.1), a lossless frame or the
+/// description of a canvas (Google's "WebP Container Specification" and "WebP Lossless Bitstream").
 bool webp_size(Bytes bytes, ImageHeader& header) {
   if (bytes.size() < 30) return false;
   if (starts_with(bytes, "VP8 "sv, 12)) {
@@ -88,17 +88,16 @@ bool webp_size(Bytes bytes, ImageHeader& header) {
 
 struct OtherFormat {
   std::string_view head;
-  std::size_t at;
   const char* name;
 };
-constexpr std::array kOtherFormats{OtherFormat{"\xabKTX"sv, 0, "KTX"},
-                                   OtherFormat{"DDS ", 0, "DDS"},
-                                   OtherFormat{"GIF8", 0, "GIF"},
-                                   OtherFormat{"BM", 0, "BMP"},
-                                   OtherFormat{"II*\0"sv, 0, "TIFF"},
-                                   OtherFormat{"MM\0*"sv, 0, "TIFF"},
-                                   OtherFormat{"\x76\x2f\x31\x01"sv, 0, "OpenEXR"},
-                                   OtherFormat{"#?R", 0, "Radiance HDR"}};
+constexpr std::array kOtherFormats{OtherFormat{"\xabKTX"sv, "KTX"},
+                                   OtherFormat{"DDS ", "DDS"},
+                                   OtherFormat{"GIF8", "GIF"},
+                                   OtherFormat{"BM", "BMP"},
+                                   OtherFormat{"II*\0"sv, "TIFF"},
+                                   OtherFormat{"MM\0*"sv, "TIFF"},
+                                   OtherFormat{"\x76\x2f\x31\x01"sv, "OpenEXR"},
+                                   OtherFormat{"#?R", "Radiance HDR"}};
 
 }  // namespace
 
@@ -117,7 +116,7 @@ ImageHeader read_image_header(Bytes bytes, const std::string& place) {
     found = webp_size(bytes, header);
   } else {
     for (const OtherFormat& other : kOtherFormats)
-      if (starts_with(bytes, other.head, other.at))
+      if (starts_with(bytes, other.head))
         fail(std::string("is ") + other.name + "; textures must be PNG, JPEG or WebP: convert it");
     fail("is neither PNG nor JPEG nor WebP; textures must be one of them");
   }

@@ -16,6 +16,7 @@ struct EncodedImage {
   std::string digest;         ///< of the bytes
 };
 
+/// Format and size of an encoded image.
 struct ImageHeader {
   enum class Format { png, jpeg, webp };
   Format format = Format::png;
@@ -35,9 +36,9 @@ struct CodedPixels {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Decodes an image. Statements of the file about its colour space (gAMA, iCCP, ...) are ignored: by glTF 2.0, 3.8.2,
-/// the texture decides. A child process decodes WebP (lib/core/unpack.h). Throws InputError "PLACE: ..." for a damaged
-/// or truncated file, a size above max_pixels or other than the header's, and for JPEG in CMYK.
+/// Decodes an image. What the file says about its colour space (gAMA, iCCP, ...) is ignored: in glTF 2.0, 3.8.2, the
+/// texture decides. A child process decodes WebP (lib/core/unpack.h). Throws InputError "PLACE: ..." if the file is
+/// damaged or truncated, has more than max_pixels or another size than its header says, or is JPEG in CMYK.
 CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels);
 
 }  // namespace tempolux

@@ -16,20 +16,20 @@ constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
 constexpr std::uint64_t kFreeDisplayBytes = 256ull << 20;
 constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800, kMultipartFlag = 0x1000;
 
-/// Facts about a compression, by its number in the file: lines per chunk, and the largest number of bytes of samples
-/// that one byte of the file can expand to. Deflate: 1032. Run lengths: 64. Pxr24 drops a quarter before deflate.
-/// Piz: 410 (a run of 256 16-bit values in 10 bits). B44: 11. Both DWA: 64 times deflate (one coefficient for 8x8
-/// pixels).
+/// A compression. Deflate expands a byte to at most 1032 bytes, run lengths to 64. Pxr24 drops a quarter before
+/// deflate. Piz: 410 (a run of 256 16-bit values in 10 bits). B44: 11. Both DWA: 64 times deflate (one coefficient for
+/// 8x8 pixels).
 struct CompressionFacts {
-  std::int32_t lines;
-  std::uint64_t expansion;
+  std::int32_t lines;       ///< per chunk
+  std::uint64_t expansion;  ///< largest number of bytes of samples from one byte of the file
 };
+/// By the compression's number in the file.
 constexpr std::array<CompressionFacts, 10> kCompressions{
     {{1, 1}, {1, 64}, {1, 1032}, {16, 1032}, {32, 410}, {16, 1376}, {32, 11}, {32, 11}, {32, 66048}, {256, 66048}}};
 
 class HeaderReader {
  public:
-  explicit HeaderReader(const ByteFile& file) : file_(file) {}
+  explicit HeaderReader(const ByteFile& file) : file_(file), buffered_(file) {}
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(position_, what); }
   [[noreturn]] void fail_at(std::uint64_t at, const std::string& what) const {
@@ -40,12 +40,7 @@ class HeaderReader {
 
   void bytes(void* to, std::size_t count) {
     if (count > left()) fail("the file ends inside the header; write it again");
-    if (position_ < buffer_start_ || position_ + count > buffer_start_ + filled_) {
-      buffer_start_ = position_;
-      filled_ = std::size_t(std::min<std::uint64_t>(buffer_.size(), left()));
-      file_.read_at(buffer_start_, buffer_.data(), filled_);
-    }
-    std::memcpy(to, buffer_.data() + (position_ - buffer_start_), count);  // count is at most 16
+    buffered_.read_at(position_, to, count);
     position_ += count;
   }
   template <class T>
@@ -66,9 +61,8 @@ class HeaderReader {
 
  private:
   const ByteFile& file_;
-  std::array<char, 4096> buffer_;
-  std::uint64_t position_ = 0, buffer_start_ = 0;
-  std::size_t filled_ = 0;
+  BufferedFile buffered_;
+  std::uint64_t position_ = 0;
 };
 
 PixelWindow read_window(HeaderReader& in) {
@@ -95,8 +89,8 @@ std::vector<ExrClaims::ClaimedChannel> read_channels(HeaderReader& in) {
   return channels;
 }
 
-/// Bytes of a value; 0: the attribute gives the size. OpenEXR reads this many bytes whatever size the attribute gives,
-/// and would read the rest of the header from another position than this reader.
+/// Bytes of a value of this type; 0 if they vary. OpenEXR reads this many bytes whatever size the attribute claims. If
+/// the claim were wrong, it would read the remaining header from another position than this reader.
 std::int32_t size_of_type(std::string_view type) {
   constexpr std::pair<std::string_view, std::int32_t> kSizes[] = {{"box2f", 16},
                                                                   {"box2i", 16},
@@ -189,7 +183,7 @@ void check_window(const HeaderReader& in, const PixelWindow& window, const char*
             "; raise the limit if that is the image's size");
 }
 
-/// Checks windows and chunks of every part, since OpenEXR allocates offset tables for all parts.
+/// Checks windows and chunks of a part. All parts are checked, since OpenEXR allocates offset tables for all.
 void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chunk_count, std::uint64_t file_size,
                 std::uint64_t max_pixels) {
   check_window(in, part.data, "dataWindow", max_pixels);
@@ -202,7 +196,7 @@ void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chu
   const std::uint64_t chunks = part.tile_width > 0 && part.tile_height > 0
                                    ? up(part.data.width(), part.tile_width) * up(part.data.height(), part.tile_height)
                                    : up(part.data.height(), part.lines_per_chunk());
-  // A chunk takes 8 bytes in the offset table and 8 bytes of its own before any sample.
+  // A chunk has 8 bytes in the offset table and a head of 8 bytes.
   if (std::max(chunks, chunk_count) > file_size / 16)
     in.fail("claims " + std::to_string(std::max(chunks, chunk_count)) + " chunks in " + std::to_string(file_size) +
             " bytes; the file is truncated or damaged");

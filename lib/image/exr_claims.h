@@ -20,6 +20,7 @@ struct PixelWindow {
   std::int64_t height() const { return std::int64_t(y1) - y0 + 1; }
 };
 
+/// What the header of an EXR says about the file's first part.
 struct ExrClaims {
   struct ClaimedChannel {
     std::string name;
@@ -36,9 +37,9 @@ struct ExrClaims {
   std::int32_t lines_per_chunk() const;  ///< in parts stored as scan lines
 };
 
-/// Claims of the first part. Throws InputError "FILE: byte N: WHAT; REMEDY" if any part's header is damaged or claims
-/// more than max_pixels or more than the file's bytes can hold; if the first part is deep or subsampled; or if its
-/// display window takes more than 256 MiB and more than 1032 times the file.
+/// Claims of the first part. Throws InputError "FILE: byte N: WHAT; REMEDY" if a part's header is damaged, claims more
+/// than max_pixels, or claims more than the file's bytes can hold; if the first part is deep or subsampled; or if its
+/// display window needs more than 256 MiB and more than 1032 times the file's bytes.
 ExrClaims read_exr_claims(const ByteFile& file, std::uint64_t max_pixels);
 
 }  // namespace tempolux

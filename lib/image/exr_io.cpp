@@ -35,17 +35,15 @@
 namespace tempolux {
 namespace {
 
-// Lines that a thread decompresses and compresses at a time: one chunk of ZIP to compress, so that 540 lines occupy
-// many threads.
+// Lines that a thread reads, and writes, at a time. kSlabLines is one chunk of ZIP, so that 540 lines occupy many
+// threads.
 constexpr int kReadLines = 64, kSlabLines = 16;
 constexpr float kLargestHalf = 65504;
-// Level 4 of deflate is OpenEXR's default; written here, so that the default of a later OpenEXR does not change the
-// bytes.
+// OpenEXR's present default. A later default must not change the bytes of files.
 constexpr int kDeflateLevel = 4;
 
 std::string pixel_place(const std::string& path, const std::string& channel, std::size_t index, int width) {
-  return path + ": channel " + one_line(channel) + ": pixel (" + std::to_string(index % std::size_t(width)) + ", " +
-         std::to_string(index / std::size_t(width)) + "): ";
+  return path + ": channel " + one_line(channel) + ": " + pixel_name(index, width) + ": ";
 }
 
 /// First index at which `bad` holds, or values.size().
@@ -139,7 +137,7 @@ class MemoryOut : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-/// Lines [first, first + count) of the image as chunks: int32 line, int32 size, bytes.
+/// Lines [first, first + count) of the image as chunks of the file: int32 line, int32 size, bytes.
 std::string encode_slab(const Image& image, const ExrWriteOptions& options, int first, int count) {
   if (!options.zip && !options.half) return plain_lines(image, first, count);
   Imf::Header header = make_bare_header(image, options);
@@ -172,7 +170,7 @@ std::string encode_slab(const Image& image, const ExrWriteOptions& options, int 
   return out.bytes.substr(header_size);
 }
 
-/// The header and the offset table as OpenEXR writes them; the table follows from the chunks' sizes.
+/// The header and the offset table as OpenEXR writes them; the table is made from the sizes of the chunks in `slabs`.
 std::string make_head(const Imf::Header& header, const std::vector<std::string>& slabs) {
   MemoryOut out;
   { Imf::OutputFile empty(out, header, 0); }
@@ -198,34 +196,19 @@ std::string make_head(const Imf::Header& header, const std::vector<std::string>&
 /// Gives OpenEXR access to a file that other threads read, too.
 class FileIn : public Imf::IStream {
  public:
-  explicit FileIn(const ByteFile& file) : IStream(file.path().c_str()), file_(file), buffer_(kBufferSize) {}
+  explicit FileIn(const ByteFile& file) : IStream(file.path().c_str()), file_(file), size_(file.size()) {}
   bool read(char to[], int n) override {
     const auto count = std::size_t(std::max(n, 0));
-    if (count > file_.size() - std::min(position_, file_.size()))
-      throw InputError(file_.path() + ": byte " + std::to_string(file_.size()) +
-                       ": the file ends here, too early; write it again");
-    if (count >= kBufferSize) {
-      file_.read_at(position_, to, count);
-    } else {
-      if (position_ < buffer_start_ || position_ + count > buffer_start_ + filled_) {
-        buffer_start_ = position_;
-        filled_ = std::size_t(std::min<std::uint64_t>(kBufferSize, file_.size() - position_));
-        file_.read_at(position_, buffer_.data(), filled_);
-      }
-      std::memcpy(to, buffer_.data() + (position_ - buffer_start_), count);
-    }
+    file_.read_at(position_, to, count);
     position_ += count;
-    return position_ < file_.size();
+    return position_ < size_;
   }
   std::uint64_t tellg() override { return position_; }
   void seekg(std::uint64_t position) override { position_ = position; }
 
  private:
-  static constexpr std::size_t kBufferSize = 16384;
-  const ByteFile& file_;
-  std::vector<char> buffer_;
-  std::uint64_t position_ = 0, buffer_start_ = 0;
-  std::size_t filled_ = 0;
+  BufferedFile file_;
+  std::uint64_t size_, position_ = 0;
 };
 
 template <class Matrix>
@@ -255,8 +238,8 @@ void read_attributes(const Imf::Header& header, Image& image) {
   }
 }
 
-/// Reads lines [first, last) of the data window into the image, which has the data window's size; with the first line
-/// also the attributes.
+/// Reads lines [first, last) of the data window into the image, which has the data window's size. If first is 0, also
+/// reads the attributes.
 void read_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int first, int last) {
   const bool done = read_plain_lines(file, claims, image, first, last);
   if (done && first != 0) return;
@@ -296,8 +279,7 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrR
   for (const auto& channel : claims.channels)
     if (wanted(channel.name) && names.insert(channel.name).second)
       channel.type == 0 ? image.add_ids(channel.name) : image.add(channel.name);
-  std::sort(image.channels.begin(), image.channels.end(),
-            [](const Channel& a, const Channel& b) { return a.name < b.name; });
+  std::ranges::sort(image.channels, {}, &Channel::name);
 
   const int height = image.height;
   const int slab = claims.tile_width > 0 ? height : std::max(kReadLines, claims.lines_per_chunk());
@@ -347,7 +329,7 @@ void check_numbers(const std::string& path, const Image& image) {
   }
 }
 
-/// OpenEXR 3.1 has limits for the whole process; they are set once, to one value.
+/// Sets OpenEXR's limits of size, which hold for the whole process, at the first call.
 void limit_openexr() {
   static const bool done = [] {
     Imf::Header::setMaxImageSize(65536, 65536);

@@ -19,8 +19,8 @@ struct Stretch {
   char* to = nullptr;  ///< destination of the first line
 };
 
-/// The positions of the image's channels in a line; empty if one of them does not have 4 bytes. line_bytes receives the
-/// bytes of all channels.
+/// The places of the image's channels in a line; empty if a sample of them does not have 4 bytes. `line_bytes` receives
+/// the bytes of all channels in a line.
 std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_t& line_bytes) {
   std::vector<const ExrClaims::ClaimedChannel*> claimed;
   for (const ExrClaims::ClaimedChannel& channel : claims.channels) claimed.push_back(&channel);

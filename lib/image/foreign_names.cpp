@@ -8,8 +8,6 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNothingDepth = 1e10f;  // depth that Blender writes where no surface is
-
 /// A pass of another program: the ends of its channels' names, before and after the last dot.
 struct Pass {
   std::string_view layer, component, ours;
@@ -37,7 +35,7 @@ constexpr std::array<Pass, 22> kPasses{{{"Combined", "R", "R"},
                                         {"Denoising Albedo", "G", "albedo.G"},
                                         {"Denoising Albedo", "B", "albedo.B"}}};
 
-/// Splits "VIEW.Combined.R" into "VIEW", "Combined" and "R".
+/// The parts of a name: "VIEW", "Combined" and "R" of "VIEW.Combined.R".
 struct Parts {
   std::string_view view, layer, component;
 };
@@ -76,8 +74,8 @@ std::string our_name(const std::string& channel) {
 
 void name_as_ours(Image& image) {
   const std::string view = view_of(image);
-  for (const bool for_denoisers :
-       {false, true})  // denoising passes look through mirrors and average over edges, so plain passes are preferred
+  // Plain passes come first: denoising passes look through mirrors and average over edges.
+  for (const bool for_denoisers : {false, true})
     for (Channel& channel : image.channels) {
       const Parts parts = parts_of(channel.name);
       const Pass* pass = pass_of(parts);
@@ -91,8 +89,7 @@ void name_as_ours(Image& image) {
         if (turned) value = -value;
       }
     }
-  std::sort(image.channels.begin(), image.channels.end(),
-            [](const Channel& a, const Channel& b) { return a.name < b.name; });
+  std::ranges::sort(image.channels, {}, &Channel::name);
 }
 
 }  // namespace tempolux

@@ -13,24 +13,24 @@ namespace tempolux {
 
 inline constexpr std::string_view kIdentityPrefix = "tempolux:identity.";  ///< prefix of a concern's name
 
-/// Writes the attributes tempolux:identity.CONCERN for all concerns of the scene; an unknown hash becomes an empty
+/// Writes the attributes tempolux:identity.CONCERN for all concerns of the scene. An unknown hash becomes an empty
 /// text.
 void set_identity(Image& image, const formats::Identity& identity);
 
-/// Reads what set_identity() wrote; the hash of a missing attribute is unknown. The result is valid for frame 0
-/// alone, whatever tempolux:frame contains. Without any hash it is not known().
+/// Reads what set_identity() wrote. The hash of a missing attribute is unknown. The result is valid for frame 0 alone,
+/// whatever tempolux:frame contains. Without any hash it is not known().
 formats::Identity identity_in(const Image& image);
 
-/// The camera of a picture as its attributes say it (formats/frames/frames.md 3).
+/// The camera of a picture, in the form of its attributes (formats/frames/frames.md 3).
 struct CameraMatrices {
   std::array<double, 16> world_to_camera{}, world_to_ndc{};
 };
-/// Writes what identifies a rendered frame: identity, tempolux:frame, framesPerSecond, history and camera.
+/// Writes the attributes of a rendered frame: identity, tempolux:frame, framesPerSecond, history and camera.
 void describe_frame(Image& image, const formats::Identity& identity, int frame, double fps, const std::string& history,
                     const CameraMatrices& camera);
 
-/// True if the image has a camera and the camera differs. Attributes hold float32, so those of one camera are equal to
-/// the bit.
+/// True if the image has camera attributes and they differ from `camera` after rounding to float32, as files store
+/// them.
 bool shows_other_camera(const Image& image, const CameraMatrices& camera);
 
 }  // namespace tempolux

@@ -99,7 +99,8 @@ Header read_header(Reader& in) {
   return header;
 }
 
-/// Reads each of the four bytes of all pixels separately: runs of up to 127 equal bytes, or up to 128 different ones.
+/// Reads a line that stores the r bytes of all pixels, then all g, b and e: runs of up to 127 equal bytes, or up to 128
+/// different ones.
 void read_planes(Reader& in, std::vector<Pixel>& row) {
   in.skip(4);
   for (std::size_t plane = 0; plane < 4; ++plane)
@@ -111,7 +112,7 @@ void read_planes(Reader& in, std::vector<Pixel>& row) {
     }
 }
 
-/// Reads pixel by pixel. The code (1, 1, 1, n) repeats the pixel before n times. Codes that follow each other are the
+/// Reads a line pixel by pixel. The code (1, 1, 1, n) repeats the previous pixel n times. Consecutive codes are the
 /// digits of one number in base 256, the lowest first.
 void read_pixels(Reader& in, std::vector<Pixel>& row) {
   unsigned shift = 0;

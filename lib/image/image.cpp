@@ -7,13 +7,15 @@
 #include "formats/error.h"
 
 namespace tempolux {
-namespace {
 
-std::string joined(const std::string& layer, const char* component) {
+std::string channel_name(const std::string& layer, const char* component) {
   return layer.empty() ? component : layer + "." + component;
 }
 
-}  // namespace
+std::string pixel_name(std::size_t pixel, int width) {
+  const auto w = std::size_t(width);
+  return "pixel (" + std::to_string(pixel % w) + ", " + std::to_string(pixel / w) + ")";
+}
 
 const Channel* Image::find(std::string_view name) const {
   const auto found =
@@ -37,7 +39,7 @@ std::array<const std::vector<float>*, 3> Image::rgb(const std::string& layer) co
   std::array<const std::vector<float>*, 3> planes{};
   constexpr std::array components{"R", "G", "B"};
   for (std::size_t c = 0; c < 3; ++c) {
-    const Channel* channel = find(joined(layer, components[c]));
+    const Channel* channel = find(channel_name(layer, components[c]));
     if (!channel || !channel->ids.empty()) {
       std::string known;
       for (const std::string& name : layers()) known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
@@ -56,7 +58,8 @@ std::vector<std::string> Image::layers() const {
     if (channel.name.size() > 2 && channel.name.ends_with(".R"))
       names.insert(channel.name.substr(0, channel.name.size() - 2));
   }
-  std::erase_if(names, [&](const std::string& name) { return !find(joined(name, "G")) || !find(joined(name, "B")); });
+  std::erase_if(
+      names, [&](const std::string& name) { return !find(channel_name(name, "G")) || !find(channel_name(name, "B")); });
   return {names.begin(), names.end()};
 }
 

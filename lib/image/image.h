@@ -21,13 +21,13 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// A frame. Channels keep the order in which they were added; files sort them by name.
+/// An image. Channels keep the order in which they were added; files sort them by name.
 struct Image {
   int width = 0, height = 0;
   std::vector<Channel> channels;
   std::map<std::string, std::string> text;  ///< string attributes, "tempolux:history" ...
   std::map<std::string, double> numbers;    ///< "framesPerSecond", "tempolux:frame" ...
-  /// OpenEXR's convention: row vectors, row-major; "worldToCamera", "worldToNDC".
+  /// "worldToCamera", "worldToNDC"; for row vectors (p' = p M, OpenEXR's convention), row after row.
   std::map<std::string, std::array<double, 16>> matrices;
 
   std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
@@ -36,9 +36,15 @@ struct Image {
   /// Adds a channel of zeros and returns it. The reference is valid until the next call; samples stay where they are.
   Channel& add(std::string name);
   Channel& add_ids(std::string name);
-  /// The three planes LAYER.R, .G, .B; layer "" is R, G, B. Throws InputError listing the layers if missing.
+  /// The three planes LAYER.R, .G, .B; layer "" means R, G, B. Throws InputError that lists the layers if one is
+  /// missing.
   std::array<const std::vector<float>*, 3> rgb(const std::string& layer) const;
   std::vector<std::string> layers() const;  ///< layers with .R .G .B; "" comes first if R G B exist
 };
+
+/// Name of a layer's channel: "indirect.G"; for the layer "" the component alone.
+std::string channel_name(const std::string& layer, const char* component);
+/// "pixel (X, Y)" for messages; counted from the top left.
+std::string pixel_name(std::size_t pixel, int width);
 
 }  // namespace tempolux

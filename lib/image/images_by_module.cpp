@@ -17,7 +17,7 @@ class Answer {
 
   void ask(PixelsRequest request, const std::string& place) {
     auto* entry = reinterpret_cast<PixelsEntry*>(
-        module_symbol("tempolux-images.so", kPixelsSymbol, default_module_folders(), place + ": reading an image",
+        module_symbol("tempolux-images.so", kPixelsSymbol, place + ": reading an image",
                       "install all of tempolux together, or copy its folder of modules with the tools"));
     request.abi = kPixelsAbi;
     request.user = this;

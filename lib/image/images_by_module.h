@@ -12,17 +12,18 @@
 
 namespace tempolux {
 
-/// decode_image of encoded_image.h; also throws InputError if the module is missing, std::bad_alloc without memory.
+/// decode_image() of encoded_image.h by the module. Also throws InputError if the module is missing, std::bad_alloc
+/// without memory.
 CodedPixels decode_by_module(const EncodedImage& image, std::uint64_t max_pixels);
 
-/// Linear colour, row 0 on top.
+/// Linear Rec. 709 colours, row 0 on top.
 struct LinearPixels {
   int width = 0, height = 0;
   std::vector<Rgb> pixels;
 };
 
-/// R, G and B of load_image of any_io.h. Throws InputError if a channel or the module is missing, std::bad_alloc
-/// without memory.
+/// R, G and B of load_image() of any_io.h by the module. Also throws InputError if a channel or the module is missing,
+/// std::bad_alloc without memory.
 LinearPixels load_by_module(const std::string& path, std::uint64_t max_pixels);
 
 }  // namespace tempolux

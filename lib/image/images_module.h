@@ -7,7 +7,7 @@ namespace tempolux {
 
 inline constexpr std::uint32_t kPixelsAbi = 3;
 
-/// One call: the image to read, and callbacks for its pixels and for errors.
+/// The argument of a call: the image to read, and callbacks for its pixels and for errors.
 struct PixelsRequest {
   std::uint32_t abi;           ///< kPixelsAbi; a module of another version refuses the call
   const char* path;            ///< a file to be read as load_image does, as linear R, G, B; null: `bytes`

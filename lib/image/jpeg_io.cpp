@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kMostScans = 100;  ///< a progressive file of many empty scans would take very long
 
-/// libjpeg reports an error by calling a function that must not return: it jumps back to the frame that set the jump.
-/// No object with a destructor may live in the frames jumped over.
+/// libjpeg reports an error by calling a function that must not return. The function jumps back to the frame that
+/// called setjmp, so no object with a destructor may live in the frames between.
 struct Session {
   jpeg_decompress_struct info;
   jpeg_error_mgr errors;
@@ -38,7 +38,8 @@ Session& session_of(j_common_ptr info) { return *static_cast<Session*>(info->cli
   info->err->format_message(info, session.message);
   std::longjmp(session.back, 1);
 }
-/// Level -1 is a warning after which libjpeg would invent pixels: an error here. Bytes between markers are harmless.
+/// Level -1 is a warning after which libjpeg would invent pixels, so it is treated as an error. Warnings about bytes
+/// between markers are harmless.
 void on_message(j_common_ptr info, int level) {
   if (level >= 0) return;
   char text[JMSG_LENGTH_MAX];
@@ -64,7 +65,7 @@ void on_progress(j_common_ptr info) {
     stop(info, "more than 100 scans");
 }
 
-/// Reads the header; false with session.message set on error.
+/// Reads the header. False on an error, with the reason in session.message.
 bool start_reading(Session& session, std::span<const unsigned char> bytes) {
   session.info.err = jpeg_std_error(&session.errors);
   session.errors.error_exit = on_error;

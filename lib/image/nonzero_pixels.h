@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// A mask by pixel: 1 where any channel of the image is not 0 (formats/mask/mask.md).
+/// For each pixel, 1 if any channel of the image is not 0, else 0 (formats/mask/mask.md).
 std::vector<std::uint8_t> nonzero_pixels(const Image& image);
 
 }  // namespace tempolux

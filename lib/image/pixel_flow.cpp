@@ -17,11 +17,10 @@ const Channel& channel_of(const Image& image, const char* channel, bool ids, con
 }
 
 std::string place(const std::string& name, const char* channel, std::size_t pixel, int width) {
-  return name + ": channel " + channel + ": pixel (" + std::to_string(pixel % std::size_t(width)) + ", " +
-         std::to_string(pixel / std::size_t(width)) + "): ";
+  return name + ": channel " + channel + ": " + pixel_name(pixel, width) + ": ";
 }
 
-/// Reads and checks one component of a vector field.
+/// Reads and checks one component of the field's vectors.
 void take(const Image& image, const char* channel, float Vec2::*component, std::vector<Vec2>& field,
           const std::string& name) {
   const std::vector<float>& values = channel_of(image, channel, false, name).values;

@@ -16,8 +16,8 @@
 namespace tempolux {
 namespace {
 
-/// State for libpng's callbacks. libpng reports an error by calling a function that must not return: it jumps back to
-/// the frame that set the jump. No object with a destructor may live in the frames jumped over.
+/// State for libpng's callbacks. libpng reports an error by calling a function that must not return. The function jumps
+/// back to the frame that called setjmp, so no object with a destructor may live in the frames between.
 struct PngSession {
   std::jmp_buf back;
   char message[256] = "";
@@ -58,7 +58,8 @@ struct Raw {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Reads the header and sets transformations into `raw`; false with session.message set on error.
+/// Reads the header into `raw` and asks libpng for plain samples. False on an error, with the reason in
+/// session.message.
 bool start_reading(PngSession& session, png_structp png, png_infop info, Raw& raw) {
   if (setjmp(session.back)) return false;
   png_set_read_fn(png, &session, on_read);
@@ -105,8 +106,7 @@ Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std
   if (!start_reading(session, handle.png, handle.info, raw)) fail(one_line(session.message));
   const std::uint64_t pixels = std::uint64_t(raw.width) * raw.height;
   if (pixels > max_pixels) fail(std::to_string(pixels) + " pixels, over the limit of " + std::to_string(max_pixels));
-  // Deflate expands a byte to at most 1032 bytes; a palette index becomes at most 4 bytes, and a 1-bit index 8 times
-  // that.
+  // Deflate expands a byte to at most 1032 bytes. A byte of eight 1-bit palette indices becomes at most 32 bytes.
   const std::size_t row = std::size_t(raw.width) * std::size_t(raw.channels * raw.bits / 8);
   if (row * raw.height / (1032 * 32) > bytes.size()) fail("claims more pixels than its bytes can hold; it is damaged");
   raw.bytes.resize(row * raw.height);
@@ -116,7 +116,7 @@ Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std
   return raw;
 }
 
-/// Linear value of every code of the file.
+/// The linear value of every code of the file. `transfer` receives the name of the decoding, for people.
 std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
   const std::size_t codes = raw.bits == 16 ? 65536 : 256;
   const bool power = !raw.srgb && raw.gamma > 0 && std::abs(raw.gamma - 0.45455) > 0.005;
@@ -131,7 +131,7 @@ std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
   return table;
 }
 
-constexpr int kDeflateLevel = 3;  ///< takes a quarter of level 6's time for 4 % more bytes of rendered frames
+constexpr int kDeflateLevel = 3;  ///< a quarter of the time of level 6, for 4 % more bytes of rendered frames
 
 bool write_all(PngSession& session, png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(session.back)) return false;

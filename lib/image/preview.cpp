@@ -8,6 +8,7 @@
 #include "formats/error.h"
 #include "lib/core/random.h"
 #include "lib/core/vec.h"
+#include "lib/image/foreign_names.h"
 #include "lib/image/srgb.h"
 
 namespace tempolux {
@@ -15,18 +16,15 @@ namespace {
 
 constexpr double kAutoTarget = 0.9;  // linear value that the 98th percentile is mapped to
 constexpr double kAutoPercentile = 0.98;
-constexpr float kNothingDepth = 1e10f;  // depth that Blender writes where no surface is
 constexpr std::uint32_t kNothingId = 0xffffffffu;
 
 using Planes = std::vector<const std::vector<float>*>;
-
-std::string component(const std::string& layer, const char* name) { return layer.empty() ? name : layer + "." + name; }
 
 /// The planes LAYER.a, LAYER.b ...; empty unless all exist.
 Planes planes_of(const Image& image, const std::string& layer, std::initializer_list<const char*> names) {
   Planes planes;
   for (const char* name : names) {
-    const Channel* channel = image.find(component(layer, name));
+    const Channel* channel = image.find(channel_name(layer, name));
     if (!channel || channel->values.empty()) return {};
     planes.push_back(&channel->values);
   }
@@ -55,9 +53,9 @@ Content find_content(const Image& image, const std::string& layer) {
   throw InputError("no layer or channel \"" + (layer.empty() ? "RGB" : layer) + "\"; the image has " + known);
 }
 
-/// A layer counts as signed if values below 0 hold more than this share of the sum of all magnitudes. In differences
-/// of noise they hold half. In light they hold nothing, except through rounding and the lobes of a sharp pixel
-/// filter.
+/// A layer counts as signed if its negative values have more than this share of the sum of all magnitudes. In
+/// differences of noise they have half. Light has no negative values, except by rounding and in the lobes of a sharp
+/// pixel filter.
 constexpr double kSigned = 0.02;
 
 bool is_signed(const Planes& planes) {
@@ -76,7 +74,7 @@ float largest_component(const Planes& planes, std::size_t pixel) {
   return largest;
 }
 
-/// The value of rank ceil(fraction n); 0 without values. Reorders the values.
+/// The value of rank ceil(fraction n) among n values; 0 without values. Reorders the values.
 float percentile(std::vector<float>& values, double fraction) {
   if (values.empty()) return 0;
   const double rank = std::ceil(fraction * double(values.size()));
@@ -105,7 +103,7 @@ std::uint8_t to_byte(float unit) { return std::uint8_t(std::lround(255 * std::cl
 
 using Encoded = std::array<float, 3>;  // sRGB-encoded, not yet clipped to [0, 1]
 
-/// Calls shade(i) for every pixel; black where it is not finite.
+/// Makes a picture of the colours shade(i) of all pixels i; colours that are not finite become black.
 template <class Shade>
 Picture shade_pixels(const Image& image, Shade shade) {
   Picture picture{image.width, image.height, std::vector<std::uint8_t>(image.pixel_count() * 3)};

@@ -18,14 +18,14 @@ struct Picture {
 
 struct PreviewOptions {
   std::string layer;                     ///< "" is RGB; or "indirect", "Z", "N", "id.object", "P" ...
-  std::optional<double> exposure_stops;  ///< missing: auto, which maps the layer's 98th percentile of luminance to 0.9
+  std::optional<double> exposure_stops;  ///< missing: auto_exposure_stops()
 };
 
-/// The exposure in stops that "auto" chooses for a layer: log2(0.9 / L). L is the 98th percentile (nearest rank) over
-/// the pixels: of the absolute luminance, or of the largest |component| if the layer is signed or no colour. If L is
-/// 0, the largest value replaces it. Returns 0 for a layer that is 0 everywhere, and for Z, N, P and ids. Values that
-/// are not finite do not count. A sequence should use one value for all frames. Throws InputError listing layers and
-/// channels if the image has none of this name.
+/// The exposure in stops that "auto" chooses for a layer: log2(0.9 / L). L is the 98th percentile over the pixels
+/// (nearest rank) of the luminance, or of the largest |component| if the layer is signed or no colour. If L is 0, the
+/// largest value replaces it. Returns 0 for a layer that is 0 everywhere, and for Z, N, P and ids. Values that are not
+/// finite do not count. A sequence should use one value for all frames. Throws InputError that lists the channels if
+/// the image has no layer of this name.
 double auto_exposure_stops(const Image& image, const std::string& layer);
 
 /// Converts a layer to a picture by its kind:
@@ -44,10 +44,10 @@ double auto_exposure_stops(const Image& image, const std::string& layer);
 /// Values that are not finite are black. Throws as auto_exposure_stops.
 Picture make_picture(const Image& image, const PreviewOptions& options);
 
-/// Puts frames into a grid, `columns` wide (0: about square), with black gaps of 2 px. Each frame is shrunk to at most
-/// max_width px by a box filter over linear light, never enlarged, and put at the top left of its cell; cells are as
-/// large as the largest picture. Throws std::invalid_argument if there are no pictures, one is empty, columns < 0 or
-/// max_width < 1.
+/// Puts pictures into a grid, `columns` wide (0: about square), with black gaps of 2 px. A picture wider than max_width
+/// px is shrunk to that width by a box filter over linear light. Cells are as large as the largest picture; each
+/// picture lies at the top left of its cell. Throws std::invalid_argument if there are no pictures, one is empty,
+/// columns < 0 or max_width < 1.
 Picture contact_sheet(const std::vector<Picture>& pictures, int columns, int max_width);
 
 /// Draws an amber border along the picture's edge, a fortieth of the width wide and at least 2 px.

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// The samples of `from` that sample `to_index` of `to` covers, and the covered share of the first one.
+/// The texels along one side, of `from`, that texel `to_index` of `to` covers, and which share of each.
 struct Span {
   int first, last;  ///< inclusive
   float first_share, last_share;
@@ -36,7 +36,7 @@ void put(TexelLevel& to, int bits, std::size_t sample, std::uint32_t code) {
 void reduce_any(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
   const auto channels = std::size_t(kind.channels);
   const bool has_alpha = channels % 2 == 0;
-  // One row of the result before rounding; `shown` is the same with colours times alpha, for cutouts.
+  // Sums over the rows of `from` that a row of `to` covers; in `shown` colours are multiplied by alpha, for cutouts.
   std::vector<float> row(std::size_t(from.width) * channels), shown(kind.cutout ? row.size() : 0);
   for (int y = 0; y < to.height; ++y) {
     const Span tall(y, to.height, from.height);
@@ -75,7 +75,7 @@ void reduce_any(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
   }
 }
 
-/// Reduces to half the width and height, as for nearly all levels: the same sums in the same order, 20 times as fast.
+/// Reduces to half the width and height, as nearly all levels need: same result as reduce_any(), 20 times as fast.
 template <int kChannels, int kBits>
 void halve(const TexelLevel& from, const TexelKind& kind, TexelLevel& to) {
   constexpr bool kAlpha = kChannels % 2 == 0;

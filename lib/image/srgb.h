@@ -10,15 +10,15 @@ namespace tempolux {
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 
-/// sRGB code of a linear value, 0 to 255, not rounded; the value is clipped at 0 and 1.
+/// sRGB code of a linear value, from 0 to 255, not rounded; the value is clipped to [0, 1].
 double srgb_code(double value);
 
-/// Factor that brings the median of `means`, the mean channels of a picture's pixels, to .18. If more than half of them
-/// are 0, the median of the others is used. 1 for a black picture.
+/// Factor that brings the median of `means` to .18. `means` has the mean of R, G and B for each pixel of a picture. If
+/// their median is 0, zeros are dropped first. 1 for a black picture.
 double exposure_of(std::vector<double> means);
 
-/// Mean of `means`, of which each counts at most as much as white at their exposure_of(): a lamp in view is one white
-/// spot, however bright it is. 0 without elements.
+/// Mean of `means`, each clipped to the value that exposure_of() brings to 1: a lamp in view is a white spot, however
+/// bright it is. 0 without elements.
 double mean_to_white(const std::vector<double>& means);
 
 }  // namespace tempolux

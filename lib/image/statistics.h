@@ -31,11 +31,11 @@ struct ChannelDifference {
 /// differ.
 std::vector<ChannelDifference> channel_differences(const Image& a, const Image& b);
 
-/// One exposure for all frames of a sequence: the lower median of the frames' own exposures (auto_exposure_stops), so
-/// that a single flash does not darken the other frames. Throws std::invalid_argument without any.
+/// One exposure for all frames of a sequence: the lower median of the frames' exposures (auto_exposure_stops), so that
+/// a single flash does not darken the other frames. Throws std::invalid_argument if there are none.
 double sequence_exposure_stops(std::vector<double> stops);
 
-/// Flux as a display colour: flux / white, sRGB transfer, clipped to [0, 1], in 1/255. 0 if white is not > 0.
+/// Flux as a display colour: 255 times the sRGB transfer of flux / white, clipped. Black if white is not above 0.
 std::array<std::uint8_t, 3> point_color(const std::array<float, 3>& flux, double white);
 
 }  // namespace tempolux

@@ -13,27 +13,28 @@
 
 namespace tempolux {
 
+/// Limits of images; larger images are errors.
 struct TextureLimits {
-  int max_side = 16384;                   ///< px on a side: larger images are refused before they are decoded
-  std::uint64_t max_pixels = 1ull << 28;  ///< of one image: larger images are refused
-  std::uint64_t max_bytes = 4ull << 30;   ///< of all decoded pyramids together; more is an error
+  int max_side = 16384;                   ///< px on a side
+  std::uint64_t max_pixels = 1ull << 28;  ///< of one image
+  std::uint64_t max_bytes = 4ull << 30;   ///< of all decoded pyramids together
 };
 
-/// Thread-safe. Images that are not used are never decoded.
+/// The images of a scene. Images that are not used are never decoded. Thread-safe.
 class TextureImages {
  public:
   explicit TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits = {});
 
   std::size_t size() const { return images_.size(); }
   const EncodedImage& encoded(std::size_t image) const { return images_[image]; }
-  /// The image as a texture; the first call decodes it. Throws InputError naming the image if it is damaged or the
-  /// limit of bytes is reached; ResourceError without memory.
+  /// The image as a texture; the first call decodes the image. Throws InputError that names the image if it is damaged
+  /// or the limit of bytes is exceeded; ResourceError without memory.
   const TexturePyramid& pyramid(std::size_t image, TextureTransfer transfer) const {
     const Entry& entry = entries_[kTextureTransfers * image + std::size_t(transfer)];
     const TexturePyramid* ready = entry.ready.load(std::memory_order_acquire);
     return ready ? *ready : decode(image, transfer);
   }
-  /// Number of images decoded so far (an image read both as colour and as numbers counts twice), and their bytes.
+  /// Number of decoded images, and their bytes. An image that is read with two transfers counts twice.
   std::size_t decoded_count() const { return decoded_; }
   std::uint64_t decoded_bytes() const { return bytes_; }
 

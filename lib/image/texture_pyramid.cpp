@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// The texels left and right of a coordinate, and the weight of the right one.
+/// The two texels around a coordinate, and the weight of the second.
 struct Pair {
   int a, b;
   float share;
@@ -101,7 +101,7 @@ bool TexturePyramid::any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, Text
   constexpr int kWindow = 8;  // texels on a side that are tested
   const Vec2 size{upper.x - lower.x, upper.y - lower.y};
   if (!std::isfinite(lower.x + lower.y + upper.x + upper.y)) return true;
-  // Uses the finest level at which the window is small, and one more texel on each side, which a read may mix in.
+  // Tests the finest level at which the window is small, and one more texel on each side, which a read may mix in.
   std::size_t l = 0;
   while (l + 1 < levels_.size() &&
          (size.x * float(levels_[l].width) > float(kWindow) || size.y * float(levels_[l].height) > float(kWindow)))

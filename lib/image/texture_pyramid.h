@@ -12,18 +12,18 @@
 
 namespace tempolux {
 
-/// Meaning of an image's codes. srgb_cutout: sRGB colours whose alpha hides a part (alpha modes MASK and BLEND). Hidden
-/// texels do not count in the means of coarser levels; otherwise the colour between leaves would tint the leaves.
+/// Meaning of an image's codes. srgb_cutout: sRGB colours of a material whose alpha hides parts (alpha modes MASK and
+/// BLEND). Hidden texels do not count in the means of coarser levels, else the colour between leaves would tint the
+/// leaves.
 enum class TextureTransfer : std::uint8_t { linear, srgb, srgb_cutout };
 inline constexpr std::size_t kTextureTransfers = 3;
 
 /// Linear R, G, B and alpha, each in [0, 1].
 using Rgba = std::array<float, 4>;
 
-/// Level 0 is the image. Every further level is half as wide and high (rounded down, at least 1); each texel is the
-/// mean of the linear light over its area (for a cutout weighted by alpha, or the plain mean where all texels are
-/// hidden). Texels are stored as codes of the image's kind (sRGB or linear, 8 or 16 bits), rounded to nearest, but to 0
-/// only if all texels of the area are 0. Alpha is always linear. (0, 0) is the top left corner, (1, 1) the lower right.
+/// Level 0 is the image. Every further level is half as wide and high (rounded down, at least 1) and is made by
+/// reduce_texels(). Texels are stored as codes of the image's kind: sRGB or linear, 8 or 16 bits; alpha is linear. The
+/// coordinates (0, 0) are the top left corner, (1, 1) the lower right.
 class TexturePyramid {
  public:
   TexturePyramid(CodedPixels pixels, TextureTransfer transfer);
@@ -35,11 +35,11 @@ class TexturePyramid {
 
   /// One texel; x and y must lie inside.
   Rgba texel(int level, int x, int y) const;
-  /// Reads bilinearly in the two levels around `level` and interpolates linearly between them. `level` is log2 of the
-  /// image's texels per wanted texel; below 0 the image itself is read. Coordinates that are not finite read (0, 0).
+  /// Reads bilinearly in the two levels around `level` and interpolates linearly between them; 0 or less reads the
+  /// image, with `nearest` its closest texel. Coordinates that are not finite read (0, 0).
   Rgba read(Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v, bool nearest, float level) const;
-  /// False only if every texel that a bilinear read of the image between these coordinates can touch is black. May be
-  /// true because of a neighbouring texel. lower <= upper, before wrapping.
+  /// False only if all texels are black that a bilinear read of the image between these coordinates can reach. May be
+  /// true because of a neighbouring texel. lower <= upper; coordinates are not yet wrapped.
   bool any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, TextureWrap wrap_v) const;
 
  private:

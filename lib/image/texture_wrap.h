@@ -5,6 +5,7 @@
 
 namespace tempolux {
 
+/// Continuation of a texture: its copies, its mirror images and copies in turn, or its edge.
 enum class TextureWrap : std::uint8_t { repeat, mirrored, clamp };
 
 }  // namespace tempolux

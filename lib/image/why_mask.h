@@ -17,19 +17,19 @@ inline constexpr const char* kWhyChannel = "why";
 /// True if the image has the channel `why` as uint.
 bool is_why_mask(const Image& image);
 
-/// The causes by pixel, sums of formats::Why. Throws InputError, beginning with `name`, if the channel is missing or
-/// of another type.
+/// The causes of each pixel, a sum of formats::Why. Throws InputError "NAME: ..." if the channel is missing or of
+/// another type.
 const std::vector<std::uint32_t>& whys_in(const Image& image, const std::string& name);
 
-/// Number of pixels masked for a cause.
+/// Numbers of pixels for a cause.
 struct WhyCount {
-  std::string name;
-  std::uint64_t pixels = 0;  ///< that have it
-  std::uint64_t first = 0;   ///< pixels for which it is the first cause in the order of formats::kWhys
+  std::string name;          ///< of the cause
+  std::uint64_t pixels = 0;  ///< with this cause
+  std::uint64_t first = 0;   ///< with this cause and no earlier one in the order of formats::kWhys
 };
 
-/// One entry for each of formats::kWhys, then "unknown" if any pixel has unnamed bits. The sum of `first` is the number
-/// of masked pixels.
+/// Counts for each of formats::kWhys, then "unknown" if a pixel has unnamed bits. The sum of `first` is the number of
+/// masked pixels.
 std::vector<WhyCount> count_whys(const std::vector<std::uint32_t>& whys);
 
 /// Colours each pixel by its first cause; black where `why` is 0, brown for unnamed bits.

@@ -8,6 +8,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/image/image.h"
 #include "lib/image/images_by_module.h"
 
 namespace tempolux {
@@ -16,11 +17,6 @@ namespace {
 /// Largest radiance of a map, W/m^2/sr. Products of radiance, solid angle, area and 1 / probability then stay below the
 /// largest number of float32, 3.4e38.
 constexpr double kMostRadiance = 1e30;
-
-std::string pixel_place(std::size_t pixel, int width) {
-  const std::size_t w = std::size_t(width);
-  return "pixel (" + std::to_string(pixel % w) + ", " + std::to_string(pixel / w) + ")";
-}
 
 std::string content_hash(const Environment& environment) {
   static_assert(sizeof(Rgb) == 12);
@@ -42,14 +38,14 @@ class Scale {
     if (value < 0 && negative_++ == 0) first_negative_ = pixel;
     const double radiance = std::max(0.0, double(value) * strength_);
     if (!(radiance <= kMostRadiance))
-      throw InputError(environment_.path + ": " + pixel_place(pixel, environment_.width) +
+      throw InputError(environment_.path + ": " + pixel_name(pixel, environment_.width) +
                        ": its radiance is beyond 1e30; lower --environment-strength");
     return float(radiance);
   }
   void warn(std::vector<std::string>& warnings) const {
     if (negative_ > 0)
       warnings.push_back(environment_.path + ": " + std::to_string(negative_) + " negative values, the first at " +
-                         pixel_place(first_negative_, environment_.width) + ", are taken as 0");
+                         pixel_name(first_negative_, environment_.width) + ", are taken as 0");
   }
 
  private:

@@ -10,6 +10,7 @@
 
 #include "formats/error.h"
 #include "lib/core/child_process.h"
+#include "lib/core/module_folders.h"
 #include "lib/volume/vdb_pipe.h"
 
 namespace tempolux {
@@ -99,7 +100,7 @@ ChildResult ask(std::span<const VdbName> names, std::uint64_t bytes, std::uint64
       throw InputError("a name of a volume holds a line feed; rename it");
     request += name.path + '\n' + name.grid + '\n';
   }
-  const std::string program = helper_program("tempolux-vdb", names[0].path + ": reading OpenVDB");
+  const std::string program = installed_file("tempolux-vdb", names[0].path + ": reading OpenVDB");
   ChildLimits limits;
   limits.memory_bytes = max_memory ? max_memory : memory_that_fits(kMemory + kExpansion * largest);
   limits.output_bytes = max_memory ? max_memory : memory_that_fits(kMemory + kExpansion * bytes);

@@ -1,6 +1,7 @@
 // Child programs that die, hang, print too much or too little, or ask for too much memory: each gives one line, and no
 // process or descriptor remains.
 #include "lib/core/child_process.h"
+#include "lib/core/module_folders.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -190,7 +191,7 @@ TEST_F(ChildProcess, WorksWhereTheCallerIgnoresItsChildren) {
 TEST_F(ChildProcess, SaysWhatIsMissing) {
   EXPECT_THROW(run_child("/nowhere/helper", {}, {}, {}), ResourceError);
   try {
-    helper_program("tempolux-nothing", "scene.glb: reading Draco");
+    installed_file("tempolux-nothing", "scene.glb: reading Draco");
     FAIL();
   } catch (const InputError& e) {
     const std::string message = e.what();

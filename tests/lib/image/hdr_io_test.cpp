@@ -18,7 +18,7 @@ std::string tiny() { return header("-Y 1 +X 2") + std::string("\x80\x40\x20\x81\
 Image load(const std::string& bytes, std::uint64_t max_pixels = 1 << 20) {
   const Folder folder;
   put_bytes(folder / "a.img", bytes);
-  return load_image(folder / "a.img", {max_pixels, {}});
+  return load_image(folder / "a.img", max_pixels);
 }
 
 TEST(RadianceHdr, MantissaTimesPowerOfTwo) {
