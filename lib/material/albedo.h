@@ -11,21 +11,26 @@ struct AlbedoPair {
   float a = 0, b = 0;
 };
 
+/// Surfaces of a smaller roughness are delta mirrors or smooth glass. At this roughness GGX has alpha = 4e-4, so
+/// reflected directions spread by about 2 alpha = 8e-4 rad: a pixel of a picture of 1080 lines, whose height is 0.8
+/// rad.
+inline constexpr float kMirrorRoughness = 0.02f;
+
 namespace albedo_table {
 inline constexpr int kRows = 28, kColumns = 48;
-inline constexpr double kMinAlpha = 0.0004;
+inline constexpr double kMinAlpha = 0.0004;  ///< kMirrorRoughness^2
 }  // namespace albedo_table
 
-/// Albedo of the single-scattering lobe of ggx.h for one alpha. Bicubic interpolation in a table of 28 x 48 entries
-/// that the build computes (tables/make_tables.cpp). Rows are at equal steps of alpha^(1/4), columns at equal steps of sqrt(x), with
+/// Albedo of the single-scattering lobe of ggx.h for one alpha, by bicubic interpolation in a table that the build
+/// computes (tables/make_tables.cpp). Rows are at equal steps of alpha^(1/4), columns at equal steps of sqrt(x), with
 ///     x = cos (1 + alpha) / (cos + alpha).
 /// a + b is within 5e-5 of the integral and b within 8e-5, over the whole domain
 /// (tests/lib/material/albedo_table_test.cpp).
 class GgxAlbedo {
  public:
-  /// alpha of GGX, clamped to [0.0004, 1], the range of the table.
+  /// alpha of GGX, clamped to the table's range [kMinAlpha, 1].
   explicit GgxAlbedo(float alpha);
-  /// For alpha 1, without a search in the table: every hit on a matte material makes one.
+  /// For alpha 1, without a search in the table, since every hit on a matte material makes one.
   GgxAlbedo() = default;
 
   /// Albedo for light from a direction at this cosine to the normal, in (0, 1].

@@ -16,9 +16,9 @@ float smooth_step(float x) {
   x = std::clamp(x, 0.0f, 1.0f);
   return x * x * (3 - 2 * x);
 }
-/// Where GGX loses less than this on average, multiple reflection is left out. f_ms is then concentrated at grazing
-/// angles, and cosine-distributed samples of it would have weights of more than ten times their mean. From three
-/// times this loss on f_ms counts in full; between, it is faded in.
+/// If GGX loses less than this share of light on average, f_ms is dropped: it would be concentrated at grazing angles,
+/// and its cosine-distributed samples would have weights of more than ten times their mean. Between this loss and three
+/// times this loss f_ms is faded in.
 constexpr float kLeastLost = 0.01f;
 
 /// Schlick's Fresnel term, F0 + (F90 - F0) (1 - cos_h)^5 [1]. Schlick, "An Inexpensive BRDF Model for
@@ -48,8 +48,8 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
-    // If the index is close to 1, light is hardly refracted. A lobe narrower than float32 resolves is a smooth
-    // boundary.
+    // If the index is close to 1, light is hardly refracted, and the lobe may be narrower than float32 resolves. Such a
+    // boundary counts as smooth.
     const float alpha = material.roughness * material.roughness;
     if (material.roughness >= kMirrorRoughness && (material.thin_walled || alpha * (ior - 1) > 2e-5f)) {
       rough_.emplace(ior, alpha, material.thin_walled, front);
@@ -84,7 +84,7 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     }
     mean_albedo_ = f0_max_ * m.a + f90_ * m.b + max_component(multiple_) * lost * lost;
   }
-  // A lobe that reflects all light leaves none for the Lambert lobe.
+  // If f_S reflects all light, the Lambert lobe receives none.
   const float rest = 1 - mean_albedo_;
   if (rest > 1e-6f) coupling_scale_ = 1 / std::sqrt(rest);
   else diffuse_ = false;

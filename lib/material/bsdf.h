@@ -20,13 +20,14 @@ namespace tempolux {
 /// kMirrorRoughness a delta mirror with the same F. From glTF 2.0 and KHR_materials_specular, _ior:
 ///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
 ///     F90 = mix(specular, 1, metallic)
-/// Light that microfacets reflect more than once, which GGX alone loses (70 % for a rough white metal at normal
-/// incidence), is added as by Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", 2017:
+/// GGX alone loses the light that microfacets reflect more than once (70 % for a rough white metal at normal
+/// incidence). It is added as by Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", 2017:
 ///     f_ms(wi, wo) = F_ms (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean)),
 ///     F_ms = F_mean^2 E_mean / (1 - F_mean (1 - E_mean)),   F_mean = (20 F0 + F90) / 21,
 /// where E is the albedo of GGX for F = 1. f_ms is reciprocal, and for F = 1 all light is reflected. The directional
 /// albedo A(w) of f_S is F0 a + F90 b + F_ms (1 - E) with a + b = E; a and b come from a table. f_ms is faded in
-/// between the roughnesses 0.23 and 0.34 (mean loss of 1 and 3 %); below, grazing light loses up to 11 %.
+/// between the roughnesses 0.23 and 0.34, where GGX loses 1 and 3 % on average. At smaller roughness grazing light
+/// loses up to 11 %.
 ///
 /// f_D is the Lambert lobe rho / pi with rho = base_color (1 - metallic), under the reflection above it, coupled as by
 /// Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", EG 2001:
@@ -38,33 +39,31 @@ namespace tempolux {
 /// either direction. A matte material (F0 = F90 = 0) has no f_S, and c is exactly 1.
 ///
 /// Glass (KHR_materials_transmission) replaces the share transmission (1 - metallic) of all this by a boundary that
-/// reflects by the exact Fresnel equations and transmits the rest, tinted by base_color at each boundary. Light is
-/// refracted at a solid (index ior inside) and goes straight through a thin wall. The boundary is smooth below
-/// kMirrorRoughness, else rough_glass.h describes it. Radiance is not scaled by the squared index inside a solid: paths
-/// carry L / n^2, so that a Lambert lobe inside a solid returns the same radiance as one outside. sample() also serves
-/// photons, which carry watts, without a change; the density of photons inside a solid is n^2 times too high for this
-/// scale (photon_trace.h).
+/// reflects by the exact Fresnel equations and transmits the remaining light, tinted by base_color at each boundary.
+/// Light is refracted at a solid (index ior inside) and goes straight through a thin wall. The boundary is smooth below
+/// kMirrorRoughness, else rough_glass.h describes it. Paths carry L / n^2 in place of radiance L inside a solid of
+/// index n, so a Lambert lobe inside a solid returns the same value as one outside. sample() also serves photons, which
+/// carry watts; photon_trace.h divides their density inside a solid by n^2.
 class Bsdf {
  public:
   /// material: values at the hit (scene.h lists their ranges). front: true if wo is on the triangle's front side,
   /// which is outside a solid of glass. An unlit material scatters nothing.
   explicit Bsdf(const MaterialValues& material, bool front = true);
 
-  /// True if the material has a Lambert lobe, including a black one: the light that arrives at a black lobe can be
-  /// measured.
+  /// True if the material has a Lambert lobe, which may be black: points store the light that arrives at a black lobe,
+  /// too.
   bool has_lambert() const { return lambert_; }
-  bool has_diffuse() const { return diffuse_; }  ///< true if the Lambert lobe reflects any light
-  bool has_specular() const { return specular_ || transmission_ > 0; }
-  bool specular_is_delta() const {
-    return !rough_ && (delta_ || !specular_);
-  }  ///< true if all S lobes are mirrors or smooth glass, or there is none
-  /// The share of light samples to be taken on the side z < 0, from where eval_specular transmits light. Inside a solid
-  /// of rough glass it is 1, because the lights are outside. Outside a solid it is 0: a straight line into the solid
-  /// meets the solid's other side before it reaches a light. For a thin wall it is 1/2.
+  bool has_diffuse() const { return diffuse_; }                         ///< true if the Lambert lobe reflects any light
+  bool has_specular() const { return specular_ || transmission_ > 0; }  ///< true if there is an S lobe
+  /// True if all S lobes are mirrors or smooth glass, or there is none.
+  bool specular_is_delta() const { return !rough_ && (delta_ || !specular_); }
+  /// The share of light samples that a caller should draw on the side z < 0, from where eval_specular() transmits
+  /// light. Inside a solid of rough glass the share is 1, because lights are outside. Outside a solid it is 0, because
+  /// a straight line into the solid meets the solid's other side before it reaches a light. For a thin wall it is 1/2.
   float light_share_behind() const { return light_share_behind_; }
   /// Reflectance rho of the Lambert lobe, without coupling. [1]
   Rgb diffuse_albedo() const { return rho_; }
-  /// Share of light that goes straight through a smooth thin wall (a pane) [1]: transmission (1 - F(cos_o)) base_color.
+  /// Share of light [1] that goes straight through a smooth thin wall (a pane): transmission (1 - F(cos_o)) base_color.
   /// sample() draws this passage, too. Black for other materials, and for cos_o <= 0.
   Rgb passed_straight(float cos_o) const;
   /// c(w) of the head of this class [1]; 1 for a matte material; cos_theta > 0.
@@ -78,8 +77,8 @@ class Bsdf {
   /// this weight diffuse_reflectance(cos_o) E / pi is exactly the radiance that f_D reflects.
   float arrival_weight(float cos_i) const;
 
-  /// A direction with the shares of uniform light that are reflected towards it. Callers that use a direction several
-  /// times look them up once.
+  /// A direction with the shares of uniform light that are reflected towards it. Looking up the shares is slow, so a
+  /// caller that uses a direction several times calls along() once.
   struct Direction {
     Vec3 w{};
     struct Reflection {
@@ -87,28 +86,28 @@ class Bsdf {
       float lost = 0;                    ///< 1 - E: the share that GGX alone would lose at F = 1
     } reflected;                         ///< 0 below the surface
   };
+  /// The Direction of w (unit, local frame).
   Direction along(Vec3 w) const { return {w, w.z > 0 ? reflection(w.z) : Reflection{}}; }
 
-  /// f_D and f_S [1/sr], without the cosine. wi and wo are in the local frame. Mirrors and smooth glass evaluate to
-  /// 0.
+  /// f_D and f_S [1/sr], without the cosine; 0 for mirrors and smooth glass.
   Rgb eval_diffuse(const Direction& wi, const Direction& wo) const;
   Rgb eval_specular(const Direction& wi, const Direction& wo) const;
   Rgb eval_diffuse(Vec3 wi, Vec3 wo) const { return eval_diffuse(along(wi), along(wo)); }
   Rgb eval_specular(Vec3 wi, Vec3 wo) const { return eval_specular(along(wi), along(wo)); }
 
   struct Sample {
-    Vec3 wi{};                  ///< unit, away from the surface
-    Rgb weight{0.0f};           ///< f cos / pdf of the drawn lobe alone, divided by the probability of the event [1]
-    float pdf_solid_angle = 0;  ///< pdf of wi over all non-delta lobes [1/sr]; for a mirror or smooth glass the
-                                ///< probability of its choice [1]
-    bool diffuse = false;       ///< event D, else S
-    bool delta = false;
+    Vec3 wi{};         ///< unit, away from the surface
+    Rgb weight{0.0f};  ///< f cos / pdf of the drawn event alone, divided by the event's probability [1]
+    float pdf_solid_angle =
+        0;                     ///< pdf of wi over all non-delta lobes [1/sr]; if delta, the probability of the lobe [1]
+    bool diffuse = false;      ///< event D, else S
+    bool delta = false;        ///< mirror or smooth glass
     bool transmitted = false;  ///< wi is on the other side, z < 0
-    bool straight = false;     ///< passes a pane, wi = -wo: light goes on as by alpha, and no event has happened
+    bool straight = false;     ///< light passes a pane, wi = -wo, which is no event
   };
   /// Draws wi for wo: u_lobe chooses the lobe, u the direction; all numbers are in [0, 1). The weight is that of the
-  /// chosen event alone, f_D cos / (P(D) pdf_D) or f_S cos / (P(S) pdf_S), so that light paths can be sorted by
-  /// events. The weight is zero if wo is below the surface or nothing is reflected.
+  /// chosen event alone, f_D cos / (P(D) pdf_D) or f_S cos / (P(S) pdf_S), so that callers can sort light by events.
+  /// The weight is zero if wo is below the surface or nothing is reflected.
   Sample sample(const Direction& wo, float u_lobe, Vec2 u) const;
   Sample sample(Vec3 wo, float u_lobe, Vec2 u) const { return sample(along(wo), u_lobe, u); }
   /// True if the material is a reflecting Lambert lobe and nothing else: sample() is then sample_matte(wo,
@@ -156,7 +155,7 @@ class Bsdf {
   void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
 
   Rgb rho_{0.0f}, f0_{0.0f};
-  Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean), faded in as described above
+  Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean), faded in (head of this class)
   float f0_max_ = 0, f90_ = 0;
   float alpha_ = 1, alpha2_ = 1;
   GgxAlbedo albedo_;
@@ -164,15 +163,13 @@ class Bsdf {
   float mean_albedo_ = 0;     ///< A_mean of the channel with the largest F0
   float coupling_scale_ = 1;  ///< 1 / sqrt(1 - A_mean)
   Rgb transmission_tint_{0.0f};
-  float transmission_ = 0;   ///< share of glass, which is event S; the remainder scatters as described above
-  float eta_ = 1;            ///< index on wo's side / index on the other side; 1 for transmission through a thin wall
-  float eta_reflected_ = 1;  ///< the same for the Fresnel term
+  float transmission_ = 0;   ///< share of glass, whose scattering is event S; f_D and f_S have the remaining share
+  float eta_ = 1;            ///< for refraction: index on wo's side / index on the other side; 1 for a thin wall
+  float eta_reflected_ = 1;  ///< for the Fresnel term: the same quotient, also for a thin wall
   float light_share_behind_ = 0;
   bool pane_ = false;                ///< the wall is thin and smooth
   std::optional<RoughGlass> rough_;  ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
-
-inline constexpr float kMirrorRoughness = 0.02f;  ///< smoother surfaces are delta mirrors
 
 }  // namespace tempolux

@@ -5,8 +5,8 @@
 
 namespace tempolux {
 
-/// Finds the four entries of a table of `count` entries around a position in [0, 1], where 0 is the first entry and 1
-/// the last. Returns the index of the first of the four and sets their Lagrange weights.
+/// The four entries around a position in [0, 1] of a table of `count` >= 4 entries, where 0 is the first entry and 1
+/// the last. Returns the index of the first of the four and sets their Lagrange weights, which sum to 1.
 inline int cubic_weights(float position, int count, float weight[4]) {
   const float at = position * float(count - 1);
   const int first = std::clamp(int(at) - 1, 0, count - 4);

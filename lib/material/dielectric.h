@@ -7,9 +7,9 @@
 
 namespace tempolux {
 
-/// Reflectance [1] of a smooth boundary for unpolarised light, by Fresnel's equations. cos_o in (0, 1]: cosine of the
-/// angle on wo's side. eta = (index on that side) / (index on the other side). Returns 1 from the critical angle on.
-/// cos_t receives the cosine on the other side, 0 if there is total reflection.
+/// Reflectance [1] of a smooth boundary for unpolarised light, by Fresnel's equations; 1 if all light is reflected.
+/// cos_o in (0, 1] is the cosine on wo's side; eta = (index on wo's side) / (index on the other side). cos_t receives
+/// the cosine on the other side, 0 if all light is reflected.
 inline float fresnel_dielectric(float cos_o, float eta, float& cos_t) {
   const float sin2_t = eta * eta * std::max(0.0f, 1 - cos_o * cos_o);
   if (sin2_t >= 1) {

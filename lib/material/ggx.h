@@ -22,13 +22,12 @@ inline float smith_root(float cos_theta, float alpha2) {
 /// Density D(h) of microfacet normals [1/sr] at the unit half vector h. The function uses h.x and h.y, which keep
 /// their digits when h is close to z.
 inline float distribution(Vec3 h, float alpha2) {
-  const float slope =
-      std::max(1.0f, (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z);  // at least 1, also for h = 0 (wi = -wo)
+  // h = 0 if wi = -wo; for other h the sum is at least 1, up to rounding
+  const float slope = std::max(1.0f, (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z);
   return kInvPi / (alpha2 * slope * slope);
 }
 
-/// G2 / (4 cos_i cos_o) [1]: the lobe is f = F D times this. At most 5e19, which only directions within 1e-20 of
-/// grazing reach.
+/// G2 / (4 cos_i cos_o) [1]; the lobe is f = F D visibility. At most 5e19, for cosines below 1e-20.
 inline float visibility(float cos_i, float cos_o, float alpha2) {
   return 0.5f / std::max(1e-20f, cos_o * smith_root(cos_i, alpha2) + cos_i * smith_root(cos_o, alpha2));
 }

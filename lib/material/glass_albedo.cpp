@@ -7,7 +7,7 @@
 
 namespace tempolux {
 
-GlassLoss::GlassLoss(float index, float alpha) : alpha_(std::clamp(alpha, 4e-4f, 1.0f)) {
+GlassLoss::GlassLoss(float index, float alpha) : alpha_(std::clamp(alpha, float(albedo_table::kMinAlpha), 1.0f)) {
   index = std::clamp(index, 1.0f, 1e4f);
   critical_ = std::sqrt(1 - 1 / (index * index));
   first_[0] = cubic_weights(std::sqrt(std::clamp(1 - 1 / index, 0.0f, 1.0f)), glass_table::kPlanes, weight_[0]);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/material/albedo.h"
+
 namespace tempolux {
 
 /// The lost share 1 - E [1] of the lobe of rough_glass.h, for one alpha and one index. E is the share of uniform light
@@ -12,18 +14,17 @@ namespace tempolux {
 /// cubically in a table (tables/make_tables.cpp), within 3e-3 of the integrals
 /// (tests/lib/material/glass_albedo_test.cpp).
 ///
-/// The table has a plane for each index, at equal steps of sqrt(1 - 1/index); a row for each alpha, at equal steps of
-/// sqrt(alpha); and a column for each cosine. Outside, columns are at equal steps of sqrt(x), where x = cos (1 + alpha)
-/// / (cos + alpha). Inside, the loss bends at the critical angle: this angle is the middle of the columns, and columns
-/// are denser close to it.
+/// Planes of the table are at equal steps of sqrt(1 - 1/index), rows at equal steps of sqrt(alpha). Outside, columns
+/// are at equal steps of sqrt(x), where x = cos (1 + alpha) / (cos + alpha). Inside, the loss has a kink at the
+/// critical angle, so that angle is the middle column, and columns are denser close to it.
 class GlassLoss {
  public:
   /// index >= 1 and alpha of GGX are clamped to the table's range. Side 0 is outside of the glass, side 1 inside.
   GlassLoss(float index, float alpha);
   /// 1 - E for light towards cos_theta in (0, 1]; at least 0.
   float at(int side, float cos_theta) const;
-  /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu; at least 5e-5. Light that is sent
-  /// out again weighs at(mu) / mean. Below the limit grazing light would weigh more than 50, for 5e-5 of the light.
+  /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu; at least 5e-5. RoughGlass sends the lost
+  /// light out again with the weight at(mu) / mean. With a smaller mean, grazing light would weigh more than 50.
   float mean(int side) const;
 
  private:
@@ -42,7 +43,7 @@ extern const float kMean[2][kPlanes][kRows];
 
 /// index, alpha and cosine of a position in the table: 0 is the first plane, row or column, 1 the last.
 inline double index_of_plane(double position) { return position < 1 ? 1 / (1 - position * position) : 1e4; }
-inline double alpha_of_row(double position) { return position * position > 4e-4 ? position * position : 4e-4; }
+inline double alpha_of_row(double position) { return std::max(position * position, albedo_table::kMinAlpha); }
 inline double cos_of_column(int side, double index, double position, double alpha) {
   const auto cos_of = [&](double root) { return alpha * root * root / (1 + alpha - root * root); };
   double cos = 0;

@@ -22,18 +22,17 @@ inline Rgb transmittance(const MaterialValues& m, float distance) {
           std::pow(m.attenuation_color.b, lengths)};
 }
 
-/// The solids that a path is inside, from the sides of the boundaries that it crosses: a crossed front enters the
-/// solid, a crossed back leaves it. Solids are identified by their materials; crossing a back of another material
-/// leaves the innermost solid. Only the innermost solid absorbs. Up to kDeepest solids may be nested; if there are
-/// more, the outermost is forgotten.
-/// A path may start inside a solid. If it meets a back without having entered a solid, the distance since its last hit
-/// counts as inside that solid. A path that leaves the scene without a further hit counts as outside of all solids, so
-/// an open solid does not absorb light that escapes.
+/// The solids that a path is inside. A path enters a solid by crossing a front, and leaves it by crossing a back.
+/// Solids are identified by their materials; crossing a back of another material leaves the innermost solid. Only the
+/// innermost solid absorbs. If more than kDeepest solids are nested, the outermost is forgotten. A path may start
+/// inside a solid. If it meets a back without having entered a solid, the distance since its last hit counts as inside
+/// the back's solid. A path that leaves the scene counts as outside of all solids, so an open solid does not absorb
+/// light that escapes.
 class Inside {
  public:
-  bool any() const { return count_ > 0; }
+  bool any() const { return count_ > 0; }  ///< true if the path is inside a solid
   /// Transmittance [1] of the last `distance` m before a surface of material `met`. front: the path arrives at the
-  /// front.
+  /// surface's front.
   Rgb transmittance_to(std::span<const Material> materials, std::uint32_t met, bool front, float distance) const {
     if (count_ > 0) return transmittance(materials[within_[count_ - 1]], distance);
     return !front && is_solid_glass(materials[met]) ? transmittance(materials[met], distance) : Rgb(1.0f);
@@ -42,15 +41,15 @@ class Inside {
   Rgb transmittance_over(std::span<const Material> materials, float distance) const {
     return count_ > 0 ? transmittance(materials[within_[count_ - 1]], distance) : Rgb(1.0f);
   }
-  /// Product of n^2 over the solids. Paths carry radiance as L / n^2, and photons carry watts, so irradiance from
-  /// photons must be divided by this factor.
+  /// Product of n^2 over the solids that the path is inside. Camera paths carry L / n^2 and photons carry watts, so
+  /// irradiance from photons must be divided by this factor.
   float index_squared(std::span<const Material> materials) const {
     float product = 1;
     for (int i = 0; i < count_; ++i) product *= materials[within_[i]].ior * materials[within_[i]].ior;
     return product > 0 ? product : 1;
   }
-  /// n^2 of the solid `met` if the path shows only now that it started inside, else 1. A camera outside sees the
-  /// radiance of a lamp inside undivided, which is n^2 times the radiance that leaves the solid: a photon of the lamp
+  /// n^2 of the solid `met` if the path started inside `met` and reaches its boundary for the first time, else 1.
+  /// Camera paths do not divide the radiance of a lamp inside a solid by n^2. To match them, a photon of the lamp
   /// carries n^2 times the watts from here on. front: the side that the path came from.
   float index_squared_of_start(std::span<const Material> materials, std::uint32_t met, bool front) const {
     const float ior = materials[met].ior;

@@ -31,7 +31,7 @@ RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
     const float b = std::min(through, through > 0 ? 1 / std::max(1.0f, ratio) : 0.0f);
     share_behind_ = side_ == 0 ? b : b * ratio;
   }
-  // Towards grazing angles 1 - E falls about as 1 / (cos^2 + alpha^2), so f_ms is sampled by this density.
+  // 1 - E is about in proportion to 1 / (cos^2 + alpha^2), so directions of f_ms are drawn in proportion to this.
   spread2_ = std::max(alpha2_, 1e-6f);
   log_spread_ = std::log1p(1 / spread2_);
 }
@@ -49,8 +49,8 @@ float RoughGlass::mean_loss(bool behind) const {
   return std::max(1e-7f, 1 - (e.a + e.b));
 }
 
-/// pdf [1/sr] of a direction on one side: cos = sqrt(spread^2 ((1 + 1/spread^2)^u - 1)) for u in [0, 1), with uniform
-/// azimuth.
+/// pdf [1/sr] of a direction on one side that sample() draws for f_ms: cos_i = sqrt(spread^2 ((1 + 1/spread^2)^u - 1))
+/// for u in [0, 1), with uniform azimuth.
 float RoughGlass::multiple_pdf(float cos_i) const {
   return cos_i * kInvPi / ((cos_i * cos_i + spread2_) * log_spread_);
 }

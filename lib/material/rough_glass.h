@@ -14,33 +14,33 @@ namespace tempolux {
 /// Smith's height-correlated masking G = 1 / (1 + L(wi) + L(wo)) on both sides and the exact Fresnel term F:
 ///     f_r = F D(h) G / (4 cos_i cos_o),                                    h = normalize(wi + wo)
 ///     f_t = (1 - F) D(h) G |wi h| |wo h| / (cos_i cos_o (wi h + eta wo h)^2),  h = +-normalize(wi + eta wo)
-/// eta = (index on wo's side) / (index on the other side). f_t applies to radiance that is not scaled by the squared
-/// index inside (bsdf.h): it is Walter's f_t times (index of wi / index of wo)^2. Then n_o^2 f_t(wi, wo) = n_i^2
-/// f_t(wo, wi), and a photon, which carries watts, is scattered by the same f with its own direction as wo, without a
-/// further factor. Thin wall, as in KHR_materials_transmission: f_t = (1 - F) x the reflected lobe without F, mirrored
-/// at the surface, so that light goes straighter through a smoother wall.
+/// eta = (index on wo's side) / (index on the other side). f_t is Walter's f_t times (index of wi / index of wo)^2,
+/// since paths carry L / n^2 inside a solid (bsdf.h). Then n_o^2 f_t(wi, wo) = n_i^2 f_t(wo, wi), and the same f
+/// scatters a photon, which carries watts, with the photon's own direction as wo. Thin wall, as in
+/// KHR_materials_transmission: f_t = (1 - F) x the reflected lobe without F, mirrored at the surface, so that light
+/// goes straighter through a smoother wall.
 ///
-/// Light that meets several microfacets, 1 - E, is distributed over both sides as by Kulla & Conty (2017):
+/// The share 1 - E of light, which meets several microfacets, is distributed over both sides as by Kulla & Conty
+/// (2017):
 ///     f_ms(wi, wo) = share (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean(side of wi))).
-/// The share of the other side is b if seen from outside and d if seen from inside. Reciprocity requires
+/// The share of the transmitted side is b for wo outside and d for wo inside. Reciprocity requires
 ///     b / d = n^2 (1 - E_mean,in) / (1 - E_mean,out).
-/// b = 1 - F_mean as long as d is below 1. The rest is reflected. No light is lost.
+/// b is 1 - F_mean, or smaller if d would exceed 1. The reflected side has the remaining share. No light is lost.
 class RoughGlass {
  public:
-  /// index >= 1: of the solid. alpha in (0, 1]: of GGX. outside: true if wo is outside the solid; without effect for
-  /// a thin wall.
+  /// `index` >= 1 is that of the solid, alpha in (0, 1] that of GGX. outside: wo is outside the solid; no effect for a
+  /// thin wall.
   RoughGlass(float index, float alpha, bool thin, bool outside);
 
   float eval(Vec3 wi, Vec3 wo) const;  ///< f [1/sr], without a tint
   float pdf(Vec3 wi, Vec3 wo) const;   ///< pdf with which sample() draws wi [1/sr]
   /// Draws a direction wi above or below the surface; all numbers are in [0, 1). The weight of the sample is eval
-  /// |cos_i| / pdf. A result with wi.z = 0 is a lost sample: a microfacet has sent light to the wrong side of the
-  /// surface.
+  /// |cos_i| / pdf. If wi.z = 0 the weight is 0: a microfacet has sent light to the wrong side of the surface.
   Vec3 sample(Vec3 wo, float u_lobe, Vec2 u) const;
 
  private:
-  struct Pair {  ///< for a pair of directions: f of single scattering [1/sr], and the pdf with which sample() draws it
-                 ///< [1/sr]
+  /// For two directions, f of single scattering [1/sr], and the pdf of wi by visible normals [1/sr].
+  struct Pair {
     float f = 0, pdf = 0;
   };
   Pair single(Vec3 wi, Vec3 wo) const;

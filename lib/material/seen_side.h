@@ -9,8 +9,8 @@ namespace tempolux {
 /// A shading normal faces a direction if their cosine is above this.
 inline constexpr float kLooksAway = 1e-4f;
 
-/// Normals on the side of wo (unit, away from the surface), and wo in the local frame of the Bsdf. If the shading
-/// normal faces away from wo, the geometric normal replaces it.
+/// The normals of a point, turned to the side of wo (unit, away from the surface), and wo in the local frame of the
+/// Bsdf. If the shading normal does not face wo, the geometric normal replaces it.
 struct SeenSide {
   Vec3 normal_geometric, normal;
   Frame frame;  ///< z = normal
@@ -22,12 +22,12 @@ struct SeenSide {
         frame(normal),
         wo_local(frame.to_local(wo)) {}
 
-  /// A normal of the surface, turned to the side of wo.
+  /// A normal n of the surface, turned to the side of wo.
   Vec3 facing(Vec3 n) const { return dot(n, normal_geometric) < 0 ? -n : n; }
 
-  /// True if wi is on the lit side of both normals. Light from other directions does not count.
+  /// True if wi is on wo's side of the surface, by both normals. Only light from there can be reflected.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
-  /// True if wi is on the other side of both normals, from where light is transmitted.
+  /// True if wi is on the other side, by both normals. Only light from there can be transmitted.
   bool sees_behind(Vec3 wi) const { return dot(wi, normal_geometric) < 0 && dot(wi, normal) < 0; }
 
  private:

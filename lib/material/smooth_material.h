@@ -7,8 +7,8 @@
 
 namespace tempolux {
 
-/// Index of the first material of the frame's surfaces whose S lobes are all mirrors or smooth glass; kNone if there
-/// is none. Only the factors of a material count: textures that make parts of it smooth are ignored.
+/// Index of the first material in use whose S lobes are all mirrors or smooth glass; kNone if there is none. Textures
+/// are ignored, so a material that they make smooth in parts may be missed.
 std::uint32_t first_smooth_material(const SceneFrame& frame);
 
 }  // namespace tempolux

@@ -10,22 +10,21 @@ namespace tempolux {
 
 /// The width of a ray, which decides the level of textures. The width grows by `spread` metres per metre.
 ///
-/// A camera ray starts with the angle of a pixel and keeps it through events S; the spreading by curved mirrors and
-/// gloss is ignored. After an event D, and for rays from lights, the width is 0 and the finest level is read. Coarser
-/// levels would be wrong there for three reasons. They keep the mean of an image, but light does not depend linearly
-/// on roughness, normal or metalness. They include parts of an image that the surface does not use. And a cone
-/// depends on the end at which a path starts, so photons and camera paths would meet different surfaces.
+/// A camera ray starts with the angle of a pixel and keeps this angle through events S; curved mirrors and gloss do not
+/// widen it. After an event D, and for rays from lights, the width is 0 and the finest level is read. Coarser levels
+/// would be wrong there for three reasons. They keep the mean of an image, but light does not depend linearly on
+/// roughness, normal or metalness. They include parts of an image that the surface does not use. And a cone depends on
+/// the end at which a path starts, so photons and camera paths would meet different surfaces.
 struct RayCone {
-  float width = 0, spread = 0;  ///< m; m/m
-  void advance(float distance) { width += spread * distance; }
+  float width = 0, spread = 0;                                  ///< m; m/m
+  void advance(float distance) { width += spread * distance; }  ///< m
 };
 
-/// The material at a hit: its factors times its textures there. If it has no textures, the factors are used without a
-/// copy.
+/// The material at a hit: its factors times its textures there. Without textures, the factors are used without a copy.
 class SurfaceMaterial {
  public:
-  /// point: a hit of `frame`; if the material has a normal map, point.normal is replaced by the map's normal. width
-  /// [m]: that of a RayCone; 0 reads the finest level.
+  /// `point` is a hit of `frame`; if the material has a normal map, point.normal becomes the map's normal. `width` [m]
+  /// is that of a RayCone; 0 reads the finest level.
   SurfaceMaterial(const SceneFrame& frame, SurfacePoint& point, float width = 0)
       : values_(&frame.materials[point.material]) {
     if (frame.materials[point.material].textures) [[unlikely]]
@@ -44,10 +43,10 @@ class SurfaceMaterial {
   std::optional<MaterialValues> textured_;
 };
 
-/// True if the material can have a Lambert lobe somewhere on a surface (Bsdf::has_lambert), for any texture values.
+/// True if the material has a Lambert lobe (Bsdf::has_lambert) at some values of its textures.
 bool may_have_lambert(const Material& material);
 
-/// Lobes that reflect or transmit any light, for any texture values.
+/// Which lobes reflect or transmit light at some values of the textures.
 struct Lobes {
   bool lambert = false, specular = false;
   Lobes& operator|=(const Lobes& other) { return lambert |= other.lambert, specular |= other.specular, *this; }

@@ -20,20 +20,9 @@ struct Slabs {
     below = ray.origin - Vec3{far, far, far};
     above = ray.origin + Vec3{far, far, far};
   }
-  /// False only if the ray misses the box clearly. 0 x infinity (a ray in a face's plane) is NaN, which std::min and
-  /// std::max ignore as second argument.
-  bool meet(const Box3& box) const {
-    if (box.empty()) return false;
-    float first = 0, last = leave;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float a = (box.lower[axis] - above[axis]) * inverse[axis],
-                  b = (box.upper[axis] - below[axis]) * inverse[axis];
-      first = std::max(first, inverse[axis] < 0 ? b : a);
-      last = std::min(last, inverse[axis] < 0 ? a : b);
-    }
-    return first <= last;
-  }
-  /// The same for the boxes of a surface.
+  /// False only if the ray surely misses the box.
+  bool meet(const Box3& box) const { return !box.empty() && meets_slabs(box, below, above, inverse, 0, leave); }
+  /// False only if the ray surely misses the boxes of a surface.
   bool meet(const MovingBoxes& boxes, std::size_t surface) const {
     if (!meet(boxes.surfaces[surface])) return false;
     const std::span<const Box3> pieces = boxes.pieces_of(surface);
@@ -41,8 +30,9 @@ struct Slabs {
   }
 };
 
-/// True if a segment from `from` to a place in `target` can meet `box`. For each axis it finds where along the segment
-/// the segment can be inside the box's slab: at t its coordinate is between from + t low and from + t high.
+/// True if a segment from `from` to a place in `target` can meet `box`. At the share t of its length, the segment's
+/// coordinate lies between from + t (target.lower - from) and from + t (target.upper - from). The function finds the t
+/// at which this interval meets the box, for all axes.
 bool shaft_meets(Vec3 from, const Box3& target, const Box3& box) {
   if (box.empty()) return false;
   float first = 0, last = 1;

@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// Smallest barycentric coordinate: points stay 4e-6 of the triangle's height away from its edges. At an edge rounding
-/// could put a point behind the neighbouring wall, and the next ray would leave a closed room.
+/// Smallest barycentric coordinate of a point, which keeps 4e-6 of the triangle's height from the edges. Rounding could
+/// put a point at an edge behind the neighbouring wall, and the next ray would leave a closed room.
 constexpr float kSmallestBarycentric = 0x1p-18f;
 
 }  // namespace
@@ -25,7 +25,7 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   v *= scale;
   w *= scale;
 
-  // Kept in registers until stored once: copying a vector that was just stored stalls.
+  // Both normals stay in registers until `point` is filled: copying a vector that was just stored stalls.
   Vec3 normal_geometric = normalize(cross(b - a, c - a));
   if (surface.flipped) normal_geometric = -normal_geometric;
   Vec3 normal = normal_geometric;
@@ -66,7 +66,7 @@ Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset
   const Vec3 origin = spawn_ray(point, target - point.position).origin;
   const Vec3 direction = target - origin;
   const float distance = length(direction);
-  // The ray ends before the light by the light's own offset, but at least a few ulp of the distance.
+  // The ray ends four offsets of the target before the target, but at least a few ulp of the distance.
   const float stop = distance > 0 ? 1 - std::min(0.5f, 4 * target_offset / distance + 0x1p-20f) : 0;
   return {origin, direction, 0, stop};
 }

@@ -1,8 +1,6 @@
-// lib/trace/trees.h -- the data of a Tracer: Embree's trees, and surfaces laid out for look-ups. Shared by
-// build_trees.cpp, trace.cpp (rays) and surface_points.cpp (hits).
+// lib/trace/trees.h -- the data of a Tracer: Embree's trees, and surfaces laid out for look-ups. Shared by trace.cpp
+// (trees and rays) and surface_points.cpp (hits).
 #pragma once
-
-#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <array>
@@ -15,39 +13,28 @@
 #include "lib/scene/at_frame.h"
 #include "lib/trace/trace.h"
 
+// Embree's handles; trace.cpp alone includes Embree.
+typedef struct RTCDeviceTy* RTCDevice;
+typedef struct RTCSceneTy* RTCScene;
+typedef struct RTCGeometryTy* RTCGeometry;
+
 namespace tempolux {
 
-/// Distance between a ray's start and its surface, divided by the largest coordinate of the triangle: 16 ulp of
-/// float32, four times the rounding of a point from barycentric coordinates and of Embree's arithmetic.
+/// Distance between a ray's start and its surface, as a share of the triangle's largest coordinate: 16 ulp of float32,
+/// which is four times the rounding of a point from barycentric coordinates and in Embree's arithmetic.
 inline constexpr float kOffsetScale = 0x1p-20f;
 
+/// A search tree over surfaces of the frame, in scene space.
 struct Tree {
   RTCScene scene = nullptr;
   std::uint32_t first_surface = 0;
-  Box3 bounds;  ///< slightly larger than its content
+  Box3 bounds;  ///< larger than its content by 2^-18 of the largest coordinate
 
   bool exists() const { return scene != nullptr; }
-
-  /// The surface of a hit: the geometry in this tree, or the instance in whose own tree the hit was found.
-  std::uint32_t surface(std::uint32_t geometry, std::uint32_t instance) const {
-    return first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
-  }
-
-  /// False only if the ray misses the tree's box: a few operations instead of a walk through the tree. Distances are
-  /// within 3 ulp, and the box exceeds its content by 2^-18. 0 x infinity (a ray in a face's plane) is NaN, which
-  /// std::min and std::max ignore as second argument.
-  bool may_hit(const RTCRay& ray) const {
-    return may_hit({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tnear, ray.tfar);
-  }
+  /// False only if the ray misses the tree's box: a few operations instead of a walk through the tree.
   bool may_hit(Vec3 origin, Vec3 direction, float enter, float leave) const {
     const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
-    for (int axis = 0; axis < 3; ++axis) {
-      const float a = (bounds.lower[axis] - origin[axis]) * inverse[axis];
-      const float b = (bounds.upper[axis] - origin[axis]) * inverse[axis];
-      enter = std::max(enter, inverse[axis] < 0 ? b : a);
-      leave = std::min(leave, inverse[axis] < 0 ? a : b);
-    }
-    return enter <= leave;
+    return meets_slabs(bounds, origin, origin, inverse, enter, leave);
   }
 };
 
@@ -58,7 +45,7 @@ struct SharedTree {
   float reach = 0;  ///< largest coordinate
 };
 
-/// The arrays of a surface that surface_point reads, each found with one load.
+/// The data of a surface that Tracer::surface_point() reads.
 struct SurfaceArrays {
   const std::array<std::uint32_t, 3>* triangles;
   const Vec3 *positions, *normals;  ///< normals and uvs are null if there are none
@@ -68,8 +55,8 @@ struct SurfaceArrays {
   bool flipped, smooth;
   float instance_offset = 0;
 
-  /// Positions or normals of a triangle's corners in scene space. Pointers into the surface's arrays (copying would
-  /// stall); for an instance they are computed into `own`.
+  /// Positions or normals of a triangle's corners in scene space: pointers into the surface's arrays, since copying
+  /// would stall, or into `own`, to which the vertices of an instance are written.
   struct Corners {
     const Vec3 *a, *b, *c;
   };
@@ -105,18 +92,15 @@ struct SurfaceArrays {
         smooth(s.smooth()) {}
 };
 
-inline constexpr unsigned kAllBlend = 1;  ///< RTCRay::id of a ray with all_blend
-
 /// The data that the filter of a surface with alpha reads.
 struct AlphaSurface {
   const SceneFrame* frame;
   std::uint32_t surface;
 };
 
-/// The Embree device of all trees. The instruction set is fixed: wider instructions of some processors round hits
-/// differently and do not make single rays faster. The set is the one this program is compiled for.
+/// The Embree device of all trees, and the trees that instances share.
 struct Forest {
-  RTCDevice device = rtcNewDevice("isa=avx2");
+  RTCDevice device;
   std::unordered_map<const Primitive*, SharedTree> shared_trees;
 
   Forest();
@@ -128,17 +112,16 @@ struct Forest {
 struct StaticTree::Kept {
   std::shared_ptr<Forest> forest;
   Tree tree;
-  /// The surfaces in the tree; holding their arrays ensures that equal addresses mean equal arrays.
+  /// The surfaces in the tree. Their arrays are kept, so an array of a later frame has the same address only if it is
+  /// the same array.
   std::vector<Surface> surfaces;
-  /// True if the tree has intersection filters, which point to this frame: the tree must not be reused for another
-  /// frame.
+  /// True if the tree has filters for alpha. They point to the frame for which the tree was built, so the tree must not
+  /// be used for another frame.
   bool filtered = false;
 
-  ~Kept() {
-    if (tree.scene) rtcReleaseScene(tree.scene);
-  }
-  bool holds_for(const SceneFrame& frame) const;
-  static bool passable(const SceneFrame& frame);
+  ~Kept();
+  bool holds_for(const SceneFrame& frame) const;  ///< true if the frame's Tracer can use this tree
+  static bool passable(const SceneFrame& frame);  ///< true if rays may pass static surfaces by alpha
 };
 
 struct Tracer::Impl {
@@ -147,18 +130,15 @@ struct Tracer::Impl {
   std::shared_ptr<const StaticTree::Kept> static_scene;  ///< owns `fixed`
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
-  std::deque<AlphaSurface> alpha;  ///< data of the filters; a deque, since filters point to its elements
+  std::deque<AlphaSurface> alpha;  ///< filters point to the elements, which a deque does not move
   bool panes = false;
   mutable std::atomic<std::uint64_t> refused{0};
 
-  ~Impl() {
-    if (moving.scene) rtcReleaseScene(moving.scene);
-  }
+  ~Impl();
 
   void build(Tree& tree, std::size_t first, std::size_t last);
-  /// m: distance from an instance at which rays that leave the instance start, so that they do not hit it again by
-  /// rounding. Embree intersects an instance in the instance's own space. The transform to scene space scales the
-  /// rounding errors of this space, and its translation is rounded, too.
+  /// SurfacePoint::offset of an instance [m]. Embree intersects an instance in the instance's own space; the transform
+  /// to scene space scales the rounding errors of that space, and its translation is rounded, too.
   float instance_offset(const Surface& surface) const;
   SurfacePoint point_of(const Hit& hit) const;
 

@@ -2,9 +2,9 @@
 // step.
 //
 // Tentative collisions are distributed as if the extinction were the majorant everywhere. A tentative collision is real
-// with probability extinction / majorant; otherwise nothing happens (null collisions; Woodcock et al. 1965). Step k of
-// a ray draws its numbers from one word of bits that depends on the ray and on k only. So with a frozen majorant a
-// photon looks up the same places when the medium changes, up to its first real collision.
+// with probability extinction / majorant; otherwise it is a null collision, and nothing happens (Woodcock et al. 1965).
+// Step k of a ray draws its numbers from one word of bits that depends on the ray and on k only. So with a frozen
+// majorant a photon looks up the same places when the medium changes, up to its first real collision.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,11 @@
 
 namespace tempolux {
 
-/// Largest probability with which Russian roulette lets a path continue after a collision. It ends paths in lossless,
-/// unbounded smoke after a million collisions on average. A smaller value would be wrong: in lossless smoke of optical
-/// depth tau paths have up to tau^2 collisions, and ending most paths early leaves their light to a few paths that are
-/// never sampled. The value is not expensive either: paths that enter a convex body uniformly have a mean length in it
-/// of 4 (volume / surface area), however they are scattered (Blanco and Fournier 2003).
+/// Largest probability with which Russian roulette lets a path continue after a collision. Paths in lossless, unbounded
+/// smoke end after a million collisions on average. A smaller value would be wrong: in lossless smoke of optical depth
+/// tau paths have up to tau^2 collisions. If most of them ended early, a few paths that are never sampled would carry
+/// their light. The value costs little, because paths that enter a convex body uniformly have the mean length 4 (volume
+/// / surface area) in it, however they are scattered (Blanco and Fournier 2003).
 inline constexpr float kLargestSurvivalInMedia = 0.999999f;
 
 /// The random numbers of one step, from 64 random bits.
@@ -35,6 +35,7 @@ struct FlightNumbers {
   static constexpr float kOneMinus = 0x1.fffffep-1f;
 };
 
+/// A tentative collision.
 struct Tentative {
   float distance;  ///< m from the ray's origin
   float majorant;  ///< 1/m, there
@@ -72,8 +73,8 @@ class Flight {
   bool ended_ = true;
 };
 
-/// Distance [m] of the first real collision; INFINITY if the segment ends first. `bits(k)`: 64 random bits of step k.
-/// The probability of no collision is exp(- optical depth), without bias.
+/// Distance [m] of the first real collision along `direction` (unit); INFINITY if the segment of `length` m ends first,
+/// which has the probability exp(- optical depth), without bias. bits(k) gives 64 random bits for step k.
 template <class Bits>
 float first_collision(const Media& media, Vec3 origin, Vec3 direction, float length, const Bits& bits) {
   Flight flight(media.majorants(), origin, direction, length);
@@ -85,11 +86,14 @@ float first_collision(const Media& media, Vec3 origin, Vec3 direction, float len
   }
 }
 
-/// Unbiased estimate, in [0, 1], of the transmittance exp(- optical depth). Product of the probabilities of null
-/// collisions (ratio tracking; Novak et al., "Residual ratio tracking", 2014); below a tenth Russian roulette, so that
-/// the cost does not grow with the density.
+/// Unbiased estimate, in [0, 1], of the transmittance exp(- optical depth): the product of the probabilities of null
+/// collisions (ratio tracking; Novak et al., "Residual ratio tracking", 2014). Below kRouletteBelow Russian roulette
+/// follows, so that the cost does not grow with the density. bits(k) gives 64 random bits for step k.
 template <class Bits>
 float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, float length, const Bits& bits) {
+  // If the transmittance T is below q = kRouletteBelow, the estimate X is at most q, or was reduced to q in the last
+  // step before. So E[X^2] <= q T: at most a tenth of the variance T of an estimate that is 1 without a collision, else
+  // 0.
   constexpr float kRouletteBelow = 0.1f;
   Flight flight(media.majorants(), origin, direction, length);
   Tentative t;
@@ -100,8 +104,8 @@ float estimate_transmittance(const Media& media, Vec3 origin, Vec3 direction, fl
     const float before = transmittance;
     transmittance *= std::max(0.0f, 1 - media.extinction(origin + direction * t.distance) / t.majorant);
     if (transmittance >= kRouletteBelow) continue;
-    // The path continues with probability transmittance / threshold, and the estimate becomes the threshold: a tenth at
-    // the first time, then the estimate before this step.
+    // The path continues with probability transmittance / threshold, and then the estimate is the threshold:
+    // kRouletteBelow at the first time, later the estimate before this step.
     const float threshold = std::min(before, kRouletteBelow);
     if (!(numbers.accept * threshold < transmittance)) return 0;
     transmittance = threshold;

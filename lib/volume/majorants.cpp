@@ -63,7 +63,7 @@ std::string MajorantGrid::hash() const {
 MajorantWalk::MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length)
     : grid_(&grid), origin_(origin), begin_(0), end_(length) {
   if (grid.empty()) return;
-  // below this 1 / d overflows, and 0 x infinity is NaN; a ray does not advance along such an axis
+  // A ray does not advance along an axis of a smaller component d: 1 / d would overflow, and 0 x infinity is NaN.
   constexpr float kAlong = 1e-30f;
   for (int a = 0; a < 3; ++a) {
     if (std::abs(direction[a]) < kAlong) {

@@ -11,20 +11,20 @@
 namespace tempolux {
 
 /// Cells of equal size in a box of scene space, each with a majorant: an extinction [1/m] that no point of the cell
-/// exceeds. Majorants that are frozen over a segment let each photon look up the same places in every frame.
+/// exceeds. With majorants that are frozen over a segment, each photon looks up the same places in every frame.
 class MajorantGrid {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 21;
 
   MajorantGrid() = default;  ///< a grid without cells
-  /// All majorants are zero. Counts are at least 1; throws std::invalid_argument for an empty box or more than
-  /// kMostCells.
+  /// A grid of counts[0] x counts[1] x counts[2] cells whose majorants are 0. Throws std::invalid_argument for an empty
+  /// box, a count below 1, or more than kMostCells.
   MajorantGrid(const Box3& box, const std::array<std::int32_t, 3>& counts);
 
   bool empty() const { return values_.empty(); }
   const Box3& box() const { return box_; }
   const std::array<std::int32_t, 3>& counts() const { return counts_; }
-  const std::vector<float>& values() const { return values_; }  ///< z fastest
+  const std::vector<float>& values() const { return values_; }  ///< 1/m; z varies fastest
   std::vector<float>& values() { return values_; }
   /// Majorant at a point; 0 outside.
   float at(Vec3 point) const {
@@ -33,8 +33,9 @@ class MajorantGrid {
   }
   /// Index into values() of the cell that holds a point; the size of values() for a point outside.
   std::size_t index_of(Vec3 point) const;
+  /// Box of a cell, m.
   Box3d cell(std::int32_t x, std::int32_t y, std::int32_t z) const;
-  /// Raises cells above 0 to at least `least` [1/m], a lower bound for the number of tentative collisions.
+  /// Raises majorants above 0 to at least `least` [1/m], so that rays have enough tentative collisions.
   void raise_to(float least);
   /// Mean length of a chord through the box [m]: 4 V / S for a convex body (Cauchy).
   float mean_chord() const;
@@ -54,8 +55,8 @@ class MajorantGrid {
 };
 
 /// Visits the cells that a ray passes, in order (a digital differential analyser: Amanatides & Woo, Eurographics 1987).
-///
-/// Pieces join without gap or overlap, from the entry into the box to the exit, or to `length` if that comes first.
+/// The ray's pieces in the cells follow each other without gap or overlap, from the entry into the box to the exit, or
+/// to `length` if that comes first.
 class MajorantWalk {
  public:
   struct Piece {

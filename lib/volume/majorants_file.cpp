@@ -16,10 +16,8 @@ constexpr const char* kFirstLine = "tempolux majorants 1.0";
 constexpr std::size_t kLongestLine = 1 << 16;
 
 std::string number(float value) {
-  std::array<char, 32> text{};
-  const auto [end, error] =
-      // The shortest text that reads back as the same number.
-      std::to_chars(text.data(), text.data() + text.size(), value);
+  std::array<char, 32> text{};  // to_chars writes the shortest text that reads back as the same number
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
 }
 

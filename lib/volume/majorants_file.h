@@ -13,12 +13,12 @@ struct FrozenMajorants {
   MajorantGrid grid;  ///< world space
 };
 
-/// Text of the file; numbers read back to the bit.
+/// The content of a file; load_majorants() reads the same bits.
 std::string majorants_text(const FrozenMajorants& majorants);
-/// Throws InputError "FILE: line N: what; remedy".
+/// Reads a file. Throws InputError "FILE: line N: what; remedy" if it is missing or damaged.
 FrozenMajorants load_majorants(const std::string& path);
 
-/// Shifts the box by -origin: from world to scene space.
+/// The grid in scene space: its box is moved by -origin.
 MajorantGrid moved(const MajorantGrid& world, Vec3d origin);
 
 }  // namespace tempolux

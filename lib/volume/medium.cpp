@@ -28,7 +28,7 @@ Box3 outwards(const Box3d& box) {
   return result;
 }
 
-/// The part of the line origin + t direction, 0 <= t <= length, inside the box; false if there is none.
+/// The interval of t for which origin + t direction, 0 <= t <= length, is inside the box; false if there is none.
 bool clip(const Box3d& box, Vec3d origin, Vec3d direction, double length, double& begin, double& end) {
   begin = 0;
   end = length;
@@ -194,7 +194,7 @@ MajorantGrid majorant_cells(const Box3d& box, double finest_voxel) {
 void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants) {
   if (majorants.empty()) return;
   const auto [nx, ny, nz] = majorants.counts();
-  // Rounding may assign a point on a border to either of two cells, so every cell is widened by a small margin.
+  // Rounding may assign a point on a border to either of two cells, so every cell is widened a little.
   const double hair =
       1e-5 * double(max_component(majorants.box().upper - majorants.box().lower)) / std::max({nx, ny, nz});
   parallel_chunks(std::size_t(nx) * std::size_t(ny), 16, [&, ny = ny, nz = nz](std::size_t first, std::size_t last) {

@@ -24,27 +24,29 @@ struct MediumOptions {
 /// One medium: a density in scene space.
 class Medium {
  public:
-  /// `scene_from_index` must be invertible (std::invalid_argument).
+  /// Throws std::invalid_argument unless `scene_from_index` is invertible and the options are in their ranges.
   Medium(std::shared_ptr<const VoxelGrid> grid, const Affine& scene_from_index, const MediumOptions& options);
 
   /// Extinction sigma_t at a point of scene space [1/m].
   float extinction(Vec3 point) const { return grid_->at(to_index(point)) * options_.sigma_t; }
-  /// Greatest extinction [1/m] in a box of scene space; larger if the grid is rotated against the box.
+  /// Upper bound [1/m] of the extinction in a box of scene space: its maximum, or more if the grid is rotated against
+  /// the box.
   float largest_extinction(const Box3d& box) const;
-  /// Integral of the extinction over `length` m from `origin` along the unit `direction`. Exact for the trilinear
-  /// density up to rounding: in each voxel the density is a cubic, and Gauss-Legendre quadrature with two points
-  /// integrates a cubic exactly.
+  /// Integral [1] of the extinction over `length` m from `origin` along `direction` (unit); exact up to rounding. Along
+  /// a line the trilinear density is a cubic in each voxel, which Gauss-Legendre quadrature with two points integrates
+  /// exactly.
   double optical_depth(Vec3 origin, Vec3 direction, double length) const;
 
   const MediumOptions& options() const { return options_; }
   const VoxelGrid& grid() const { return *grid_; }
   const Affine& scene_from_index() const { return scene_from_index_; }
-  /// Scene-space box outside which the density is 0; empty if the medium is empty.
+  /// Scene-space box [m] outside which the extinction is 0; empty if it is 0 everywhere.
   const Box3d& bounds() const { return bounds_; }
   /// Length of the shortest edge of a voxel [m].
   double voxel_size() const;
-  /// Hash of values, place and options.
+  /// Hash of values, transform and options.
   std::string hash() const;
+  /// Position in index space of a point of scene space.
   Vec3 to_index(Vec3 point) const {
     return {dot(row_[0], point) + offset_.x, dot(row_[1], point) + offset_.y, dot(row_[2], point) + offset_.z};
   }
@@ -61,10 +63,10 @@ class Medium {
 /// All media of a frame. Where they overlap, extinctions add up. Thread-safe.
 class Media {
  public:
-  /// Computes majorants for these media alone.
+  /// Computes majorants for these media.
   explicit Media(std::vector<Medium> media);
-  /// `frozen`: majorants over a segment (frozen_majorants). Throws std::invalid_argument if they are no upper bound of
-  /// these media.
+  /// Takes majorants that hold for all frames of a segment (frozen_majorants()). Throws std::invalid_argument if they
+  /// are no upper bound of these media.
   Media(std::vector<Medium> media, MajorantGrid frozen);
 
   bool empty() const { return majorants_.empty(); }
@@ -92,10 +94,10 @@ class Media {
   MajorantGrid majorants_;
 };
 
-/// A grid for the majorants of media: the box around all media, cells of eight voxels of the finest medium, at most
-/// kMostCells cells.
+/// A grid for majorants, all 0, over the box of all media [m]. A cell's edge is eight times the edge of the finest
+/// medium's voxels, `finest_voxel` [m], or more, so that there are at most kMostCells cells.
 MajorantGrid majorant_cells(const Box3d& box, double finest_voxel);
-/// Raises each cell to the sum of the greatest extinctions that the media have in it, if that is larger.
+/// Raises the majorant of each cell to the sum of largest_extinction() of all media, if the sum is larger.
 void raise_majorants(std::span<const Medium> media, MajorantGrid& majorants);
 
 }  // namespace tempolux

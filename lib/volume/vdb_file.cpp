@@ -16,12 +16,12 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kMemory = 400u << 20;  ///< OpenVDB and its libraries take 150 MB of address space
+constexpr std::uint64_t kMemory = 400u << 20;  ///< bytes; OpenVDB and its libraries take 150 MB of address space
 /// Largest ratio of bytes in memory to bytes in the file: twice the ratio of constant blocks in zip.
 constexpr std::uint64_t kExpansion = 64;
 constexpr std::uint64_t kSlowest = 10u << 20;  ///< bytes per second that the process must read at least
-constexpr std::size_t kMostTogether = 16;      ///< files read by one process, whose start then costs 3 ms per file
-/// bytes of files read by one process; in memory up to kExpansion times as many
+constexpr std::size_t kMostTogether = 16;      ///< files that one process reads; its start then costs 3 ms per file
+/// Bytes of the files that one process reads; they may need kExpansion times as many in memory.
 constexpr std::uint64_t kMostAhead = 16u << 20;
 /// Voxels. Within half of this distance from index 0, float32 resolves positions to 1/256 of a voxel.
 constexpr std::int32_t kFarStep = 1 << 16;
@@ -33,7 +33,7 @@ std::uint64_t size_of(const std::string& path) {
   return std::uint64_t(status.st_size);
 }
 
-/// Takes pieces off the front of the process' output.
+/// Reads the process' output from its beginning.
 class Printed {
  public:
   Printed(const std::string& path, const std::vector<unsigned char>& bytes) : path_(path), bytes_(bytes) {}
@@ -50,9 +50,9 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
-/// Renumbers voxels that are far from index 0, and shifts the transform accordingly: from 2^24 on float32 does not
-/// resolve positions between voxels. The shift is a multiple of kFarStep, so that the numbers of a sequence stay the
-/// same while its smoke moves.
+/// Renumbers voxels that are far from index 0, and shifts the transform accordingly: beyond 2^24, float32 does not
+/// resolve positions between voxels. The shift is a multiple of kFarStep, so that it rarely changes while the smoke of
+/// a sequence moves.
 void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   if (blocks.empty()) return;
   GridIndex low = blocks.front().origin;
@@ -68,7 +68,7 @@ void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   world_from_index.translation = world_from_index.point(moved);
 }
 
-/// Parses the next volume; with `last` nothing may follow.
+/// Parses the next volume of the output; after the last one nothing may follow.
 VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   VdbPipeHead head;
   printed.take(&head, sizeof head);
@@ -92,7 +92,7 @@ VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   return volume;
 }
 
-/// Runs tempolux-vdb for these files. `bytes`: size of all files together, `largest`: of the largest.
+/// Runs tempolux-vdb for these files, which have `bytes` bytes together; the largest has `largest`.
 ChildResult ask(std::span<const VdbName> names, std::uint64_t bytes, std::uint64_t largest, std::uint64_t max_memory) {
   std::string request;
   for (const VdbName& name : names) {
@@ -129,7 +129,7 @@ VdbVolume VdbSeries::read(const VdbName& name, std::uint64_t max_memory) {
   return *std::exchange(ahead_[at], std::nullopt);
 }
 
-/// Reads as many entries of ahead_ from `first` on as one process may read; none if one of them fails.
+/// Fills ahead_ from `first` on with as many volumes as one process may read; with none if a file fails.
 void VdbSeries::read_together(std::size_t first, std::uint64_t max_memory) {
   std::uint64_t bytes = 0, largest = 0;
   std::size_t last = first;

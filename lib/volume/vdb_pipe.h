@@ -12,6 +12,7 @@
 
 namespace tempolux {
 
+/// Head of a volume in the output.
 struct VdbPipeHead {
   std::array<char, 8> magic{'T', 'P', 'X', 'V', 'D', 'B', '1', '\n'};
   std::array<double, 12> world_from_index{};  ///< three rows of four: x' = r0 x + r1 y + r2 z + r3

@@ -78,7 +78,7 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
   for (std::size_t a = 0; a < 3; ++a) upper_[a] = last[a] + kBlock - 1;
   std::uint64_t count = 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    first_block_[a] = first[a] / kBlock - 1;  // the block before it stores its first layer, too
+    first_block_[a] = first[a] / kBlock - 1;  // the brick of the block before holds the first layer, too
     block_count_[a] = last[a] / kBlock - first_block_[a] + 1;
     count *= std::uint64_t(block_count_[a]);
     if (count > kMostBlocks) throw std::invalid_argument(kTooFar);

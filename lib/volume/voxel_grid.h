@@ -20,11 +20,11 @@ struct VoxelBlock {
   std::array<float, 512> values{};
 };
 
-/// Values >= 0 at integer coordinates of index space; 0 outside all blocks. Between the coordinates values are
+/// Values >= 0 at integer coordinates of index space; 0 outside all blocks. Between integer coordinates values are
 /// trilinear, as in OpenVDB's BoxSampler and in Cycles: half-way between two voxels the value is their mean.
 ///
-/// A block of zeros costs four bytes. Each other block also stores its neighbours' first layers (9^3 values), so that
-/// the eight values of a look-up lie in one array.
+/// A block of zeros costs four bytes. A brick is a stored block with the first layers of its neighbours, 9^3 values, so
+/// that the eight values of a look-up lie in one array.
 class VoxelGrid {
  public:
   static constexpr int kBlock = 8;
@@ -32,9 +32,8 @@ class VoxelGrid {
   static constexpr std::uint64_t kMostBlocks = std::uint64_t(1) << 26;
 
   VoxelGrid() = default;
-  /// Blocks in any order, each origin once. Throws std::invalid_argument for an origin that is not a multiple of 8 or
-  /// beyond 2^28, a value that is negative or not finite, two blocks with one origin, or more than kMostBlocks in the
-  /// bounding box.
+  /// Blocks may be in any order. Throws std::invalid_argument for an origin that is not a multiple of 8 or beyond 2^28,
+  /// a value that is negative or not finite, two blocks with one origin, or more than kMostBlocks in the bounding box.
   explicit VoxelGrid(const std::vector<VoxelBlock>& blocks);
 
   bool empty() const { return bricks_.empty(); }
@@ -47,12 +46,11 @@ class VoxelGrid {
   const GridIndex& upper() const { return upper_; }
   /// Index-space box outside which at() is 0: from one before the first voxel above 0 to one after the last.
   Box3d support() const;
-  /// Largest value of at() in a closed box of index space. Visits each voxel.
+  /// Largest value of at() in a closed box of index space. Visits each voxel of the box.
   float largest(const Box3d& box) const;
-  float largest() const { return largest_; }
+  float largest() const { return largest_; }  ///< largest voxel
   std::size_t byte_count() const;
-  /// Hash of all voxels above 0 with their coordinates. Equal content gives an equal hash, however it is cut into
-  /// blocks.
+  /// Hash of all blocks that are not 0, with their origins.
   const std::string& hash() const { return hash_; }
 
  private:
@@ -63,8 +61,8 @@ class VoxelGrid {
   std::uint32_t brick(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
   GridIndex first_block_{}, block_count_{};
-  std::vector<std::uint32_t> table_;  ///< brick number by block, z fastest
-  std::vector<float> bricks_;         ///< kBrickSize values for each brick, z fastest
+  std::vector<std::uint32_t> table_;  ///< number of each block's brick; z varies fastest
+  std::vector<float> bricks_;         ///< kBrickSize values for each brick; z varies fastest
   GridIndex lower_{1, 1, 1}, upper_{0, 0, 0};
   Box3d support_;
   float largest_ = 0;
