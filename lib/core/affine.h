@@ -7,7 +7,8 @@
 
 namespace tempolux {
 
-/// x' = m x + t; m in rows. Composes by matching inner names: world_from_node * node_from_child.
+/// x' = m x + t, where `row` has the rows of m. Transforms compose by matching inner names: world_from_node *
+/// node_from_child. The default is the identity.
 struct Affine {
   std::array<Vec3d, 3> row{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
   Vec3d translation{};
@@ -15,7 +16,7 @@ struct Affine {
   bool operator==(const Affine&) const = default;
   Vec3d direction(Vec3d d) const { return {dot(row[0], d), dot(row[1], d), dot(row[2], d)}; }
   Vec3d point(Vec3d p) const { return direction(p) + translation; }
-  /// Inverse transpose applied to a normal; not normalised.
+  /// A normal under the transform, by the inverse transpose of m; not normalised.
   Vec3d normal(Vec3d n) const {
     const Vec3d c0 = cross(row[1], row[2]), c1 = cross(row[2], row[0]), c2 = cross(row[0], row[1]);
     const Vec3d v = Vec3d{dot(c0, n), dot(c1, n), dot(c2, n)};
@@ -33,7 +34,7 @@ struct Affine {
   }
 };
 
-/// Inverse; for a singular transform the result holds infinities or NaN: test determinant() first.
+/// The inverse transform. determinant() must not be 0, else the result holds infinities or NaN.
 inline Affine inverse(const Affine& a) {
   const Vec3d c0 = cross(a.row[1], a.row[2]), c1 = cross(a.row[2], a.row[0]), c2 = cross(a.row[0], a.row[1]);
   const double d = 1 / a.determinant();
@@ -43,7 +44,7 @@ inline Affine inverse(const Affine& a) {
   return r;
 }
 
-/// Scales first, then rotates by the unit quaternion (x, y, z, w), then translates: glTF's T R S.
+/// The transform that scales by s, then rotates by the unit quaternion q = (x, y, z, w), then moves by t: glTF's T R S.
 inline Affine affine_from_trs(Vec3d t, std::array<double, 4> q, Vec3d s) {
   const auto [x, y, z, w] = q;
   Affine r;

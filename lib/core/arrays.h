@@ -15,7 +15,7 @@ inline Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 inline Vec3d vec_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 inline Rgb rgb_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// A place of a file in another space: `shift` is that space's origin seen from the file's. Rounds once.
+/// A position of a file, plus `shift` (the origin of the file's space, seen from the wanted space). Rounds once.
 inline Vec3 shifted(const std::array<float, 3>& place, Vec3d shift) { return Vec3(Vec3d(vec_of(place)) + shift); }
 
 }  // namespace tempolux

@@ -6,7 +6,7 @@
 
 namespace tempolux {
 
-/// Calls body(corner) for the eight corners of a box in the space of `to_from`'s result; not at all for an empty box.
+/// Calls body(corner) for the eight corners of a box after the transform; not at all for an empty box.
 template <class Body>
 void for_corners(const Affine& to_from, const Box3d& box, const Body& body) {
   if (box.empty()) return;

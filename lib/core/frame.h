@@ -16,6 +16,7 @@ struct Frame {
     tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
     bitangent = {b, sign + n.y * n.y * a, -n.y};
   }
+  /// A vector of the frame (z along the normal) in the space of the normal, and back.
   Vec3 to_world(Vec3 v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
   Vec3 to_local(Vec3 v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
 };

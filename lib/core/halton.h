@@ -13,13 +13,14 @@ namespace tempolux {
 ///     i = sum a_k b^k  ->  sum perm_k(a_k) b^(-k-1),
 /// for as many digits as fit into a 64-bit numerator. Digits are processed in blocks with tables of at most 2048
 /// entries. Indices that agree modulo b^m agree in the first m digits of the result, scrambled or not; photon groups
-/// rely on this (docs/methods/formulas.md). Exact for every 64-bit index; the value is rounded once and is always below
-/// 1.
+/// rely on this (docs/methods/formulas.md). The sum is exact for every 64-bit index; it is rounded once to a value
+/// below 1.
 class RadicalInverse {
  public:
-  /// seed 0 is scrambled like any other; scramble = false gives the plain sequence, for tests.
+  /// Every seed, also 0, scrambles; scramble = false gives the plain sequence, for tests.
   RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scramble = true);
 
+  /// The radical inverse of an index, in [0, 1).
   double operator()(std::uint64_t index) const;
   std::uint32_t base() const { return base_; }
 
@@ -29,8 +30,8 @@ class RadicalInverse {
   std::uint64_t reciprocal_;                  ///< 2^64 / block_size, rounded down
   double scale_;                              ///< base^-(block_digits * block_count)
   std::vector<std::uint32_t> table_;          ///< block_count x block_size: the digits reversed and permuted
-  std::vector<std::uint64_t> rest_weight_;    ///< by number of finished blocks: block_size^(remaining blocks)
-  std::vector<std::uint64_t> rest_of_zeros_;  ///< numerator of the remaining blocks if all their digits are 0
+  std::vector<std::uint64_t> rest_weight_;    ///< for each number of finished blocks, block_size^(remaining blocks)
+  std::vector<std::uint64_t> rest_of_zeros_;  ///< likewise, the remaining blocks' numerator if their digits are all 0
 };
 
 /// The four coordinates of a photon's emission in bases 3, 5, 7 and 2, in order of use: choice of the light and

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-/// The smallest limit from the group `path` up to the root of `mount`; a missing file, or one that says "max", means no
+/// The smallest limit among the group `path` and its parents below `mount`. A missing file, or the text "max", means no
 /// limit.
 std::uint64_t limit_of_groups(const std::string& mount, std::string path, const std::string& file) {
   std::uint64_t limit = ~0ull;

@@ -5,8 +5,8 @@
 
 namespace tempolux {
 
-/// Bytes: the machine's memory, or the smaller limit of a control group of version 1 or 2 (a container, a batch job).
-/// Without swap. Never 0.
+/// Bytes of memory that this process may fill: the machine's memory without swap, or the limit of a control group of
+/// version 1 or 2 (a container, a batch job) if that is smaller. Never 0.
 std::uint64_t machine_memory();
 
 }  // namespace tempolux

@@ -35,9 +35,9 @@ int parallel_thread_count();
 void parallel_chunks(std::size_t count, std::size_t chunk_size,
                      const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// Streams chunk indices 0 .. chunk_count-1 through make (in parallel, any order) and take (one at a time,
-/// in index order). At most `in_flight` results exist at once, so memory does not grow with the count.
-/// make returns an owning pointer; take consumes it.
+/// Calls make(i) for each i < chunk_count, in parallel and in any order, then take(i, result) one at a time, in the
+/// order of i. At most `in_flight` results exist at once, so memory does not grow with the count. `take` gets the
+/// pointer that `make` returned; the result is freed afterwards.
 void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take);

@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// Calls body(i) for each i < count. A thread takes chunk_size > 0 neighbours at a time.
+/// Calls body(i) for each i < count. A thread takes chunk_size > 0 consecutive i at a time.
 template <class Body>
 void parallel_each(std::size_t count, std::size_t chunk_size, const Body& body) {
   parallel_chunks(count, chunk_size, [&](std::size_t first, std::size_t last) {
@@ -25,7 +25,7 @@ void parallel_pixels(int width, int height, const Body& body) {
   });
 }
 
-/// Calls body(i, found) for each i < count, which appends any number of elements to `found`. Returns all elements in
+/// Calls body(i, found) for each i < count. The body appends any number of elements to `found`. Returns all elements in
 /// the order of i.
 template <class T, class Body>
 std::vector<T> parallel_found(std::size_t count, std::size_t chunk_size, const Body& body) {
@@ -38,8 +38,8 @@ std::vector<T> parallel_found(std::size_t count, std::size_t chunk_size, const B
   return all;
 }
 
-/// Calls body(i, sum) for each i < count, which adds to `sum`, a Sum{} of its chunk. Returns the sum over the chunks in
-/// their order.
+/// Calls body(i, sum) for each i < count. The body adds to `sum`, which begins as Sum{} in each chunk. Returns the sum
+/// of the chunks' sums, added in their order.
 template <class Sum, class Body>
 Sum parallel_sum(std::size_t count, std::size_t chunk_size, const Body& body) {
   std::vector<Sum> sums((count + chunk_size - 1) / chunk_size);

@@ -34,14 +34,13 @@ std::uint32_t reversed_second(std::uint32_t x) {
   return x ^ (x >> 1 & 0x55555555u);
 }
 
-/// Nested uniform shuffle of indices: the first 2^k indices map onto one aligned block of 2^k. The first Sobol
-/// dimension is the index with reversed bits, and scrambling permutes reversed bits, so each number is reversed only
-/// once.
+/// Shuffles indices so that each aligned block of 2^k indices maps onto an aligned block. The result is also the first
+/// Sobol dimension with reversed bits, on which scrambling works.
 std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
   return reverse_bits(permute_low_to_high(reverse_bits(index), seed));
 }
 
-/// Owen scrambling of a coordinate with reversed bits.
+/// Owen scrambling of a coordinate that is given with reversed bits; in [0, 1).
 float scrambled(std::uint32_t reversed, std::uint32_t seed) {
   return unit_float(reverse_bits(permute_low_to_high(reversed, seed)));
 }

@@ -12,7 +12,7 @@ namespace tempolux {
 /// Scrambling", JCGT 9(4), 2020. Components in [0, 1).
 Vec2 sobol_owen_2d(std::uint32_t index, std::uint64_t key);
 
-/// One component of the same sequence (base 2 radical inverse, scrambled and shuffled by key).
+/// Point `index` of a scrambled one-dimensional Sobol sequence (the radical inverse in base 2), in [0, 1).
 float sobol_owen_1d(std::uint32_t index, std::uint64_t key);
 
 }  // namespace tempolux

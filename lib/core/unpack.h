@@ -10,8 +10,8 @@
 
 namespace tempolux {
 
-/// The packer of a piece of data. Below, each packer lists its settings, in order, and the form of the unpacked data.
-/// Unpacked data that differs from the sizes and counts in the settings is refused.
+/// The program that packed a piece of data. The comment of each packer lists its settings, in order, and the form of
+/// the unpacked data. Unpacked data that differs from the sizes and counts in the settings is refused.
 enum class Packer : std::uint32_t {
   /// Settings: bytes of an index (0: no indices), number of indices, number of vertices, number of attributes; then
   /// for each attribute its id in the Draco data, glTF's component type (5120 to 5126) and the numbers per vertex.
@@ -36,10 +36,10 @@ struct PackedPiece {
   std::string remedy;                ///< what the user can do if the data cannot be unpacked; ends messages
 };
 
-/// First number of the child's input; the child refuses another version. Then follow the pieces. Each is: packer,
-/// number of settings, settings (all 32 bits), number of bytes, number of unpacked bytes (64 bits), bytes.
-/// Little-endian, without padding. The child prints the unpacked bytes of all pieces in order. At the first piece that
-/// it cannot unpack it writes a line to standard error and ends with code 2.
+/// First number of the child's input; the child refuses another version. The pieces follow. A piece is: packer, number
+/// of settings, settings (all 32 bits), number of bytes, number of unpacked bytes (64 bits), bytes. All numbers are
+/// little-endian, without padding. The child prints the unpacked bytes of all pieces in order. At the first piece that
+/// it cannot unpack, it writes a line to standard error and ends with code 2.
 inline constexpr std::uint32_t kUnpackVersion = 1;
 
 /// The unpacked bytes of all pieces, one after the other. One child is started for all pieces, none if there are no

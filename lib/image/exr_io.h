@@ -52,8 +52,4 @@ struct ExrReadOptions {
 /// in uncompressed samples is not detected.
 Image load_exr(const std::string& path, const ExrReadOptions& options = {});
 
-/// 32 hexadecimal digits: a hash of size, channel names and the bits of samples, so -0 differs from 0. The order of
-/// channels, attributes and compression do not change it.
-std::string digest_of(const Image& image);
-
 }  // namespace tempolux

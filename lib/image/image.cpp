@@ -2,11 +2,38 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "formats/error.h"
+#include "formats/hash.h"
 
 namespace tempolux {
+
+std::vector<std::uint8_t> nonzero_pixels(const Image& image) {
+  std::vector<std::uint8_t> mask(image.pixel_count());
+  for (const Channel& channel : image.channels)
+    for (std::size_t p = 0; p < mask.size(); ++p)
+      mask[p] |= channel.ids.empty() ? channel.values[p] != 0 : channel.ids[p] != 0;
+  return mask;
+}
+
+std::string digest_of(const Image& image) {
+  std::vector<const Channel*> sorted;
+  for (const Channel& channel : image.channels) sorted.push_back(&channel);
+  std::ranges::sort(sorted, {}, &Channel::name);
+  Hasher hasher;
+  hasher.add(std::uint32_t(image.width));
+  hasher.add(std::uint32_t(image.height));
+  hasher.add(std::uint32_t(sorted.size()));
+  for (const Channel* channel : sorted) {
+    hasher.add(channel->name);
+    hasher.add(std::uint32_t(channel->ids.empty() ? 0 : 1));
+    if (channel->ids.empty()) hasher.add_array(std::span<const float>(channel->values));
+    else hasher.add_array(std::span<const std::uint32_t>(channel->ids));
+  }
+  return hasher.hex();
+}
 
 std::string channel_name(const std::string& layer, const char* component) {
   return layer.empty() ? component : layer + "." + component;

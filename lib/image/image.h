@@ -42,6 +42,11 @@ struct Image {
   std::vector<std::string> layers() const;  ///< layers with .R .G .B; "" comes first if R G B exist
 };
 
+/// For each pixel, 1 if any channel of the image is not 0, else 0 (formats/mask/mask.md).
+std::vector<std::uint8_t> nonzero_pixels(const Image& image);
+/// 32 hexadecimal digits: a hash of size, channel names and the bits of samples, so -0 differs from 0. The order of
+/// channels, attributes and compression do not change it.
+std::string digest_of(const Image& image);
 /// Name of a layer's channel: "indirect.G"; for the layer "" the component alone.
 std::string channel_name(const std::string& layer, const char* component);
 /// "pixel (X, Y)" for messages; counted from the top left.

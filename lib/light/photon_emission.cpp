@@ -83,6 +83,7 @@ void Lights::emit_environment(std::size_t slot, double u0, const std::array<doub
   EnvironmentLight::Sample from;
   if (!environment_->sample(u0, u[1], from)) {
     e.travel = {0, -1, 0};
+    e.flux = Rgb(0.0f);
     return;
   }
   e.travel = -from.direction;

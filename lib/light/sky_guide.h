@@ -14,8 +14,8 @@ namespace tempolux {
 /// The guide learns from rays that left places with the pdf cos / pi. A ray that reaches the environment is a hit.
 ///
 /// Places are divided at the median of their hits, along the longest side of the box around the hits, while each half
-/// has kLeastHits. Each part has a grid of kRows x kColumns cells of equal solid angle. A cell is drawn by the weight of
-/// the hits in and around the cell; a direction inside the cell is drawn uniformly. A part has no grid if more than
+/// has kLeastHits. Each part has a grid of kRows x kColumns cells of equal solid angle. A cell is drawn by the weight
+/// of the hits in and around the cell; a direction inside the cell is drawn uniformly. A part has no grid if more than
 /// kMostSeen of its rays are hits, because rays of pdf cos / pi then deviate by at most 300 % of their mean; nor if it
 /// has fewer than kLeastHits hits. Derivation and measurements: docs/pixels.md.
 class SkyGuide {
@@ -25,10 +25,11 @@ class SkyGuide {
   };
   struct Hit {
     std::uint32_t place = 0;  ///< index of the place that sent the ray
-    Vec3 direction;    ///< unit, towards the environment
-    float weight = 0;  ///< radiance [any unit], above 0
+    Vec3 direction;           ///< unit, towards the environment
+    float weight = 0;         ///< radiance [any unit], above 0
   };
-  static constexpr int kRows = 32, kColumns = 2 * kRows;
+  /// Half and twice the numbers of kRows and kLeastHits: docs/notebook/constants.md.
+  static constexpr int kRows = 16, kColumns = 2 * kRows;
   static constexpr std::size_t kLeastHits = 64;
   static constexpr double kMostSeen = 0.1;
 

@@ -84,6 +84,13 @@ void leave_out_grounds(std::vector<Piece>& pieces) {
   pieces.resize(kept);
 }
 
+Box3d box_of(const std::vector<Piece>& pieces) {
+  Box3d box;
+  for (const Piece& piece : pieces)
+    for (const Vec3 p : piece.corners) box.add(Vec3d(p));
+  return box;
+}
+
 /// The range of the triangles' centres along an axis without the outermost ones, which have kStrays of the total length
 /// at each end.
 std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
@@ -122,20 +129,17 @@ bool has_full_ends(const std::vector<Piece>& pieces, int axis, double low, doubl
 /// Drops stray triangles where this shortens an axis to less than kShrink.
 void leave_out_strays(std::vector<Piece>& pieces) {
   for (int axis = 0; axis < 3; ++axis) {
-    Box3d all, inner;
-    for (const Piece& piece : pieces)
-      for (const Vec3 p : piece.corners) all.add(Vec3d(p));
+    const Box3d all = box_of(pieces);
     if (has_full_ends(pieces, axis, all.lower[axis], all.upper[axis])) continue;
     const auto range = inner_range(pieces, axis);
     const auto inside = [&](const Piece& piece) {
       const double at = double(piece.centre()[axis]);
       return at >= range[0] && at <= range[1];
     };
-    for (const Piece& piece : pieces)
-      for (const Vec3 p : piece.corners)
-        if (inside(piece)) inner.add(Vec3d(p));
-    if (inner.upper[axis] - inner.lower[axis] < kShrink * (all.upper[axis] - all.lower[axis]))
-      std::erase_if(pieces, [&](const Piece& piece) { return !inside(piece); });
+    std::vector<Piece> kept;
+    std::ranges::copy_if(pieces, std::back_inserter(kept), inside);
+    const Box3d inner = box_of(kept);
+    if (inner.upper[axis] - inner.lower[axis] < kShrink * (all.upper[axis] - all.lower[axis])) pieces.swap(kept);
   }
 }
 
@@ -193,9 +197,6 @@ std::string add_content_camera(Scene& scene) {
   std::vector<Piece> pieces = pieces_of(scene, segment);
   leave_out_grounds(pieces);
   leave_out_strays(pieces);
-  Box3d box;
-  for (const Piece& piece : pieces)
-    for (const Vec3 p : piece.corners) box.add(Vec3d(p));
   const std::array<Vec3d, 3> axes = axes_of(kTowardsEye);
   Camera camera;
   camera.name = "auto";
@@ -209,7 +210,7 @@ std::string add_content_camera(Scene& scene) {
   scene.cameras.push_back(camera);
   scene.nodes.push_back(node);
   return "no camera: --camera auto looks at what the scene holds from " + text(node.translation) + " towards " +
-         text(segment.origin + (pieces.empty() ? Vec3d{} : box.centre()));
+         text(segment.origin + (pieces.empty() ? Vec3d{} : box_of(pieces).centre()));
 }
 
 }  // namespace tempolux

@@ -29,31 +29,14 @@ std::string content_hash(const Environment& environment) {
   return hasher.hex();
 }
 
-/// Multiplies values by the strength; counts negative values and sets them to 0.
-class Scale {
- public:
-  Scale(const Environment& environment, double strength) : environment_(environment), strength_(strength) {}
-
-  float operator()(float value, std::size_t pixel) {
-    if (value < 0 && negative_++ == 0) first_negative_ = pixel;
-    const double radiance = std::max(0.0, double(value) * strength_);
-    if (!(radiance <= kMostRadiance))
-      throw InputError(environment_.path + ": " + pixel_name(pixel, environment_.width) +
-                       ": its radiance is beyond 1e30; lower --environment-strength");
-    return float(radiance);
-  }
-  void warn(std::vector<std::string>& warnings) const {
-    if (negative_ > 0)
-      warnings.push_back(environment_.path + ": " + std::to_string(negative_) + " negative values, the first at " +
-                         pixel_name(first_negative_, environment_.width) + ", are taken as 0");
-  }
-
- private:
-  const Environment& environment_;
-  double strength_;
-  std::uint64_t negative_ = 0;
-  std::size_t first_negative_ = 0;
-};
+/// The radiance of a value; 0 for a negative value. Throws InputError if it is above kMostRadiance.
+float radiance_of(const Environment& environment, float value, double strength, std::size_t pixel) {
+  const double radiance = std::max(0.0, double(value) * strength);
+  if (!(radiance <= kMostRadiance))
+    throw InputError(environment.path + ": " + pixel_name(pixel, environment.width) +
+                     ": its radiance is beyond 1e30; lower --environment-strength");
+  return float(radiance);
+}
 
 }  // namespace
 
@@ -70,10 +53,15 @@ Environment load_environment(const std::string& path, const EnvironmentOptions& 
   // Removes full turns from the rotation, so that equal light has an equal hash.
   environment.rotation_rad = std::remainder(options.rotation_deg, 360.0) * std::numbers::pi / 180;
   environment.radiance.resize(image.pixels.size());
-  Scale scale(environment, options.strength);
+  std::size_t negative = 0, first_negative = 0;
   for (std::size_t i = 0; i < environment.radiance.size(); ++i)
-    environment.radiance[i] = {scale(image.pixels[i].r, i), scale(image.pixels[i].g, i), scale(image.pixels[i].b, i)};
-  scale.warn(environment.warnings);
+    for (int c = 0; c < 3; ++c) {
+      if (image.pixels[i][c] < 0 && negative++ == 0) first_negative = i;
+      environment.radiance[i][c] = radiance_of(environment, image.pixels[i][c], options.strength, i);
+    }
+  if (negative > 0)
+    environment.warnings.push_back(path + ": " + std::to_string(negative) + " negative values, the first at " +
+                                   pixel_name(first_negative, environment.width) + ", are taken as 0");
   environment.hash = content_hash(environment);
   return environment;
 }
@@ -81,10 +69,10 @@ Environment load_environment(const std::string& path, const EnvironmentOptions& 
 Environment uniform_environment(Rgb color, const EnvironmentOptions& options) {
   Environment environment;
   environment.path = "--environment";
-  Scale scale(environment, options.strength);
   if (!is_finite(color) || std::min({color.r, color.g, color.b}) < 0)
     throw InputError("--environment: a colour is three numbers from 0 on, as 0.2,0.3,0.5");
-  environment.radiance = {{scale(color.r, 0), scale(color.g, 0), scale(color.b, 0)}};
+  for (int c = 0; c < 3; ++c) color[c] = radiance_of(environment, color[c], options.strength, 0);
+  environment.radiance = {color};
   environment.hash = content_hash(environment);
   return environment;
 }

@@ -37,38 +37,11 @@ Rgb limited_colour(Import& import, const std::vector<double>& values, Rgb fallba
   return colour;
 }
 
-/// Reads numbers inside the JSON of an extension.
-struct ExtensionReader {
-  Import& import;
-  const Value& object;
-  std::string place;
-
-  double number(const char* key, double fallback) const {
-    if (!object.Has(key)) return fallback;
-    const Value& value = object.Get(key);
-    if (!value.IsNumber()) import.fail(place + "." + key, "is not a number");
-    return value.GetNumberAsDouble();
-  }
-  std::vector<double> numbers(const char* key) const {
-    std::vector<double> values;
-    if (!object.Has(key)) return values;
-    const Value& array = object.Get(key);
-    for (std::size_t i = 0; i < array.ArrayLen(); ++i) {
-      if (!array.Get(int(i)).IsNumber()) import.fail(place + "." + key, "holds something that is not a number");
-      values.push_back(array.Get(int(i)).GetNumberAsDouble());
-    }
-    if (values.size() != 3) import.fail(place + "." + key, "must have 3 numbers");
-    return values;
-  }
-  void ignore_texture(const char* key) const {
-    if (object.Has(key))
-      import.ignore(std::string(key) + " (the material keeps its factor)", 1,
-                    place.substr(0, place.find(".extensions")));
-  }
-  Texture texture(const char* key) const {
-    return object.Has(key) ? read_texture(import, object.Get(key), place + "." + key) : Texture{};
-  }
-};
+void ignore_texture(const ExtensionReader& reader, const char* key) {
+  if (reader.object.Has(key))
+    reader.import.ignore(std::string(key) + " (the material keeps its factor)", 1,
+                         reader.place.substr(0, reader.place.find(".extensions")));
+}
 
 /// Textures of the core specification.
 template <class Info>
@@ -88,22 +61,25 @@ void read_extension(const ExtensionReader& reader, const std::string& name, Mate
   } else if (name == "KHR_materials_specular") {
     material.specular = limited(import, reader.number("specularFactor", 1), 0, 1, reader.place);
     material.specular_color =
-        limited_colour(import, reader.numbers("specularColorFactor"), Rgb{1.0f}, kNoUpper, reader.place);
-    reader.ignore_texture("specularTexture");
-    reader.ignore_texture("specularColorTexture");
+        limited_colour(import, reader.numbers("specularColorFactor", 3), Rgb{1.0f}, kNoUpper, reader.place);
+    ignore_texture(reader, "specularTexture");
+    ignore_texture(reader, "specularColorTexture");
   } else if (name == "KHR_materials_ior") {
     const double ior = reader.number("ior", 1.5);
     material.ior = ior == 0 ? 0.0f : limited(import, ior, 1, kNoUpper, reader.place);
   } else if (name == "KHR_materials_transmission") {
     material.transmission = limited(import, reader.number("transmissionFactor", 0), 0, 1, reader.place);
-    textures.transmission = reader.texture("transmissionTexture");
+    if (reader.object.Has("transmissionTexture"))
+      textures.transmission =
+          read_texture(import, reader.object.Get("transmissionTexture"), reader.place + ".transmissionTexture");
   } else if (name == "KHR_materials_volume") {
     material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
-    material.attenuation_color = limited_colour(import, reader.numbers("attenuationColor"), Rgb{1.0f}, 1, reader.place);
+    material.attenuation_color =
+        limited_colour(import, reader.numbers("attenuationColor", 3), Rgb{1.0f}, 1, reader.place);
     if (reader.object.Has("attenuationDistance"))
       material.attenuation_distance =
           limited(import, reader.number("attenuationDistance", 1), kLeastDistance, kNoUpper, reader.place);
-    reader.ignore_texture("thicknessTexture");
+    ignore_texture(reader, "thicknessTexture");
   } else if (name == "KHR_materials_unlit") {
     material.unlit = true;
   }

@@ -56,6 +56,18 @@ struct Import {
 /// Normalises a quaternion x y z w; false if it is zero or not finite.
 bool normalize_rotation(std::array<double, 4>& rotation);
 
+/// Reads numbers inside the JSON object of an extension.
+struct ExtensionReader {
+  Import& import;
+  const tinygltf::Value& object;
+  std::string place;  ///< of the object in the file, for messages
+
+  /// A finite number; `fallback` if the key is missing. Throws InputError for anything else.
+  double number(const char* key, double fallback) const;
+  /// An array of `count` finite numbers; empty if the key is missing. Throws InputError for anything else.
+  std::vector<double> numbers(const char* key, std::size_t count) const;
+};
+
 /// A material's reference to a texture; index -1 for none.
 struct TextureUse {
   int index = -1, uv_set = 0;

@@ -72,21 +72,11 @@ Texture::Wrap wrap_of(Import& import, int mode, const std::string& place) {
   return Texture::Wrap::repeat;
 }
 
-double number(Import& import, const Value& object, const std::string& key, double fallback, const std::string& place) {
-  if (!object.Has(key)) return fallback;
-  const Value& value = object.Get(key);
-  if (!value.IsNumber() || !std::isfinite(value.GetNumberAsDouble()))
-    import.fail(place + "." + key, "is not a finite number");
-  return value.GetNumberAsDouble();
-}
+bool is_finite_number(const Value& value) { return value.IsNumber() && std::isfinite(value.GetNumberAsDouble()); }
 
-std::array<double, 2> pair(Import& import, const Value& object, const std::string& key, double fallback,
-                           const std::string& place) {
-  if (!object.Has(key)) return {fallback, fallback};
-  const Value& value = object.Get(key);
-  const auto good = [&](int i) { return value.Get(i).IsNumber() && std::isfinite(value.Get(i).GetNumberAsDouble()); };
-  if (value.ArrayLen() != 2 || !good(0) || !good(1)) import.fail(place + "." + key, "must be 2 finite numbers");
-  return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
+/// A whole number from 0 to 2147483647, or -1 for any other number.
+int whole(double number) {
+  return number >= 0 && number < 2147483648.0 && number == std::floor(number) ? int(number) : -1;
 }
 
 /// Reads KHR_texture_transform as a matrix: offset + R scale uv. In the specification's text and in all renderers, a
@@ -94,17 +84,35 @@ std::array<double, 2> pair(Import& import, const Value& object, const std::strin
 /// specification's example code has the opposite sign (Khronos' issue 1563).
 void read_transform(Import& import, const Value& value, const std::string& place, Texture& texture) {
   if (!value.IsObject()) import.fail(place, "is not an object");
-  const auto offset = pair(import, value, "offset", 0, place), scale = pair(import, value, "scale", 1, place);
-  const double angle = number(import, value, "rotation", 0, place), c = std::cos(angle), s = std::sin(angle);
+  const ExtensionReader reader{import, value, place};
+  std::vector<double> offset = reader.numbers("offset", 2), scale = reader.numbers("scale", 2);
+  offset.resize(2, 0), scale.resize(2, 1);
+  const double angle = reader.number("rotation", 0), c = std::cos(angle), s = std::sin(angle);
   texture.transform = {float(c * scale[0]),  float(s * scale[1]), float(offset[0]),
                        float(-s * scale[0]), float(c * scale[1]), float(offset[1])};
-  const double uv_set = number(import, value, "texCoord", texture.uv_set, place);
-  if (!(uv_set >= 0 && uv_set < 2147483648.0 && uv_set == std::floor(uv_set)))
-    import.fail(place + ".texCoord", "must be a whole number from 0 to 2147483647");
+  const int uv_set = whole(reader.number("texCoord", texture.uv_set));
+  if (uv_set < 0) import.fail(place + ".texCoord", "must be a whole number from 0 to 2147483647");
   texture.uv_set = std::uint32_t(uv_set);
 }
 
 }  // namespace
+
+double ExtensionReader::number(const char* key, double fallback) const {
+  if (!object.Has(key)) return fallback;
+  if (!is_finite_number(object.Get(key))) import.fail(place + "." + key, "is not a finite number");
+  return object.Get(key).GetNumberAsDouble();
+}
+
+std::vector<double> ExtensionReader::numbers(const char* key, std::size_t count) const {
+  std::vector<double> values;
+  if (!object.Has(key)) return values;
+  const Value& array = object.Get(key);
+  for (std::size_t i = 0; i < array.ArrayLen(); ++i)
+    if (is_finite_number(array.Get(int(i)))) values.push_back(array.Get(int(i)).GetNumberAsDouble());
+  if (array.ArrayLen() != count || values.size() != count)
+    import.fail(place + "." + key, "must have " + std::to_string(count) + " finite numbers");
+  return values;
+}
 
 Texture read_texture(Import& import, const TextureUse& use, const std::string& place) {
   Texture texture;
@@ -139,11 +147,10 @@ Texture read_texture(Import& import, const TextureUse& use, const std::string& p
 
 Texture read_texture(Import& import, const Value& info, const std::string& place) {
   if (!info.IsObject()) import.fail(place, "is not an object");
-  const double index = number(import, info, "index", -1, place), uv_set = number(import, info, "texCoord", 0, place);
-  if (!(index >= 0 && index < 2147483648.0 && index == std::floor(index)) ||
-      !(uv_set >= 0 && uv_set < 2147483648.0 && uv_set == std::floor(uv_set)))
+  const ExtensionReader reader{import, info, place};
+  TextureUse use{whole(reader.number("index", -1)), whole(reader.number("texCoord", 0)), nullptr};
+  if (use.index < 0 || use.uv_set < 0)
     import.fail(place, "index and texCoord must be whole numbers from 0 to 2147483647");
-  TextureUse use{int(index), int(uv_set), nullptr};
   if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform"))
     use.transform = &info.Get("extensions").Get("KHR_texture_transform");
   return read_texture(import, use, place);

@@ -105,7 +105,9 @@ void set_moves(const Scene& scene, const Animator& animator, const std::vector<A
   }
 }
 
-void set_changes(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
+/// Lists the materials, lights and cameras that change. A node whose material or light changes counts as moving, since
+/// its light differs.
+void add_changes(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
   for (const AnimationTrack* track : animator.property_tracks()) {
     if (!differs_in(*track, segment, fps)) continue;
     const std::string kind = kind_of(track->path);
@@ -115,14 +117,7 @@ void set_changes(const Scene& scene, const Animator& animator, double fps, Segme
                                           : scene.cameras[i].name;
     if (name.empty()) name = kind + " " + std::to_string(i);
     segment.changes.push_back({name, std::string(path_word(track->path)) + " of " + name, kind});
-  }
-}
-
-/// A node also counts as moving if an animation changes its material or light, since its light then differs.
-void add_changed_nodes(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
-  for (const AnimationTrack* track : animator.property_tracks()) {
-    const std::string_view kind = kind_of(track->path);
-    if (kind == "camera" || !differs_in(*track, segment, fps)) continue;
+    if (kind == "camera") continue;
     for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
       const Node& node = scene.nodes[n];
       const bool has = kind == "light"
@@ -133,7 +128,7 @@ void add_changed_nodes(const Scene& scene, const Animator& animator, double fps,
                                                                    });
       if (!has || segment.node_moves[n]) continue;
       segment.node_moves[n] = 1;
-      segment.why_moves[n] = std::string(path_word(track->path)) + " of its " + std::string(kind);
+      segment.why_moves[n] = std::string(path_word(track->path)) + " of its " + kind;
     }
   }
 }
@@ -214,13 +209,10 @@ Segment segment_of(const Scene& scene, int frame, const TimeOptions& options) {
   segment.node_moves.assign(count, 0);
   segment.why_moves.assign(count, "");
   const std::vector<Affine> first = animator.world_from_node(segment.first / options.fps);
-  if (animator.anything_animated()) {
-    set_moves(scene, animator, first, options.fps, segment);
-    set_changes(scene, animator, options.fps, segment);
-  }
+  if (animator.anything_animated()) set_moves(scene, animator, first, options.fps, segment);
   for (std::size_t n = 0; n < count; ++n)
     if (segment.node_moves[n]) segment.why_moves[n] = reason(scene, animator, segment, n, options.fps);
-  add_changed_nodes(scene, animator, options.fps, segment);
+  add_changes(scene, animator, options.fps, segment);
   add_static_bounds(scene, animator, first, segment.first / options.fps, segment);
   add_moving_bounds(scene, animator, options.fps, segment);
   if (!is_finite(segment.world_bounds.lower) || !is_finite(segment.world_bounds.upper))

@@ -3,7 +3,7 @@
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
-#include "lib/image/nonzero_pixels.h"
+#include "lib/image/image.h"
 
 namespace tempolux::tools {
 namespace {

@@ -29,13 +29,15 @@ struct GaussLegendre {
   }
 };
 
+/// The directional albedo of GGX.
 struct Albedo {
   double total, b;  ///< E at F = 1; its part with Fresnel's factor (1 - wo h)^5
 };
 
-/// integral D G2 / (4 cos_o cos_i) (1, (1 - u)^5) cos_i dwi over the half vectors h, u = wo h, dwi = 4 u dh.
-/// t = q^2 / (1 + q^2) with tan(h) = alpha q is uniform under D cos_h; cut where the ring of half vectors
-/// starts to reflect below the horizon, 2 h = 90 deg - o, and where all of it does, 2 h = 90 deg + o.
+/// The integrals of D G2 / (4 cos_o cos_i) cos_i and of the same times (1 - u)^5 over wi, where u = wo h. The variable
+/// is the half vector h, with dwi = 4 u dh. Its angle is written as tan = alpha q, since t = q^2 / (1 + q^2) is uniform
+/// under D cos_h. The range of t is cut where the ring of half vectors at one angle begins to reflect below the horizon
+/// (2 angle(h) = 90 deg - angle(wo)), and it ends where the whole ring does (2 angle(h) = 90 deg + angle(wo)).
 inline Albedo ggx_albedo(double cos_o, double alpha, const GaussLegendre& rule) {
   const double pi = std::numbers::pi, a2 = alpha * alpha, sin_o = std::sqrt(std::max(0.0, 1 - cos_o * cos_o));
   const double root_o = std::sqrt(a2 + (1 - a2) * cos_o * cos_o), angle_o = std::acos(cos_o);
@@ -69,7 +71,8 @@ inline Albedo ggx_albedo(double cos_o, double alpha, const GaussLegendre& rule) 
   return sum;
 }
 
-/// 2 integral of the above times cos d cos; cos = v^3 because the albedo bends where cos is about alpha.
+/// 2 integral_0^1 ggx_albedo(mu) mu dmu. The variable is v with mu = v^3, because the albedo bends where mu is about
+/// alpha.
 inline Albedo ggx_mean_albedo(double alpha, const GaussLegendre& outer, const GaussLegendre& rule) {
   Albedo sum{0, 0};
   for (std::size_t i = 0; i < outer.x.size(); ++i) {

@@ -16,8 +16,9 @@ inline double fresnel(double cos_o, double eta, double& cos_t) {
   return sin2 >= 1 ? 1 : 0.5 * (p * p + s * s);
 }
 
-/// 1 - E: mean over n x n/2 visible normals (half of them: the others mirror these) of 1 - G2/G1, or 1 where the
-/// direction ends up on the wrong side. The inner loop has no branch and no sum, so vector lanes run it.
+/// 1 - E [1]: the mean over visible normals of 1 - G2/G1, or of 1 if the direction is on the wrong side of the surface.
+/// n x n/2 normals suffice, since the others are their mirror images. The inner loop has no branch and no sum, so that
+/// vector lanes run it.
 inline double glass_loss(double cos_o, double alpha, double eta, int n) {
   const double sin_o = std::sqrt(std::max(0.0, 1 - cos_o * cos_o)), a2 = alpha * alpha;
   const auto lambda = [=](double c) { return (std::sqrt(a2 + (1 - a2) * c * c) / c - 1) / 2; };
