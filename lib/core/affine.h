@@ -14,6 +14,7 @@ struct Affine {
   Vec3d translation{};
 
   bool operator==(const Affine&) const = default;
+  /// A vector under the transform, without translation.
   Vec3d direction(Vec3d d) const { return {dot(row[0], d), dot(row[1], d), dot(row[2], d)}; }
   Vec3d point(Vec3d p) const { return direction(p) + translation; }
   /// A normal under the transform, by the inverse transpose of m; not normalised.

@@ -39,6 +39,7 @@ class RadicalInverse {
 /// in one box of volume 1/N_g.
 class PhotonHalton {
  public:
+  /// Each seed gives another scrambling.
   explicit PhotonHalton(std::uint64_t seed);
   /// Point of photon `index`: components in [0, 1).
   std::array<double, 4> point(std::uint64_t index) const;

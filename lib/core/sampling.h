@@ -20,7 +20,7 @@ inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;  ///< the largest floa
 struct SinCos {
   float sin, cos;
 };
-inline SinCos sin_cos_eighth(float x) {
+inline SinCos sin_cos_eighth(float x) {  // an eighth of a turn to either side
   const float y = x * x;
   return {x + x * (y * (-1.0f / 6 + y * (1.0f / 120 + y * (-1.0f / 5040 + y * (1.0f / 362880))))),
           1 + y * (-0.5f + y * (1.0f / 24 + y * (-1.0f / 720 + y * (1.0f / 40320 - y * (1.0f / 3628800)))))};

@@ -12,6 +12,7 @@
 
 namespace tempolux {
 
+/// How save_exr() stores samples.
 struct ExrWriteOptions {
   /// Writes colours (is_colour) as float16, rounded to nearest, ties to even; InputError for |value| > 65504. All other
   /// channels keep 32 bits.
@@ -33,6 +34,7 @@ struct ExrWriteOptions {
 /// Nothing is written in these cases. Memory: the compressed file, besides the image.
 void save_exr(const std::string& path, const Image& image, const ExrWriteOptions& options = {});
 
+/// What load_exr() reads and accepts.
 struct ExrReadOptions {
   std::uint64_t max_pixels = 512ull << 20;           ///< limit of the data window and of the display window
   bool allow_nan = false;                            ///< accepts NaN in all channels, and infinity in colours

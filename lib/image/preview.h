@@ -16,6 +16,7 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
 };
 
+/// What make_picture() shows.
 struct PreviewOptions {
   std::string layer;                     ///< "" is RGB; or "indirect", "Z", "N", "id.object", "P" ...
   std::optional<double> exposure_stops;  ///< missing: auto_exposure_stops()

@@ -31,7 +31,7 @@ class TexturePyramid {
   int level_count() const { return int(levels_.size()); }
   int width(int level = 0) const { return levels_[std::size_t(level)].width; }
   int height(int level = 0) const { return levels_[std::size_t(level)].height; }
-  std::uint64_t byte_count() const;
+  std::uint64_t byte_count() const;  ///< memory of all levels
 
   /// One texel; x and y must lie inside.
   Rgba texel(int level, int x, int y) const;

@@ -34,8 +34,8 @@ class Aim {
   /// Radii and weights must be above 0. Without spheres or scene the aim is empty. Scene space, m.
   Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius);
 
-  bool empty() const { return discs_.empty(); }
-  std::size_t size() const { return given_; }  ///< number of the given spheres
+  bool empty() const { return discs_.empty(); }  ///< true if photons are not aimed
+  std::size_t size() const { return given_; }    ///< number of the given spheres
 
   struct Start {
     Vec3 origin{};    ///< of the photon; scene space, in front of the scene sphere
@@ -43,8 +43,8 @@ class Aim {
   };
   /// Start point of light that travels along `travel` (unit). u and v are in [0, 1). u chooses the disc; its place
   /// inside the disc's part of [0, 1) is the first coordinate on the disc, v the second. Neighbouring numbers give
-  /// neighbouring points. The mean of flux over u and v is 1, also where spheres reach out of the scene sphere. Must not
-  /// be called if empty().
+  /// neighbouring points. The mean of flux over u and v is 1, also where spheres reach out of the scene sphere. Must
+  /// not be called if empty().
   Start start(Vec3 travel, double u, double v) const;
 
   /// True if one of the given spheres holds the point (scene space).
@@ -56,8 +56,8 @@ class Aim {
     Vec3 direction;              ///< unit
     double pdf_solid_angle = 0;  ///< [1/sr]; sums over all spheres that lie in this direction
   };
-  /// u.x chooses the sphere and gives the angle to the cone's axis, u.y the angle around the axis. Must not be called if
-  /// empty() or holds(place).
+  /// u.x chooses the sphere and gives the angle to the cone's axis, u.y the angle around the axis. Must not be called
+  /// if empty() or holds(place).
   Way towards(Vec3 place, Vec2 u) const;
   /// pdf [1/sr] with which towards() gives this direction (unit).
   double pdf_solid_angle(Vec3 place, Vec3 direction) const;

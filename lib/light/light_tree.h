@@ -31,6 +31,7 @@ class LightTree {
   explicit LightTree(const std::vector<LightBounds>& lights);
 
   bool empty() const { return nodes_.empty(); }
+  /// A light that choose() took.
   struct Choice {
     std::uint32_t light = 0;
     double probability = 0;  ///< of choosing this light at this point and normal

@@ -116,8 +116,9 @@ class Lights {
   /// if none is above the surface.
   bool sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const;
 
-  bool empty() const { return slots_.empty(); }
-  std::size_t count() const { return slots_.size(); }
+  bool empty() const { return slots_.empty(); }        ///< true if the emission table has no slot
+  std::size_t count() const { return slots_.size(); }  ///< number of slots
+  /// The slots of the emission table, in its order.
   const std::vector<EmissionSlot>& slots() const { return slots_; }
   /// Flux of all lights [W]. Directional lights and the environment count with the flux through the scene sphere's
   /// disc.

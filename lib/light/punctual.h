@@ -14,6 +14,7 @@ namespace tempolux {
 struct SpotProfile {
   double inner = 0, outer = 0;  ///< 1 - cos of the half angles; inner <= outer
 
+  /// The profile of a light of kind spot.
   explicit SpotProfile(const PunctualLight& light);
   /// s^2 [1] at one_minus_cos = 1 - cos t.
   double falloff(double one_minus_cos) const;

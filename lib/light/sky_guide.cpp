@@ -1,4 +1,4 @@
-// lib/light/sky_guide.cpp -- builds and samples a tree over places; each leaf has a density of sky directions.
+// lib/light/sky_guide.cpp -- builds and samples a tree over places; each leaf has a pdf of sky directions.
 #include "lib/light/sky_guide.h"
 
 #include <algorithm>

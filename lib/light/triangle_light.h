@@ -1,5 +1,5 @@
 // lib/light/triangle_light.h -- one emissive triangle: draws points on it for a shading point, and evaluates their
-// density.
+// pdf.
 #pragma once
 
 #include <vector>
@@ -39,6 +39,7 @@ struct TriangleLight {
   Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {
     return varies ? varying_at(frame, surface, index, b1, b2) : radiance;
   }
+  /// True if the triangle has an area and its mean emission is not black.
   bool emits() const { return area > 0 && max_component(radiance) > 0; }
   Rgbd flux() const;                       ///< W: pi L A, twice if two-sided
   Vec3 point(double b1, double b2) const;  ///< from the barycentric coordinates of corners 1 and 2
@@ -47,6 +48,7 @@ struct TriangleLight {
   Rgb varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const;
 };
 
+/// A point of a triangle, drawn for a shading point.
 struct TrianglePoint {
   Vec2 barycentric{};          ///< coordinates of corners 1 and 2
   Vec3 position{}, wi{};       ///< wi is unit, from the shading point towards `position`

@@ -110,8 +110,8 @@ class Bsdf {
   /// The weight is zero if wo is below the surface or nothing is reflected.
   Sample sample(const Direction& wo, float u_lobe, Vec2 u) const;
   Sample sample(Vec3 wo, float u_lobe, Vec2 u) const { return sample(along(wo), u_lobe, u); }
-  /// True if the material is a reflecting Lambert lobe and nothing else: sample() is then sample_matte(wo,
-  /// sample_hemisphere_cos(u)).
+  /// True if the material is a reflecting Lambert lobe and nothing else. Then sample() equals sample_matte() with the
+  /// direction sample_hemisphere_cos(u), which callers may draw for many hits at once.
   bool is_matte() const { return diffuse_ && !specular_ && !(transmission_ > 0); }
   Sample sample_matte(Vec3 wo, Vec3 cosine_direction) const {
     if (!(wo.z > 0)) return {};

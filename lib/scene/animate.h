@@ -30,6 +30,7 @@ struct Pose {
 /// The tracks of a scene sorted by target, so that evaluating many frames needs no search. The scene must outlive it.
 class Animator {
  public:
+  /// Takes time in proportion to the scene's tracks and joints.
   explicit Animator(const Scene& scene);
 
   /// World transform of every node at a time [s].

@@ -36,6 +36,7 @@ struct Import {
   std::map<std::string, Mended> mended{};   ///< by the text of mend(); each becomes a warning
   std::map<std::string, Mended> ignored{};  ///< by the text of ignore(); each becomes a warning
 
+  /// Throws InputError "FILE: PLACE: WHAT".
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     gltf::fail(scene.path, place, what);
   }

@@ -14,7 +14,9 @@ constexpr float kMargin = 0x1p-18f;
 /// Least mean number of triangles per piece. With it the pieces of a surface take less memory than its vertices and
 /// indices.
 constexpr double kTrianglesOfPiece = 4;
-constexpr std::size_t kMostAlong = 4;  ///< largest number of cells along an axis (docs/methods/dynamic.md)
+/// Largest number of cells along an axis (docs/methods/dynamic.md). More cells let fewer paths be traced again; the
+/// light is the same.
+constexpr std::size_t kMostAlong = 4;
 
 /// Moves all vertices to one place. No ray hits a surface without area, and it emits nothing.
 void shrink(Surface& surface) {

@@ -24,6 +24,7 @@ struct MovingBoxes {
   std::vector<std::vector<Box3>> pieces;
   Box3 all;  ///< empty if nothing moves
 
+  /// The boxes of the pieces of a moving surface, by its number among the moving surfaces; empty if it has none.
   std::span<const Box3> pieces_of(std::size_t surface) const {
     return surface < pieces.size() ? std::span<const Box3>(pieces[surface]) : std::span<const Box3>();
   }

@@ -39,7 +39,7 @@ class MajorantGrid {
   void raise_to(float least);
   /// Mean length of a chord through the box [m]: 4 V / S for a convex body (Cauchy).
   float mean_chord() const;
-  std::string hash() const;
+  std::string hash() const;  ///< of box, counts and majorants
 
   friend class MajorantWalk;
 
