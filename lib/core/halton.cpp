@@ -32,7 +32,7 @@ std::uint64_t high_product(std::uint64_t a, std::uint64_t b) {
 }  // namespace
 
 RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scramble)
-    : base_(base), block_digits_(1), block_size_(base), block_count_(0) {
+    : block_digits_(1), block_size_(base), block_count_(0) {
   while (std::uint64_t(block_size_) * base <= kMaxTable) {
     block_size_ *= base;
     ++block_digits_;

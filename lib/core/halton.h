@@ -22,10 +22,9 @@ class RadicalInverse {
 
   /// The radical inverse of an index, in [0, 1).
   double operator()(std::uint64_t index) const;
-  std::uint32_t base() const { return base_; }
 
  private:
-  std::uint32_t base_, block_digits_, block_size_;
+  std::uint32_t block_digits_, block_size_;
   int block_count_;
   std::uint64_t reciprocal_;                  ///< 2^64 / block_size, rounded down
   double scale_;                              ///< base^-(block_digits * block_count)

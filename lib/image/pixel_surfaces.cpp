@@ -50,15 +50,4 @@ bool PixelSurfaces::same(std::size_t pixel, int dx, int dy) const {
   return std::abs(w[other] - w[pixel] - right - down) <= kSameDepth * w[pixel] + std::abs(right) + std::abs(down);
 }
 
-std::vector<std::uint8_t> PixelSurfaces::edges() const {
-  std::vector<std::uint8_t> edge(w.size());
-  parallel_pixels(width_, height_, [&](int x, int y, std::size_t p) {
-    for (int j = std::max(-1, -y); j <= std::min(1, height_ - 1 - y); ++j)
-      for (int i = std::max(-1, -x); i <= std::min(1, width_ - 1 - x); ++i)
-        if ((i != 0 || j != 0) && !(same(p, i, j) && same(p + std::size_t(std::ptrdiff_t(j) * width_ + i), -i, -j)))
-          edge[p] = 1;
-  });
-  return edge;
-}
-
 }  // namespace tempolux

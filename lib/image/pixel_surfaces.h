@@ -44,9 +44,6 @@ class PixelSurfaces {
   /// that `pixel` predicts by kSameDepth w plus the predicted change over the offset, so the slope of a curved surface
   /// may double.
   bool same(std::size_t pixel, int dx, int dy) const;
-  /// For each pixel, 1 unless the pixel and each of its eight neighbours show one surface, in both directions of
-  /// same().
-  std::vector<std::uint8_t> edges() const;
 
   // One entry per pixel; public, for loops that test many pixels at once.
   std::vector<std::uint32_t> object;      ///< id.object

@@ -16,7 +16,6 @@ class MoverWatch {
   /// 1 to 64 intervals; the boxes of an interval hold all movers in any of its frames.
   explicit MoverWatch(std::vector<MovingBoxes> intervals);
 
-  std::size_t interval_count() const { return intervals_.size(); }
   /// touching() of a ray that meets boxes in all intervals.
   std::uint64_t all() const { return ~std::uint64_t(0) >> (64 - intervals_.size()); }
   /// Bit i is set if the ray meets a box of interval i before `t` times its direction; t may be infinite.

@@ -39,7 +39,6 @@ class Medium {
 
   const MediumOptions& options() const { return options_; }
   const VoxelGrid& grid() const { return *grid_; }
-  const Affine& scene_from_index() const { return scene_from_index_; }
   /// Scene-space box [m] outside which the extinction is 0; empty if it is 0 everywhere.
   const Box3d& bounds() const { return bounds_; }
   /// Length of the shortest edge of a voxel [m].

@@ -132,13 +132,6 @@ std::uint32_t VoxelGrid::brick(std::int32_t x, std::int32_t y, std::int32_t z) c
   return table_[(std::size_t(bx) * std::size_t(block_count_[1]) + by) * std::size_t(block_count_[2]) + bz];
 }
 
-float VoxelGrid::voxel(const GridIndex& at) const {
-  const std::uint32_t number = brick(at[0] >> 3, at[1] >> 3, at[2] >> 3);
-  if (number == kNoBrick) return 0;
-  return bricks_[std::size_t(number) * kBrickSize +
-                 std::size_t(((at[0] & 7) * kBrick + (at[1] & 7)) * kBrick + (at[2] & 7))];
-}
-
 float VoxelGrid::at(Vec3 place) const {
   constexpr auto kFar = float(kFarthest);
   if (!(std::abs(place.x) < kFar && std::abs(place.y) < kFar && std::abs(place.z) < kFar)) return 0;

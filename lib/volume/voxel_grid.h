@@ -37,13 +37,8 @@ class VoxelGrid {
   explicit VoxelGrid(const std::vector<VoxelBlock>& blocks);
 
   bool empty() const { return bricks_.empty(); }
-  /// Value of one voxel.
-  float voxel(const GridIndex& at) const;
   /// Value at a position of index space.
   float at(Vec3 place) const;
-  /// Smallest and largest voxel (inclusive) of the blocks that are not empty; lower > upper if all are empty.
-  const GridIndex& lower() const { return lower_; }
-  const GridIndex& upper() const { return upper_; }
   /// Index-space box outside which at() is 0: from one before the first voxel above 0 to one after the last.
   Box3d support() const;
   /// Largest value of at() in a closed box of index space. Visits each voxel of the box.
@@ -63,6 +58,7 @@ class VoxelGrid {
   GridIndex first_block_{}, block_count_{};
   std::vector<std::uint32_t> table_;  ///< number of each block's brick; z varies fastest
   std::vector<float> bricks_;         ///< kBrickSize values for each brick; z varies fastest
+  /// Smallest and largest index (inclusive) of a voxel in a stored block; lower_ > upper_ if there is none.
   GridIndex lower_{1, 1, 1}, upper_{0, 0, 0};
   Box3d support_;
   float largest_ = 0;

@@ -62,8 +62,8 @@ TEST(VoxelGrid, TrilinearBetweenVoxelsAcrossBlocks) {
   EXPECT_EQ(grid->at({16, 3, 3}), 0);
   EXPECT_EQ(grid->at({NAN, 3, 3}), 0);
   EXPECT_EQ(grid->at({1e30f, 3, 3}), 0);
-  EXPECT_FLOAT_EQ(grid->voxel({15, 15, 15}), 151);
-  EXPECT_EQ(grid->voxel({16, 0, 0}), 0);
+  EXPECT_FLOAT_EQ(grid->at({15, 15, 15}), 151);
+  EXPECT_EQ(grid->at({16, 0, 0}), 0);
 }
 
 TEST(VoxelGrid, NegativePlacesSparseBlocksAndBounds) {
