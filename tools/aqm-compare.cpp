@@ -19,23 +19,18 @@ void declare(tools::Tool& tool, tools::CompareOptions& o) {
   CLI::App& app = tool.app();
   app.add_option("test", o.test, "frame to judge, EXR, or a pattern such as f.####.exr")->required();
   app.add_option("reference", o.reference, "its reference, unless --reference-halves is given");
-  app.add_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
-      ->expected(2)
-      ->type_name("FILE");
+  tool.file_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
+      ->expected(2);
   app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
   app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")->type_name("NAME");
-  app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")->type_name("FILE");
-  app.add_option("--except", o.except,
-                 "EXR, such as a mask of ibr-warp; pixels where one of its channels is not 0 do not count")
-      ->type_name("FILE");
-  app.add_option("--relative-to", o.smooth,
-                 "EXR; replaces the reference in relMSE's denominator, where the reference's noise would matter")
-      ->type_name("FILE");
-  app.add_option(
-         "--metric", o.metric,
-         "error: RMSE, relMSE, bias, PSNR, flicker; aqm: also the share of pixels in which a viewer sees a difference")
-      ->type_name("{error,aqm}")
-      ->capture_default_str();
+  tool.file_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count");
+  tool.file_option("--except", o.except,
+                   "EXR, such as a mask of ibr-warp; pixels where one of its channels is not 0 do not count");
+  tool.file_option("--relative-to", o.smooth,
+                   "EXR; replaces the reference in relMSE's denominator, where the reference's noise would matter");
+  tool.choice_option(
+      "--metric", o.metric, {"error", "aqm"},
+      "error: RMSE, relMSE, bias, PSNR, flicker; aqm: also the share of pixels in which a viewer sees a difference");
   tools::declare_vision(tool, o.vision);
   app.add_flag("--either", o.either,
                "the two frames have equal, independent errors, such as one frame warped from two keys: AQM judges the "

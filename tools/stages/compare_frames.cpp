@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "formats/error.h"
 #include "lib/aqm/difference.h"
@@ -13,22 +14,17 @@ namespace tempolux::tools {
 namespace {
 
 void check(const Tool& tool, const CompareOptions& o, bool frames_given) {
-  if (o.metric != "error" && o.metric != "aqm")
-    throw InputError("--metric " + o.metric + ": unknown; there are: error, aqm");
-  check_vision(o.vision, frames_given && tool.common().frames.size() > 1);
   if (o.reference.empty() == o.halves.empty())
     throw InputError("give the reference either as second file or as --reference-halves A B");
   if (o.own_halves && !o.halves.empty()) throw InputError("--halves: judges two files, without --reference-halves");
   if (!o.halves.empty() && (o.halves[0] == o.halves[1] || o.test == o.halves[0] || o.test == o.halves[1]))
     throw InputError("--reference-halves: the same file twice; the halves must be independent of each other and of x");
-  if (frames_given && tool.common().frames.size() > 1 && !has_frame_pattern(o.test))
-    throw InputError(o.test + ": --frames names several frames; give a pattern such as f.####.exr");
-  if (frames_given && tool.common().frames.size() > 1 && !o.difference.empty() && !has_frame_pattern(o.difference))
-    throw InputError("--difference " + o.difference + ": give a pattern such as d.####.png for several frames");
+  tool.check_patterns({o.test, o.difference, o.vision.map});
   if (!frames_given && has_frame_pattern(o.test))
     throw InputError(o.test + ": a pattern of frames; say which with --frames, such as 0-47");
-  if (!o.difference.empty() && !o.difference.ends_with(".exr") && !o.difference.ends_with(".png"))
-    throw InputError("--difference " + o.difference + ": the name must end in .exr or .png");
+  for (const auto& [option, name] : {std::pair{"--difference ", o.difference}, {"--map ", o.vision.map}})
+    if (!name.empty() && !name.ends_with(".exr") && !name.ends_with(".png"))
+      throw InputError(option + name + ": the name must end in .exr or .png");
 }
 
 /// Writes the difference as EXR or PNG. If `scale` is 0 the first frame sets it for all frames.

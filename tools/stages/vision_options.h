@@ -10,19 +10,19 @@
 
 namespace tempolux::tools {
 
-/// Values of the options; numbers below 0 mean that the option is not given.
+/// Values of the options.
 struct VisionWords {
-  std::string flow, map, display = "office", exposure = "auto", eye = "track";
-  double frames_per_second = -1;
+  std::string flow, map, display = "office", eye = "track";
+  std::optional<double> exposure_stops;     ///< empty: that of the first frame
+  std::optional<double> frames_per_second;  ///< empty: that of the flow or of the frame, else 24
 
   /// True if an option is given that needs the vision model.
   bool used() const { return !flow.empty() || !map.empty(); }
 };
 
 void declare_vision(Tool& tool, VisionWords& words);
-/// Throws InputError for options that contradict each other, before any file is read.
-void check_vision(const VisionWords& words, bool several_frames);
-/// The options for a sequence whose first frame is `first`, from which exposure and frame rate are taken if not given.
+/// The options for a sequence whose first frame is `first`, which gives the exposure and the frame rate that the words
+/// leave open.
 VisionOptions vision_options(const VisionWords& words, const LoadedFrame& first);
 
 /// Writes a frame's map: EXR, or PNG with the map over the frame.
