@@ -7,6 +7,7 @@
 
 #include "lib/image/exr_io.h"
 #include "lib/image/object_names.h"
+#include "lib/render/audit.h"
 #include "tools/info/info_facts.h"
 
 namespace tempolux::tools {
@@ -14,7 +15,6 @@ namespace {
 
 /// Frames sample direct light themselves, so its audit only tests the audit.
 constexpr std::array<const char*, 2> kLayers{"caustic", "indirect"};
-constexpr double kLimit = 0.02, kErrors = 3;  // as in FrameAudit's is_biased()
 
 /// Sums of one layer over the frames.
 struct Sum {
@@ -25,9 +25,10 @@ struct Sum {
 
   double mean() const { return share / frames; }
   double error() const { return std::sqrt(share_square) / frames; }
-  bool biased() const { return std::abs(mean()) > kLimit && std::abs(mean()) > kErrors * error(); }
-  /// The layer's audited light, as a share of the picture, is below the limit: whatever the layer errs by is not seen.
-  bool faint() const { return std::abs(share) < kLimit * std::abs(of_layer); }
+  /// The same limits as is_biased() has for one frame.
+  bool biased() const { return std::abs(mean()) > kAuditLimit && std::abs(mean()) > kAuditErrors * error(); }
+  /// True if the layer's audited light is a share of the picture below the limit: no error of such a layer is seen.
+  bool faint() const { return std::abs(share) < kAuditLimit * std::abs(of_layer); }
 };
 
 /// A percentage with as many decimals as the error needs to show its first digit.
