@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
          "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")
       ->capture_default_str();
   tool.file_option("--importance", options.importance, tools::kImportanceHelp);
-  app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
+  tool.output_option(options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
   tool.choice_option("--map", options.map, {"global", "static", "dynamic"},
                      "global: the scene at the frame; static: without movers of the frame's segment; dynamic: the "

@@ -65,7 +65,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
   app.add_option("--aqm", options.share,
                  "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
-      ->transform(tools::percent([] {}));
+      ->transform(tools::percent());
   tool.number_option("--pixel-error", wish.pixel_error, 0, 10, "as frame-render --pixel-error; 0: the preset's");
   app.add_option(
          "--words", options.words,
@@ -84,7 +84,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
                  "an interval between keys is halved if a viewer sees errors in more than this share of its pixels "
                  "(AQM); without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
-      ->transform(tools::percent([] {}));
+      ->transform(tools::percent());
   text("--report", options.report, "FRAMES", "frames to compare with path tracing; ends: the first and the last");
   tool.number_option("--reference-samples", wish.reference_samples, 2, 1 << 20, "samples per pixel of the reference");
 }
@@ -103,17 +103,14 @@ int main(int argc, char** argv) {
   add_methods(tool, options);
   add_figures(tool, options);
   // Options that change no file of a plan are left out of its history.
-  const auto aside = [&](const char* name, auto& value, const char* type, const char* help) {
-    CLI::Option* option = app.add_option(name, value, help)->type_name(type);
-    tool.leave_out_of_history(option);
-    return option;
-  };
-  aside("--recipes", options.recipes, "FILE",
-        "files with the rules of make: if one of them changes, all files are made again");
-  aside("--estimate", options.estimate, "FOLDER",
-        "write two small plans into this folder instead of a plan; make runs them. Without a scene: print the "
-        "estimated cost, CPU seconds and bytes of each stage, from their statistics (make -f Makefile.example "
-        "estimate)");
+  tool.leave_out_of_history(tool.file_option(
+      "--recipes", options.recipes, "files with the rules of make: if one of them changes, all files are made again"));
+  tool.leave_out_of_history(
+      app.add_option("--estimate", options.estimate,
+                     "write two small plans into this folder instead of a plan; make runs them. Without a scene: print "
+                     "the estimated cost, CPU seconds and bytes of each stage, from their statistics (make -f "
+                     "Makefile.example estimate)")
+          ->type_name("FOLDER"));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   std::string arguments = std::filesystem::current_path().string();

@@ -55,7 +55,7 @@ Smoke smoke_of(tools::Tool& tool, const Options& options, const RenderScene& sce
   tool.stats().phase("march", true);
   ComposeOptions compose_options = options.compose;
   compose_options.surfaces_by_depth = !base.of_this_scene;
-  compose_options.progress = [&](double fraction) { tool.progress(fraction); };
+  compose_options.progress = tool.progress_sink();
   GatherPoints points;
   if (light.has_rays()) points = tools::read_points(tool, options.points, frame);
   const PointLookup lookup(points.points, points.spacing, point_clearance(scene.tracer));

@@ -16,6 +16,6 @@ on_terminal "$slow 2> err"; has_bar && bad 'a bar though standard error is a fil
 on_terminal 'tool-probe s.glb --bytes 128KiB -o a.out'; has_bar && bad 'a bar for a moment of work'
 # The tools with long work give their progress.
 for source in stages/trace_photons stages/build_records stages/gather_frames volume-compose stages/render_frame stages/compare_frames info/info_answer stages/planning; do
-  grep -q 'progress(' "$HERE/../../tools/$source.cpp" || bad "$source says nothing of its progress"
+  grep -qE 'progress(_sink)?\(' "$HERE/../../tools/$source.cpp" || bad "$source says nothing of its progress"
 done
 exit $failed

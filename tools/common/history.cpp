@@ -28,14 +28,10 @@ std::string without_folder(const std::string& name) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-/// The longest name of an option: "photons" for "-n,--photons".
+/// The first long name of an option, else its short name: "--frames" for "--frames,--frame".
 std::string option_name(const CLI::Option& option) {
   if (!option.get_lnames().empty()) return "--" + option.get_lnames().front();
   return "-" + option.get_snames().front();
-}
-
-bool has_name(const CLI::Option& option, const std::string& name) {
-  return std::ranges::find(option.get_lnames(), name) != option.get_lnames().end();
 }
 
 bool is_positional(const CLI::Option& option) { return option.get_lnames().empty() && option.get_snames().empty(); }
@@ -61,13 +57,13 @@ std::string Tool::history_line(std::optional<int> frame) const {
       line += " " + quoted(without_folder(frame && named ? frame_name(value, *frame) : value));
     }
   };
-  const std::vector<const CLI::Option*> options = std::as_const(state_->app).get_options();
+  const std::vector<const CLI::Option*> options = std::as_const(state_->app).get_options(
+      [&](const CLI::Option* option) { return !state_->left_out_of_history.contains(option); });
   for (const CLI::Option* option : options)
-    if (is_positional(*option) && !state_->left_out_of_history.contains(option)) add(*option);
+    if (is_positional(*option)) add(*option);
   for (const CLI::Option* option : options) {
-    if (is_positional(*option) || state_->left_out_of_history.contains(option)) continue;
-    if (has_name(*option, "output")) continue;
-    if (frame && (has_name(*option, "frames") || has_name(*option, "frame"))) {
+    if (is_positional(*option)) continue;
+    if (frame && option_name(*option) == "--frames") {
       line += " --frame " + std::to_string(*frame);
     } else if (option->count() > 0) {
       line += " " + option_name(*option);

@@ -177,10 +177,6 @@ void Tool::volume_options() {
 void Tool::common_options(unsigned flags) {
   CLI::App& app = state_->app;
   Common& common = state_->common;
-  const auto left_out = [&](CLI::Option* option) {
-    state_->left_out_of_history.insert(option);
-    return option;
-  };
   if (flags & uses_frames)
     parsed_option(app, "--frames,--frame", "frame, or frames such as 0-47, 0-47x2 or 1,5,9", "0",
                   [&common](const std::string& text) { common.frames = parse_frames(text); })
@@ -199,29 +195,24 @@ void Tool::common_options(unsigned flags) {
       file_option("--majorants", common.volume.majorants,
                   "majorants file of scene-plan, state/FRAME-KEY.majorants: bounds of the extinction for a whole "
                   "segment; needed for maps that are updated");
-    left_out(app.add_option("--state", common.state_files,
-                            "state files of scene-plan, listed by --depfile instead of the scene's files"))
-        ->type_name("FILE");
-    left_out(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
+    leave_out_of_history(file_option("--state", common.state_files,
+                                     "state files of scene-plan, listed by --depfile instead of the scene's files"));
+    leave_out_of_history(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
   }
-  left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
+  leave_out_of_history(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")
       ->capture_default_str()
       ->envname("TEMPOLUX_THREADS")
       ->check(number_between(0, 4096));
-  left_out(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
-  left_out(app.add_option("--stats", common.stats_file, "write seconds, counts and memory as JSON; -: standard output"))
-      ->type_name("FILE");
-  left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
-      ->type_name("FILE");
-  left_out(app.add_flag("-q,--quiet", common.quiet, "print errors only"));
-  left_out(app.add_flag("-v,--verbose", common.verbose, "report each phase and its time"));
+  leave_out_of_history(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
+  output_option(common.stats_file, "write seconds, counts and memory as JSON; -: standard output", "--stats");
+  output_option(common.dep_file, "write a make rule: outputs depend on inputs", "--depfile");
+  leave_out_of_history(app.add_flag("-q,--quiet", common.quiet, "print errors only"));
+  leave_out_of_history(app.add_flag("-v,--verbose", common.verbose, "report each phase and its time"));
 }
 
 CLI::Option* Tool::output_option(std::string& path, const std::string& help, const std::string& names) {
-  CLI::Option* option = file_option(names, path, help);
-  leave_out_of_history(option);
-  return option;
+  return leave_out_of_history(file_option(names, path, help));
 }
 
 CLI::Option* Tool::file_option(const std::string& names, std::string& file, const std::string& help) {
@@ -290,6 +281,9 @@ void Tool::check_frame_output(const std::string& name) const {
   if (name == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
 }
 
-void Tool::leave_out_of_history(const CLI::Option* option) { state_->left_out_of_history.insert(option); }
+CLI::Option* Tool::leave_out_of_history(CLI::Option* option) {
+  state_->left_out_of_history.insert(option);
+  return option;
+}
 
 }  // namespace tempolux::tools

@@ -9,15 +9,15 @@
 
 namespace tempolux::tools {
 
-/// For transform(): rewrites "5%" as 0.05 and calls `given`; other words stay unchanged.
-inline CLI::Validator percent(std::function<void()> given) {
+/// For transform(): rewrites "5%" as 0.05 and calls `given`, if there is one; other words stay unchanged.
+inline CLI::Validator percent(std::function<void()> given = {}) {
   return CLI::Validator(
       [given = std::move(given)](std::string& word) {
         double number = 0;
         if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), number))
           return std::string();
         word = std::to_string(number / 100);
-        given();
+        if (given) given();
         return std::string();
       },
       "");

@@ -128,10 +128,9 @@ void check_identity(Tool& tool, const std::string& file, const formats::Identity
   }
   const std::string stale = formats::stale_concerns(file_identity, identity_of(frame));
   if (stale.empty()) return;
-  const std::string message =
-      file + ": made for another state of the scene: " + stale + " differ at frame " + std::to_string(frame.frame);
-  if (!tool.common().allow_stale) throw InputError(message + "; make it again for this one, or pass --allow-stale");
-  tool.warn(message);
+  tool.refuse_stale(
+      file + ": made for another state of the scene: " + stale + " differ at frame " + std::to_string(frame.frame),
+      "make it again for this one");
 }
 
 }  // namespace tempolux::tools

@@ -109,7 +109,6 @@ Tool::~Tool() = default;
 CLI::App& Tool::app() { return state_->app; }
 const Common& Tool::common() const { return state_->common; }
 Stats& Tool::stats() { return state_->stats; }
-const std::string& Tool::name() const { return state_->name; }
 
 void Tool::State::print_line(const std::string& message) {
   const std::lock_guard lock(message_mutex);
@@ -143,6 +142,11 @@ void Tool::warn(const std::string& message) {
 
 std::vector<std::string> Tool::warnings() const { return {state_->warnings.begin(), state_->warnings.end()}; }
 
+void Tool::refuse_stale(const std::string& message, const std::string& remedy) {
+  if (!state_->common.allow_stale) throw InputError(message + "; " + remedy + ", or pass --allow-stale");
+  warn(message);
+}
+
 void Tool::say(const std::string& message) {
   if (state_->common.verbose > 0 && !state_->common.quiet) state_->print_line(message);
 }
@@ -162,17 +166,16 @@ void Tool::progress(double fraction) {
   state_->bar_shown = true;
 }
 
+std::function<void(double)> Tool::progress_sink() {
+  return [this](double fraction) { progress(fraction); };
+}
+
 void Tool::depends_on(const std::string& file, InputRole role) {
   if (file == "-") return;
   if (role != InputRole::replaceable) protect_input(file);
   const auto same = [&](const State::Dependency& known) { return known.file == file; };
   if (std::ranges::any_of(state_->dependencies, same)) return;
   state_->dependencies.push_back({file, role});
-}
-
-void Tool::State::parse() {
-  app.parse(argc, argv);
-  if (common.threads == 0) common.threads = usable_processor_count();
 }
 
 /// Writes a part of the manual (docs/make_tools.sh, cmake/install.cmake). True if the user asked for nothing else.
@@ -231,7 +234,8 @@ int Tool::run(const std::function<int()>& body) {
     int code = exit_ok;
     try {
       if (state.print_manual()) return flush_stdout(), code;
-      state.parse();
+      state.app.parse(state.argc, state.argv);
+      if (state.common.threads == 0) state.common.threads = usable_processor_count();
       code = state.run(body, *this);
     } catch (const CLI::CallForHelp&) { std::cout << state.app.help(); } catch (const CLI::CallForVersion&) {
       std::cout << version_text(state.name);

@@ -123,8 +123,8 @@ class Tool {
   CLI::Option* count_option(const std::string& names, std::uint64_t& count, const std::string& help);
   CLI::Option* bytes_option(const std::string& names, std::uint64_t& bytes, const std::string& help);
   CLI::Option* size_option(const std::string& names, int& width, int& height, const std::string& help);
-  /// Leaves an option out of history_line(): it does not affect the output's content.
-  void leave_out_of_history(const CLI::Option* option);
+  /// Leaves an option out of history_line(), because it does not affect the output's content; returns the option.
+  CLI::Option* leave_out_of_history(CLI::Option* option);
 
   /// Throws InputError if the run has several frames and a name has no pattern for their numbers; skips empty names.
   void check_patterns(const std::vector<std::string>& names) const;
@@ -138,19 +138,23 @@ class Tool {
   Stats& stats();
   /// "tool: message" on standard error unless --quiet; each message once, and not if the file TEMPOLUX_SAID has it.
   void warn(const std::string& message);
-  /// Only with --verbose.
+  /// Refuses an input that was made for another state of the scene: throws InputError, which ends with `remedy` and
+  /// names --allow-stale. With --allow-stale only warns.
+  void refuse_stale(const std::string& message, const std::string& remedy);
+  /// "tool: message" on standard error with --verbose, unless --quiet.
   void say(const std::string& message);
   /// Shows progress in [0, 1] as a bar; only on a terminal and after a second. Any thread may call.
   void progress(double fraction);
+  /// progress() as a function; valid as long as the tool.
+  std::function<void(double)> progress_sink();
   /// This tool's line for an output's history, with a line feed: version, tool, the given options that affect content,
-  /// and input names without folders. Without --threads, --stats, --depfile, --quiet, --verbose, --state and outputs.
+  /// and input names without folders.
   /// With `frame`, --frames SPEC becomes --frame N and patterns in names are filled in, so that a file has the same
   /// history whether it was made alone or in a range.
   std::string history_line(std::optional<int> frame = {}) const;
   /// Adds a file that this run depends on, for --depfile (each once, in order). With --state, files of the scene are
   /// replaced by the state files. Throws InputError if an output would replace the file, unless it is `replaceable`.
   void depends_on(const std::string& file, InputRole role = InputRole::file);
-  const std::string& name() const;
   /// All warnings of this run, also those that were not shown.
   std::vector<std::string> warnings() const;
 

@@ -42,7 +42,6 @@ struct Tool::State {
   std::optional<std::set<std::string>> said;
 
   bool print_manual() const;
-  void parse();
   void apply_limits() const;
   int run(const std::function<int()>& body, const Tool& tool);
   void print_line(const std::string& message);

@@ -87,7 +87,7 @@ int answer(Tool& tool, Request& request) {
     throw InputError("--export " + request.exported + ": the name must end in .ply or .csv");
   using Kind = Output::Kind;
   Output output(request.written(), request.exported.empty() || ply ? Kind::binary : Kind::text);
-  request.picture.progress = [&](double done) { tool.progress(done); };
+  request.picture.progress = tool.progress_sink();
   if (!request.sheet.empty()) write_sheet(request.files, request.picture, output);
   else if (!request.png.empty()) write_picture(only_file(request, "--png"), request.picture, output);
   else export_points(only_file(request, "--export"), ply ? "ply" : "csv", output);

@@ -24,11 +24,9 @@ BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string
   tool.depends_on(mask);
   tool.depends_on(base, InputRole::replaceable);
   check_identity(tool, base, identity_in(result.base), frame);
-  if (shows_other_camera(result.base, picture.camera)) {
-    const std::string message = base + ": seen by another camera than frame " + std::to_string(frame.frame) + " is";
-    if (!tool.common().allow_stale) throw InputError(message + "; give a base of this view, or pass --allow-stale");
-    tool.warn(message);
-  }
+  if (shows_other_camera(result.base, picture.camera))
+    tool.refuse_stale(base + ": seen by another camera than frame " + std::to_string(frame.frame) + " is",
+                      "give a base of this view");
   return result;
 }
 

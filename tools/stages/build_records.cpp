@@ -49,7 +49,7 @@ RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& opti
     check_lit_alike(options, frame, first);
     return frame;
   };
-  cameras.progress = [&](double done) { tool.progress(done); };
+  cameras.progress = tool.progress_sink();
   cameras.added = [&](int number, std::size_t records) {
     tool.stats().set("records_added." + std::to_string(number), double(records));
   };

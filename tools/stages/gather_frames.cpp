@@ -147,7 +147,7 @@ void GatherRun::gather(int number) {
   if (before_) gather.advance(kept_, counts);
   RecordStore store;
   gather.place({[&](const Look& look) { return seen_through(tracer, view, look); }, options_.width, options_.height,
-                [&](double done) { tool_.progress(done); }},
+                tool_.progress_sink()},
                kept_, store, counts);
   tool_.stats().phase("write");
   write_cache(options_, frame, store, history, cache_output);

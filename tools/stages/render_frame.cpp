@@ -134,7 +134,7 @@ FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
   // small.
   if (yardstick) frame.seed = mix64(frame.seed ^ 0x7265666572656e63ull);
   frame.spread_outliers = !options.keep_outliers && !yardstick;
-  frame.progress = [&tool](double fraction) { tool.progress(fraction); };
+  frame.progress = tool.progress_sink();
   return frame;
 }
 

@@ -44,10 +44,6 @@ Movers movers_in(SceneInput& input, const Segment& segment, std::size_t i, std::
   return movers;
 }
 
-std::function<void(double)> progress_of(Tool& tool) {
-  return [&tool](double fraction) { tool.progress(fraction); };
-}
-
 /// Writes the touched paths of a static map.
 void write_paths(const formats::PhotonHeader& map, const PhotonTracer& photons, const std::vector<std::string>& movers,
                  const std::vector<formats::TouchedPath>& touched, Output& output) {
@@ -145,7 +141,7 @@ void PhotonTracing::trace_global(int frame_number) {
   const PhotonMapResult result =
       updates ? update_map(tool_, options_.updating, {frame, photons, header, frame_name(options_.output, frame.frame)},
                            output.sink(), kept_)
-              : write_photon_map(photons, header, output.sink(), progress_of(tool_));
+              : write_photon_map(photons, header, output.sink(), tool_.progress_sink());
   tool_.stats().phase("commit");
   finish(output, result, tracer.refused_ray_count());
   if (!updates) warn_of_few(lights, result, frame_number);
@@ -182,7 +178,7 @@ void PhotonTracing::trace_static(int frame_number) {
   PhotonTracer photons(tracer, lights, options);
   std::optional<MoverWatch> watch;
   if (paths_output) photons.watch(&watch.emplace(std::move(boxes)));
-  const PhotonMapResult result = write_photon_map(photons, header, output.sink(), progress_of(tool_));
+  const PhotonMapResult result = write_photon_map(photons, header, output.sink(), tool_.progress_sink());
   tool_.stats().phase("commit");
   if (paths_output) {
     write_paths(header, photons, hashes, result.touched, *paths_output);
@@ -248,7 +244,7 @@ void PhotonTracing::trace_dynamic(int frame_number) {
 
   tool_.stats().phase("trace", true);
   const PhotonTracer whole(tracer, lights, photon_options), without(static_tracer, static_lights, photon_options);
-  const PhotonMapResult result = write_dynamic_map(without, whole, touched, header, output.sink(), progress_of(tool_));
+  const PhotonMapResult result = write_dynamic_map(without, whole, touched, header, output.sink(), tool_.progress_sink());
   tool_.stats().phase("commit");
   finish(output, result, tracer.refused_ray_count() + static_tracer.refused_ray_count());
   tool_.stats().count("touched_paths", double(touched.size()));

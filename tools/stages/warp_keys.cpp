@@ -123,13 +123,10 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     const bool same = same_attributes(key.key->camera(), frames.camera(*key.frame), key.points);
     // The scene's camera has double precision; the attributes hold its rounded values.
     const FrameCamera& camera = same ? frames.camera(*key.frame) : key.key->camera();
-    if (!same) {
-      const std::string message =
-          key.file + ": seen by another camera than the scene has at frame " + std::to_string(*key.frame);
-      if (!tool.common().allow_stale)
-        throw InputError(message + "; give a key of this camera (--camera), or pass --allow-stale");
-      tool.warn(message);
-    }
+    if (!same)
+      tool.refuse_stale(
+          key.file + ": seen by another camera than the scene has at frame " + std::to_string(*key.frame),
+          "give a key of this camera (--camera)");
     motions_.push_back(std::make_unique<ObjectMotions>(here, there));
     add(key, camera, frames.camera(number), identity_of(here));
     keys_.back().frames_away = std::abs(double(number) - *key.frame);
