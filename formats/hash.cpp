@@ -50,4 +50,10 @@ std::string hash_hex(std::string_view bytes) {
   return hasher.hex();
 }
 
+std::string hash_of_texts(std::initializer_list<std::string_view> texts) {
+  Hasher hasher;
+  for (const std::string_view text : texts) hasher.add(text);
+  return hasher.hex();
+}
+
 }  // namespace tempolux

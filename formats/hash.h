@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -44,5 +45,7 @@ class Hasher {
 
 /// Hash of one string of bytes.
 std::string hash_hex(std::string_view bytes);
+/// Hash of several strings, each with its length.
+std::string hash_of_texts(std::initializer_list<std::string_view> texts);
 
 }  // namespace tempolux

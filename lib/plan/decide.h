@@ -14,7 +14,7 @@
 
 namespace tempolux {
 
-/// Supplies the scene to pilots.
+/// Gives the pilots access to the scene.
 struct SceneSource {
   /// The scene at a frame inside the animation; without media if `with_media` is false.
   std::function<SceneFrame(int frame, bool with_media)> at;
@@ -27,19 +27,18 @@ struct SceneSource {
 /// Ascending.
 std::vector<int> looked_frames(const PlannedSegment& segment);
 
-/// Makes the decisions of one segment. Each looked frame has its own pilot. Kinds of light are the union over the
-/// looked frames, numbers the maximum. If frames need different methods, records have precedence over gathering, and
-/// gathering over paths: a method that suits the brightest case is right for the others. Throws InputError for a wish
-/// that the scene cannot fulfil.
+/// Makes the decisions of one segment. Each looked frame has its own pilot. The number of light paths is the largest
+/// that a looked frame needs. The way to light is the best one for all looked frames together (joined() in
+/// choose_light.h). Throws InputError for a wish that the scene cannot fulfil.
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source);
 
-/// What the camera sees over a segment, as the content of a view file (formats/plan/view.h): up to 16 different
-/// pictures, evenly spaced. "" if the scene is not much larger than what is seen, so that photons need no aim and
-/// points lie everywhere. `width` and `height` of the pictures in pixels; only their ratio counts. tree: of the static
-/// scene, if it was built before.
+/// The spheres around what the camera sees in up to 16 pictures of a segment, evenly spaced, as the content of a view
+/// file (formats/plan/view.h). "" if the scene is not much larger than what the camera sees: photons then need no aim,
+/// and points lie everywhere. Only the ratio of `width` and `height` counts. `tree`: the static scene's tree, which is
+/// built if it is empty.
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source, StaticTree& tree);
 
-/// Hash of all that decide() depends on, so that its result can be kept in a file.
+/// Hash of everything that decide() depends on: equal keys mean equal decisions, which a file can keep.
 std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool media);
 
 }  // namespace tempolux

@@ -48,18 +48,18 @@ struct Wish {
   int width = 640, height = 360;  ///< of the frames, pixels
   std::uint64_t photons = 0;      ///< light paths per photon map; 0: from the preset
   double pixel_error = 0;         ///< 0: from the preset
-  std::string points, records,
-      pixels;  ///< options of irradcache-build points and records, and of frame-render; "": from the preset
+  /// Options of irradcache-build points, of irradcache-build records, and of frame-render; "": from the preset.
+  std::string points, records, pixels;
   bool preset_pixels = false;  ///< `pixels` holds the preset's options without --pixel-error, which is in Decisions
   std::string channels = "RGBA,Z,N,id";
-  std::string smoke_words;
+  std::string smoke_words;           ///< options of volume-compose
   std::string update;                ///< share of the photon groups that is traced again in smoke, "10%"; "": all
   std::string refine;                ///< further light paths for smoke, as a share of a map's paths, "5%"; "": none
   std::string strategy = "census";   ///< which groups: photon-trace --strategy
   int key_distance = 16;             ///< frames between the first keys of a walkthrough
   std::map<int, Measured> measured;  ///< photons of segments, by their first frame
-  /// Share of pixels: an interval of a walkthrough is halved if a viewer sees errors (AQM) in a larger share.
-  /// Below 0: from the preset.
+  /// An interval between two keys is halved if a viewer sees errors (AQM) in more than this share of its pixels. Below
+  /// 0: from the preset.
   double threshold = -1;
   int reference_samples = 64;  ///< samples per pixel of a report's reference
   std::vector<int> report;     ///< frames that are compared with path tracing
@@ -75,13 +75,13 @@ struct MaterialFacts {
   bool lambert = false, other = false;  ///< true if some material has a Lambert lobe; a specular or glossy lobe
 };
 
-/// A fact that decides whether a stage has work.
+/// The reason of a decision about a stage, in words.
 struct Reason {
   std::string stage;
   std::string because;
 };
 
-/// The decisions for a segment: a function of the scene, the wish and the segment.
+/// The decisions for a segment. They depend only on the scene, the wish and the segment.
 struct Decisions {
   std::string kinds;  ///< kinds of photons that later stages read: "caustic,indirect"; "": no photons
   IndirectMethod indirect = IndirectMethod::records;
@@ -97,7 +97,7 @@ struct Decisions {
 
   /// Records for the cameras of this many consecutive pictures, as a multiple of one picture's records.
   double records_of(double pictures) const { return 1 + new_share * (pictures - 1); }
-  bool walk = false;        ///< true: key frames and warping pay; METHOD=auto follows it
+  bool walk = false;        ///< true: key frames and warping pay; METHOD=auto then makes a walkthrough
   std::string view;         ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;  ///< frames for which pilots ran
   std::vector<Reason> reasons;

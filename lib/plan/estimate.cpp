@@ -2,30 +2,23 @@
 #include "lib/plan/estimate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "lib/core/formatted.h"
 
 namespace tempolux {
 namespace {
 
-template <class... Values>
-std::string line(const char* format, Values... values) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
-
 std::string size_text(double bytes) {
-  if (bytes >= 1e9) return line("%.1f GB", bytes / 1e9);
-  if (bytes >= 1e6) return line("%.1f MB", bytes / 1e6);
-  return line("%.0f kB", std::ceil(bytes / 1e3));
+  if (bytes >= 1e9) return formatted("%.1f GB", bytes / 1e9);
+  if (bytes >= 1e6) return formatted("%.1f MB", bytes / 1e6);
+  return formatted("%.0f kB", std::ceil(bytes / 1e3));
 }
 
 std::string time_text(double seconds) {
-  if (seconds >= 2 * 3600) return line("%.1f hours", seconds / 3600);
-  if (seconds >= 120) return line("%.0f minutes", seconds / 60);
-  return line("%.0f s", std::ceil(seconds));
+  if (seconds >= 2 * 3600) return formatted("%.1f hours", seconds / 3600);
+  if (seconds >= 120) return formatted("%.0f minutes", seconds / 60);
+  return formatted("%.0f s", std::ceil(seconds));
 }
 
 }  // namespace
@@ -42,10 +35,11 @@ std::string estimate_text(const std::vector<StageEstimate>& stages, int processo
   for (const StageEstimate& stage : stages) {
     cpu_s += stage.runs * stage.cpu_s;
     bytes += stage.runs * stage.bytes;
-    text += line("%-36s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs, stage.cpu_s,
-                 stage.runs * stage.cpu_s, size_text(stage.bytes).c_str(), size_text(stage.runs * stage.bytes).c_str());
+    text += formatted("%-36s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs, stage.cpu_s,
+                      stage.runs * stage.cpu_s, size_text(stage.bytes).c_str(),
+                      size_text(stage.runs * stage.bytes).c_str());
   }
-  return text + line("%-36s %29.1f %23s\n", "all", cpu_s, size_text(bytes).c_str()) + "about " +
+  return text + formatted("%-36s %29.1f %23s\n", "all", cpu_s, size_text(bytes).c_str()) + "about " +
          time_text(cpu_s / processors) + " on " + std::to_string(processors) +
          (processors == 1 ? " processor\n" : " processors\n");
 }

@@ -2,14 +2,13 @@
 #include "lib/plan/graph.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <iterator>
 #include <set>
 #include <sstream>
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/core/formatted.h"
 #include "lib/plan/graph_builder.h"
 
 namespace tempolux {
@@ -83,18 +82,16 @@ Command GraphBuilder::at(int frame) const { return {"--frame " + std::to_string(
 
 std::string GraphBuilder::cameras(const std::vector<int>& frames) const {
   Hasher hasher;
-  hasher.add(std::string_view(wish.camera));
+  hasher.add(wish.camera);
   for (const int frame : frames) hasher.add(std::string_view(state(frame).camera));
   return hasher.hex();
 }
 
 std::string GraphBuilder::add(const StageInfo& stage, const std::string& frames, const Command& command,
                               const std::vector<std::string>& beside_extensions) {
-  Hasher hasher;
-  for (const std::string& part :
-       {std::string(stage.name), tool_hash(std::string(stage.tool)), command.words, command.content, wish.common})
-    hasher.add(std::string_view(part));
-  const std::string stem = std::string(stage.folder) + "/" + frames + "-" + key_of(hasher.hex());
+  const std::string key = key_of(
+      hash_of_texts({stage.name, tool_hash(std::string(stage.tool)), command.words, command.content, wish.common}));
+  const std::string stem = std::string(stage.folder) + "/" + frames + "-" + key;
   GraphFile file{stem + std::string(stage.extension), {},    std::string(stage.name),
                  command.words + command.state_words, false, command.inputs};
   for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
@@ -134,11 +131,7 @@ std::string stem_of(const std::string& name) { return name.substr(0, name.find('
 std::string beside(const std::string& name, const std::string& extension) { return stem_of(name) + extension; }
 std::string key_of(const std::string& hash) { return hash.substr(0, 10); }
 
-std::string frame_digits(int frame) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%04d", frame);
-  return text.data();
-}
+std::string frame_digits(int frame) { return formatted("%04d", frame); }
 
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish) {
   std::set<int> helpers;

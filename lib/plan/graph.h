@@ -31,6 +31,7 @@ struct PlanFile {
   std::string content;
 };
 
+/// All files that a plan needs.
 struct Graph {
   std::vector<GraphFile> files;                ///< inputs come before the files made from them
   std::map<std::string, std::size_t> by_name;  ///< index into `files` of every file, including those in `beside`
@@ -38,12 +39,12 @@ struct Graph {
   std::map<int, std::string> pictures;         ///< the picture that each frame asked for shows
   std::vector<std::string> intervals;          ///< of a walkthrough, in frame order
   std::map<int, std::string> errors;           ///< result of aqm-compare for each frame of the report
-  std::map<std::string, std::vector<std::string>>
-      spent;  ///< for each file of the report: stats of all stages before it
+  /// For each file in `errors`: the statistics of all commands that lead to the judged picture.
+  std::map<std::string, std::vector<std::string>> spent;
 
   void add(const GraphFile& file);
-  const GraphFile* find(
-      const std::string& name) const;  ///< the GraphFile whose command writes this file; nullptr: no command does
+  /// The entry whose command writes this file; nullptr if no command does.
+  const GraphFile* find(const std::string& name) const;
 };
 
 /// Hash of a program and of the modules and child programs it uses.
@@ -52,11 +53,12 @@ using ToolHash = std::function<std::string(const std::string& tool)>;
 /// media.
 using MajorantsText = std::function<std::string(int first, int last)>;
 
-/// `wish` is complete (with_preset). Throws InputError for wishes that exclude each other.
+/// The files of the requested pictures and of the report. `wish` must be complete (with_preset). Throws InputError for
+/// wishes that exclude each other.
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants);
 
-/// Frames that the graph needs besides `frames`, and whose segments must be planned: windows of the filter, keys of a
-/// walkthrough, and the neighbours of both if pictures hold motion.
+/// Frames whose segments must be planned so that the graph can make `frames`: the frames of filter windows, the keys of
+/// a walkthrough, and the neighbours of all of these if pictures hold motion.
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish);
 
 /// A file's name without its extension: "photons/0012-3fa94c21d0" for "photons/0012-3fa94c21d0.photons".

@@ -11,12 +11,12 @@
 
 namespace tempolux {
 
-/// The options of a command, and the files among them.
+/// A command: its options, its input files, and everything else that its result depends on.
 struct Command {
   std::string words;
   std::vector<std::string> inputs;
-  std::string content;           ///< hashes of the scene's states that it depends on
-  std::string state_words = {};  ///< further options: files of state/, which count by their content
+  std::string content;           ///< hashes of the scene's states that the result depends on
+  std::string state_words = {};  ///< options that name files of state/; only the content of these files enters the key
 
   void option(const std::string& text) {
     if (!text.empty()) words += (words.empty() ? "" : " ") + text;
@@ -26,7 +26,8 @@ struct Command {
     option(option_name.empty() ? name : option_name + " " + name);
     inputs.push_back(name);
   }
-  /// A file of state/. Its name holds the first frame of the segment, on which the result does not depend.
+  /// Adds a file of state/. The part of its name before '-' is the first frame of the segment. The result does not
+  /// depend on this part, so the key does not either.
   void state_file(const std::string& option_name, const std::string& name) {
     state_words += " " + option_name + " " + name;
     content += name.substr(name.find('-'));
@@ -34,6 +35,7 @@ struct Command {
   }
 };
 
+/// A graph under construction, and what it is made from.
 struct GraphBuilder {
   const Plan& plan;
   const Wish& wish;
@@ -58,12 +60,15 @@ struct GraphBuilder {
                   const std::vector<std::string>& beside_extensions = {});
   std::string add(const StageInfo& stage, int frame, const Command& command,
                   const std::vector<std::string>& beside_extensions = {});
+  /// Adds a file of state/ unless it is there already; returns its name. `concern` is its extension, `first` the first
+  /// frame of its segment.
   std::string add_state(const char* concern, int first, const std::string& content);
-  /// The name that `make` returns. `make` is called only the first time that a key comes up.
+  /// The name that `make` returns. `make` is called once for each key.
   std::string once(const std::string& key, const std::function<std::string()>& make);
 };
 
-// Options are words separated by blanks, channels names separated by commas.
+/// True if the options, which are separated by blanks, contain the word; if the channels, which are separated by
+/// commas, contain the name.
 bool has_word(const std::string& words, const std::string& word);
 bool has_channel(const std::string& channels, const std::string& name);
 /// Adds the channels of `more` that are missing.
@@ -76,27 +81,30 @@ std::string joined(const std::vector<int>& frames);
 void add_light(GraphBuilder& g, int frame, Command& command);
 /// The photon map of a state of light: the global map, or the dynamic map.
 std::string photon_map(GraphBuilder& g, int lit);
-/// The map from which smoke is computed: with --refine it has further paths where light in the smoke is noisy. Updates
-/// continue from the map without them.
+/// The map that lights smoke. With the wish `refine` this map has further paths where light in smoke is noisy; the maps
+/// of later states are updated from the map without these paths.
 std::string refined_photon_map(GraphBuilder& g, int lit);
+/// The irradiance points of a state of light.
 std::string point_file(GraphBuilder& g, int lit);
 
 // picture_files.cpp
 /// The picture that a frame shows, with smoke.
 std::string picture_file(GraphBuilder& g, int frame);
-/// A frame with the halves of its samples, filtered alone or with its neighbours. The window ends at the animation's
-/// ends.
+/// A filtered frame: rendered with the halves of its samples, then filtered alone or with its neighbours. The filter's
+/// window is cut off at the ends of the animation.
 std::string filtered_picture(GraphBuilder& g, int frame, const std::string& channels);
-/// Channels of a raw frame from which these filtered channels are made. A window of several frames needs the motion
-/// between them.
+/// The channels that a raw frame needs so that the filter can make the channels `filtered`. A window of several frames
+/// also needs the motion between frames.
 std::string raw_channels(const Wish& wish, const std::string& filtered);
 /// The options of a frame's pixels.
 std::string pixels_of(const GraphBuilder& g, int frame);
+/// The command that renders a frame with these options of its pixels and these channels.
 Command frame_command(GraphBuilder& g, int frame, const std::string& pixels, const std::string& channels);
 /// A hash of the positions and cameras in a frame and its neighbours if `channels` has motion; else "".
 std::string in_motion(const GraphBuilder& g, int frame, const std::string& channels);
-/// The first frame of the segment with the same picture; with the channel motion its neighbours must be the same, too.
-/// At the ends of the segment only the frame itself qualifies, whatever frames are asked for.
+/// The frame whose picture this frame shows: the first frame of the segment with the same picture. If `channels` has
+/// motion, the neighbours of both frames must be the same, too, and the segment's first frame serves only itself,
+/// because its previous frame lies in another segment.
 int shown_by(const GraphBuilder& g, int frame, const std::string& channels);
 
 // walk_files.cpp

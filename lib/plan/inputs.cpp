@@ -31,7 +31,7 @@ std::string content_hash(const std::string& path) {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path, error))
       names.insert(entry.path().filename().string());
-    for (const std::string& name : names) hasher.add(std::string_view(name));
+    for (const std::string& name : names) hasher.add(name);
     return hasher.hex();
   }
   std::ifstream stream(path, std::ios::binary);

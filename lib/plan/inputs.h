@@ -15,8 +15,8 @@ struct InputStamp {
   std::int64_t modified_ns = 0, changed_ns = 0;  ///< of the content and of the inode
   std::string hash;                              ///< of the content
 
-  /// True if the file system reports no change. Times are compared for equality: a copy with an older time counts as a
-  /// change, and other machines' clocks do not matter.
+  /// True if the file system reports no change. Times must be equal, so a copy with an older time counts as a change,
+  /// and the clocks of other machines do not matter.
   bool same_stat(const InputStamp& other) const;
 };
 
@@ -30,7 +30,7 @@ class Inputs {
   bool unchanged(const std::string& wish);
   /// Hash of a file's content, or of the names in a folder; "" if it does not exist.
   std::string hash_of(const std::string& path);
-  /// The text to be written, without inputs of the earlier run that this run has not used.
+  /// The stamps of all inputs that this run has used, as the text of a file that the constructor reads.
   std::string text(const std::string& wish) const;
 
  private:

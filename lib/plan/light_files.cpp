@@ -26,14 +26,16 @@ std::string photon_words(const GraphBuilder& g, int frame) {
   return "--photons " + std::to_string(d.photon_paths) + " --kinds " + d.kinds;
 }
 
+/// True if the light of the frame is derived from the static light of its segment.
 bool moved(const GraphBuilder& g, int frame) { return g.decided(frame).moving != MovingMethod::anew; }
+
 /// Hash of all that a static map, its points and its records depend on.
 std::string static_content(const GraphBuilder& g, int frame) {
   Hasher hasher;
   const PlannedSegment& s = g.segment(frame);
-  hasher.add(std::string_view(s.static_scene));
-  for (const PlannedFrame& f : s.frames)
-    hasher.add(std::string_view(f.light));  // movers of any frame decide which paths are touched
+  hasher.add(s.static_scene);
+  // The movers of all frames decide which light paths count as touched.
+  for (const PlannedFrame& f : s.frames) hasher.add(f.light);
   return hasher.hex();
 }
 
@@ -45,7 +47,8 @@ std::string static_photons(GraphBuilder& g, int frame) {
   return g.add(stage::static_photons, first, c, {".paths"});
 }
 
-/// In smoke, a map is the previous map of its segment with some groups traced again.
+/// Makes the command update the map of the previous state of light, of which it traces some groups again. The segment's
+/// first map is traced whole, with pilots if the strategy needs them.
 void add_update(GraphBuilder& g, int lit, Command& c) {
   const std::vector<int> states = g.segment(lit).states();
   const auto here = std::ranges::find(states, lit);
@@ -64,7 +67,7 @@ std::string static_points(GraphBuilder& g, int frame) {
   return g.add(stage::static_points, first, c);
 }
 
-/// Adds points as options: all points, or the low and the high part.
+/// Adds the options that name the points: all points, or the low and the high part.
 void add_points(GraphBuilder& g, int lit, Command& c) {
   const std::string all = point_file(g, lit);
   if (!g.decided(lit).split) return c.file("--points", all);
@@ -98,13 +101,13 @@ std::string static_records(GraphBuilder& g, int frame) {
   return g.add(stage::static_records, pictures.front(), c);
 }
 
-/// The state of light of the frame before, if this state's records continue that state's.
+/// The state of light of the previous frame; `lit` itself at the first frame of the segment.
 int state_before(const GraphBuilder& g, int lit) {
   return lit > g.segment(lit).first ? g.state(lit - 1).lit_frame : lit;
 }
 
-/// True if records are kept over time. Only for states that a single picture shows: if the camera moves while the
-/// light is constant, one cache serves all its pictures.
+/// True if records are kept over time. A state of light with several pictures (the camera moves while the light is
+/// constant) has one cache for all of them instead.
 bool over_time(const GraphBuilder& g, int lit) {
   return g.decided(lit).moving == MovingMethod::time && g.segment(lit).pictures(lit).size() == 1;
 }
@@ -120,7 +123,7 @@ std::string updated_records(GraphBuilder& g, int lit, const std::vector<int>& pi
   Command c{"--frames " + joined(pictures), {}, g.state(lit).light + g.cameras(pictures)};
   c.file("--update", static_records(g, pictures.front()));
   c.file("--points", point_file(g, lit));
-  // Dynamic photons of up to two states before: records they affected are gathered again.
+  // Records that movers affected in one of the two previous states are gathered again, too.
   std::vector<int> states{lit};
   for (int frame = lit; states.size() < 3 && frame > g.segment(lit).first;) {
     frame = state_before(g, frame);
@@ -158,6 +161,7 @@ std::string record_file(GraphBuilder& g, int frame) {
 }
 
 constexpr int kReach = kPreviewWindow / 2;
+
 /// The photon map of a frame of a preview. Each frame has its own map even if other frames have the same light, so
 /// that windows collect different photons. A segment with one state of light has as many maps as a window has frames.
 std::string preview_photons(GraphBuilder& g, int frame, bool still) {
@@ -180,7 +184,7 @@ std::string counts(GraphBuilder& g, int frame) {
       "--frame " + std::to_string(frame) + " --counts --kinds " + g.decided(frame).kinds + " " + width_words(g, frame),
       {},
       ""};
-  // Sizes of moving elements depend on these frames, and jumps are detected from the neighbouring frames.
+  // The sizes of moving elements depend on the first, middle and last frame; jumps of light on the neighbouring frames.
   for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
     c.content += g.state(std::clamp(f, s.first, s.last)).light;
   c.file("--photons", preview_photons(g, frame, false));

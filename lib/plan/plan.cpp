@@ -48,7 +48,7 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   try {
     frame.view = state.camera(camera_node);
     frame.camera = camera_hash(*frame.view);
-  } catch (const InputError&) {  // a camera without direction; the tools report it if this frame is asked for
+  } catch (const InputError&) {  // The camera has no direction. The tools report it if this frame is requested.
   }
   if (media) frame.media = media(number);
   return frame;
@@ -75,11 +75,8 @@ void share_in_segment(PlannedSegment& segment) {
   std::map<std::string, int> first_lit;
   std::map<std::pair<int, std::string>, int> first_picture;
   for (PlannedFrame& frame : segment.frames) {
-    Hasher hasher;
-    for (const std::string& hash :
-         {segment.static_geometry, frame.materials, segment.frozen, frame.moving_geometry, frame.lights, frame.media})
-      hasher.add(std::string_view(hash));
-    frame.light = hasher.hex();
+    frame.light = hash_of_texts(
+        {segment.static_geometry, frame.materials, segment.frozen, frame.moving_geometry, frame.lights, frame.media});
     frame.lit_frame = first_lit.try_emplace(frame.light, frame.frame).first->second;
     frame.picture = first_picture.try_emplace({frame.lit_frame, frame.camera}, frame.frame).first->second;
   }
@@ -87,13 +84,10 @@ void share_in_segment(PlannedSegment& segment) {
 
 std::string static_scene_hash(const SceneFrame& frame) {
   const SceneHashes hashes = static_scene_of(frame).hashes;
-  Hasher hasher;
-  for (const std::string& hash : {hashes.static_geometry, hashes.materials, hashes.lights})
-    hasher.add(std::string_view(hash));
-  return hasher.hex();
+  return hash_of_texts({hashes.static_geometry, hashes.materials, hashes.lights});
 }
 
-/// Numbers in the given order; consecutive ones as a range: "-2, 48 to 60".
+/// The frames as text, in the given order, with ranges of consecutive frames: "-2, 48 to 60".
 std::string in_words(std::span<const int> frames) {
   std::string words;
   for (std::size_t i = 0; i < frames.size();) {
@@ -126,7 +120,7 @@ MaterialFacts material_facts(const Scene& scene, const PlannedSegment& segment, 
         facts.other |= lobes.specular && !primitive.triangles.empty();
       }
     }
-    if (animator.property_tracks().empty()) break;  // no animation changes them
+    if (animator.property_tracks().empty()) break;  // No animation changes materials.
   }
   return facts;
 }
@@ -148,14 +142,14 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int came
   return planned;
 }
 
-/// The frame from which on no track changes: the time of the last value that differs from its track's final value,
-/// rounded up. 0 if nothing changes.
+/// The first frame after which no track changes: the time of the last key whose value differs from the key before,
+/// rounded up to a frame. 0 if nothing changes.
 int last_change(const Scene& scene, const TimeOptions& options) {
   double last_s = 0;
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
       const std::size_t n = track.times_s.size(), per_key = n == 0 ? 0 : track.values.size() / n;
-      for (std::size_t key = n; key-- > 1;)  // for splines tangents count as well
+      for (std::size_t key = n; key-- > 1;)  // The values of splines include tangents.
         if (!std::equal(track.values.begin() + std::ptrdiff_t(key * per_key),
                         track.values.begin() + std::ptrdiff_t((key + 1) * per_key),
                         track.values.begin() + std::ptrdiff_t((key - 1) * per_key))) {

@@ -1,6 +1,6 @@
 // lib/plan/plan.h -- the scene's states in the segments that a range of frames needs (docs/methods/formulas.md).
 //
-// Every value depends on the scene and the segment only, not on which other frames were asked for.
+// Every value depends on the scene and the segment only, never on which other frames were requested.
 #pragma once
 
 #include <functional>
@@ -38,7 +38,7 @@ struct PlannedSegment {
   int first = 0, last = 0;
   std::string static_geometry;  ///< hash, as in SceneHashes
   std::string static_scene;     ///< hash of the static scene: geometry, materials, lights (static_scene_of)
-  std::string frozen;           ///< hash of what is fixed over the segment: emission table, bounds, origin
+  std::string frozen;           ///< hash of everything that is fixed over the segment: emission table, bounds, origin
   std::vector<MovingNode> moves;
   std::vector<PlannedFrame> frames;  ///< all frames of the segment, ascending
   MaterialFacts materials;           ///< lobes of the materials, over all frames
@@ -69,12 +69,13 @@ struct Plan {
 /// Hash of the media at a frame (SceneHashes::media). Empty: there are no media.
 using MediaHash = std::function<std::string(int frame)>;
 
-/// Evaluates the segments that hold `frames` and `others` and compares their states by content hashes, not by file
-/// times or by what the file declares as animated. `others` are frames that the frames asked for need: neighbours,
-/// keys. Frames outside the animation show its closest frame, with a warning. Decisions keep their defaults.
+/// Evaluates the segments that hold `frames` and `others`, and compares their frames by content hashes. Neither file
+/// times nor the file's declarations of what is animated count. `others` are frames that the requested frames need:
+/// neighbours and keys. A requested frame outside the animation shows the animation's closest frame, with a warning.
+/// Decisions keep their defaults.
 ///
-/// `camera_node` is an index into Scene::nodes (Scene::camera_node). Throws InputError for a scene without light or one
-/// that cannot be evaluated, std::invalid_argument for an empty `frames`.
+/// `camera_node` is an index into Scene::nodes (Scene::camera_node). Throws InputError for a scene without light and
+/// for a scene that cannot be evaluated, std::invalid_argument for an empty `frames`.
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
                const MediaHash& media = {}, std::span<const int> others = {});
 

@@ -77,7 +77,7 @@ Json segment_json(const PlannedSegment& segment) {
   return json;
 }
 
-/// The stages of the pipeline: whether each makes any file, and the first segment's reason.
+/// The stages of the pipeline: how many files each makes, and the first segment's reason.
 Json stages_json(const Plan& plan, const Graph& graph) {
   std::map<std::string, std::size_t> files;
   for (const GraphFile& file : graph.files) ++files[file.stage];
@@ -99,8 +99,9 @@ std::string words_of(const std::vector<std::string>& names) {
 
 std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
 
-/// The inputs of a file with a plain name. Its `marker` in shown/ names the content that the file shows now. If the
-/// marker is missing the file is made anew; if the file is missing it is restored (stages.mk has both rules).
+/// Rules for a file with a plain name, such as frames/0012.exr. The name of its marker, a file in shown/, stands for
+/// the content that the plain file should show. If the marker is missing, the plain file is made anew; if the plain
+/// file is missing, it is restored (stages.mk has both rules).
 std::string shown_lines(const std::string& name, const std::string& marker, const std::string& inputs) {
   return "shown/" + marker + ": | " + inputs + "\n" + name + ": | shown/" + marker + " " + inputs + "\n";
 }

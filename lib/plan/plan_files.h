@@ -8,9 +8,10 @@
 
 namespace tempolux {
 
+/// The text of plan.json.
 std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history);
 
-/// The makefile. It holds names of generated files only: nothing from the scene, and no file names of the user.
+/// The text of plan.mk. It holds names of generated files only: no text from the scene and no file name of the user.
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash);
 
 /// Decisions as JSON text, and the inverse, which throws InputError for invalid text.

@@ -26,8 +26,8 @@ Wish with_preset(Wish wish) {
   if (wish.threshold < 0) wish.threshold = wish.seen();
   if (wish.points.empty()) wish.points = preset.points;
   if (wish.records.empty()) wish.records = preset.records;
-  // Pixel options of the user replace the preset's, including its filter. Halves of all layers take 1 kB per pixel, 2
-  // GB at 1920x1080: larger pictures are not filtered by default.
+  // Pixel options of the user replace those of the preset, and turn the filter off. Halves of all layers take 1 kB per
+  // pixel, 2 GB at 1920x1080, so larger pictures are not filtered by default.
   if (wish.filter == Wish::kAutoFilter)
     wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
   if (wish.pixels.empty()) {

@@ -14,7 +14,8 @@ struct StageInfo {
   std::string_view folder;     ///< in OUT, holds its files
   std::string_view extension;  ///< extension of the file that later stages read
   std::string_view tool;       ///< the program that runs
-  std::string_view work;  ///< phases of its stats whose time grows with the work; "": no stats, the estimate omits it
+  /// Phases of its statistics whose time grows with the work, separated by commas.
+  std::string_view work;
 };
 
 namespace stage {
@@ -36,8 +37,7 @@ inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", 
 inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
 inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal",
                                    "read counts,windows,filter,write"};
-inline constexpr StageInfo raw{"frame-render (raw)", "raw", ".exr", "frame-render",
-                               "render,data channels,write"};
+inline constexpr StageInfo raw{"frame-render (raw)", "raw", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo keys{"frame-render (keys)", "keys", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo pictures{"frame-render", "pictures", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo filtered{"st-filter", "filtered", ".exr", "st-filter", "filter"};
@@ -57,8 +57,8 @@ inline constexpr std::array kStages{
     stage::filtered,       stage::pictures,       stage::smoke,         stage::reference,
     stage::error};
 
-/// Fills in the values that the wish leaves open; all presets are defined here. draft is coarser than final and takes
-/// less than half of its time.
+/// The wish with all values that it leaves open set by the preset of its quality. draft takes less than half of the
+/// time of final.
 Wish with_preset(Wish wish);
 
 }  // namespace tempolux

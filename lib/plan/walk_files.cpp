@@ -29,9 +29,8 @@ std::string key_picture(GraphBuilder& g, int frame) {
   return g.add(stage::keys, frame, frame_command(g, frame, pixels_of(g, frame), channels));
 }
 
-/// Finds the interval of equal light between first keys that strictly holds a frame; false: the frame is a key.
-/// Intervals start at fixed multiples of the key distance; an interval whose light changes is halved until the light
-/// does not.
+/// Finds the interval of constant light that holds the frame between its keys; false if the frame is a key. Intervals
+/// start at multiples of the key distance. An interval whose light changes is halved until its light is constant.
 bool interval_around(const GraphBuilder& g, int frame, Interval& interval) {
   const int first = frame - frame % g.wish.key_distance;
   interval = {first, g.clamped(first + g.wish.key_distance)};
@@ -42,7 +41,8 @@ bool interval_around(const GraphBuilder& g, int frame, Interval& interval) {
   return false;
 }
 
-/// The file that decides an interval, from its keys and from the files of its halves; "": no frame lies between them.
+/// The file that decides whether an interval is halved. It is made from the interval's keys and from the files of its
+/// halves. "" if no frame lies between the keys.
 std::string interval_file(GraphBuilder& g, const Interval& i) {
   if (i.last - i.first < 2) return "";
   const std::string name = frame_digits(i.first) + "+" + frame_digits(i.last);
