@@ -9,11 +9,12 @@
 namespace tempolux {
 namespace {
 
-constexpr int kAround = 3;          ///< pixels
-constexpr float kDark = 0.02f;      ///< darkest light that counts, over the mean of the picture
-constexpr float kOwnLight = 0.25f;  ///< share of the light by which a pixel exceeds its surroundings in its level
-/// 1 / sum of the squared weights of Neighbourhood::mean, the number of equally weighted pixels with the same variance.
-/// Summing n equal values twice gives n (2 n^2 + 1) / 3 / n^4 for the sum of squared weights.
+constexpr int kAround = 3;      ///< pixels on each side in the box filter
+constexpr float kDark = 0.02f;  ///< dark_of(), divided by the mean light of the picture
+constexpr float kOwnLight =
+    0.25f;  ///< share of a pixel's light above its surroundings that counts in PictureLight::level
+/// Number of pixels whose unweighted mean has the variance of Neighbourhood::mean: 1 / sum of squared weights. In one
+/// dimension two box filters of n pixels have the sum of squared weights n (2 n^2 + 1) / 3 / n^4.
 constexpr float kEqualPixels = [] {
   const float n = 2 * kAround + 1, line = 3 * n * n * n / (2 * n * n + 1);
   return line * line;
@@ -21,7 +22,7 @@ constexpr float kEqualPixels = [] {
 
 float squared(float v) { return v * v; }
 
-/// Mean of the channels of a pixel; what is not finite counts as 0.
+/// Mean of the channels of a pixel. A value that is not finite counts as 0.
 float light_of(const PicturePlanes& picture, std::size_t pixel) {
   float light = 0;
   for (const std::vector<float>* channel : picture)
@@ -30,8 +31,8 @@ float light_of(const PicturePlanes& picture, std::size_t pixel) {
   return light;
 }
 
-/// Sums over the pixels of the window around each pixel; with `kinds` (0 or 1, by pixel) only over pixels of the
-/// pixel's own kind. Rows are summed along x first, and the last seven of them stay in the cache.
+/// Sums over the window around each pixel. With `kinds` (0 or 1, by pixel) only pixels of the window's middle pixel's
+/// kind count. Rows are summed along x first; the sums of the last seven rows stay in the cache.
 Plane box_sums(const Plane& values, int width, int height, const std::uint8_t* kinds = nullptr) {
   constexpr std::size_t kLines = 2 * kAround + 1, kRows = 32;  // rows of a chunk
   Plane out = Plane::unset(width, height);
@@ -130,10 +131,11 @@ class Choice {
     });
   }
 
-  /// A - B as far as the estimates count the difference as noise.
+  /// A - B; 0 in a pixel whose difference is no noise.
   float apart_at(std::size_t p, std::size_t c) const { return differs_[p] * (raw_.a[c][p] - raw_.b[c][p]); }
 
-  /// Neighbourhood mean of a term of an estimate, which is scaled and summed over colours; and of the term's square.
+  /// Neighbourhood mean of term(pixel, colour), summed over colours and divided by the squared light of the picture;
+  /// with `square` also the mean of its square.
   template <class Term>
   Plane around(const Term& term, Plane* square = nullptr) const {
     Plane values = Plane::unset(near_.width(), near_.height());
@@ -198,8 +200,8 @@ class Choice {
     });
   }
 
-  /// The share w. Inside surfaces the gain may be a standard error larger than estimated: the neighbourhood counts as
-  /// kEqualPixels pixels, and with noise alone (F - M)^2 is as uncertain as V - C.
+  /// The share w. The standard error s is that of the mean of kEqualPixels pixels. The factor 2 is for (F - M)^2, which
+  /// is as uncertain as V - C if A and B differ by noise alone.
   float share(std::size_t p, int x, int y) const {
     const float gain = gain_.at(x, y), apart = apart_.at(x, y);
     const float error =
@@ -207,10 +209,9 @@ class Choice {
     return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
-  /// Filtering takes light from some pixels and adds light to others. Gives the difference d = raw - result of each
-  /// half back to the filtered pixels around, so that the sum of the layer stays that of the raw layer. Each pixel gets
-  /// v B(d / B(v)), where v = w (filtered light + dark) and B sums over 7 x 7 pixels, twice. PictureLight::dark keeps
-  /// v of black pixels above 0. share_ becomes v.
+  /// Restores the sum of the layer (step 3 of choose()). Each half of a pixel gets v B(d / B(v)) with d = raw - result
+  /// and v = w (filtered light + dark); B sums over 7 x 7 pixels, twice. PictureLight::dark keeps v above 0 in black
+  /// pixels. share_ becomes v.
   void give_back() {
     const auto sums = [&](const Plane& values) {
       const Plane once = box_sums(values, near_.width(), near_.height());

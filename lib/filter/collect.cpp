@@ -75,8 +75,8 @@ void Collector::add(const WindowFrame& frame) {
   });
 }
 
-/// Finds the strip's pixels in the frame, as offsets from the strip's first pixel. Weights of lost pixels become 0; the
-/// others are multiplied by the agreement of the guides.
+/// Follows the strip's pixels to the frame. `there` becomes their places, as offsets from pixel (0, 0) of a plane. The
+/// weights of lost pixels become 0; all others are multiplied by value_weight() of the guides.
 void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weights,
                        std::array<std::uint32_t, kStrip>& there) {
   const int y = strip.y;
@@ -136,13 +136,13 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
     weights[i] *= value_weight(difference[i], variance[i] + other_variance[there[i]] + rounding_variance(square[i]));
 }
 
-/// Adds the light at the pixels' places. The light of edge pixels counts only until a pixel with `use` is found.
+/// Adds the light at the pixels' places. Light of pixels without `use` counts only until a pixel with `use` is found.
 void Collector::add(const Strip& strip, const LightGroup& frame, const Lane& weights,
                     const std::array<std::uint32_t, kStrip>& there) {
   const int y = strip.y;
   const std::size_t x0 = strip.x0, count = strip.count;
   float *sum = out_.weight.row(y) + x0, *edges = edge_weight_.row(y) + x0;
-  Lane kept, factor;  // factors of the sum so far, and of the light that is added
+  Lane kept, factor;  // factors of the previous sum and of the added light
   const float* use = frame.surfaces.use.row(0);
   for (std::size_t i = 0; i < count; ++i) {
     const bool of_use = use[there[i]] != 0, before = sum[i] > 0, counts = weights[i] > 0;

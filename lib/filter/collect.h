@@ -17,22 +17,28 @@ struct WindowFrame {
   const FlowFrame* flow = nullptr;
 };
 
-/// Collects one half of the light, frame after frame, so that no more than two frames need to be in memory. A
-/// neighbour's weight is the agreement of its guide with the middle frame's guide, both from the other half
-/// (value_weight).
-/// Each pixel of the middle frame is followed from frame to frame. It is lost for good if the nearest pixel lies
-/// outside the picture, shows another object or a normal turned by more than PixelSurfaces::kSameNormal, or came from
-/// elsewhere: the flow there and back ends more than kReturn pixels plus kReturnShare of its length from the start.
+/// Collects one half of the light, frame after frame, so that only two frames need to be in memory. The weight of a
+/// neighbouring frame at a pixel is value_weight() of the difference between its guide and the middle frame's guide.
+/// Both guides are those of the other half.
+///
+/// Each pixel of the middle frame is followed along the flow from frame to frame, to the closest pixel. It is lost for
+/// the remaining frames if that pixel
+/// - lies outside the picture,
+/// - shows another object, or a normal that is turned by more than PixelSurfaces::kSameNormal, or
+/// - has flow that does not lead back: the end of the way there and back is more than kReturn pixels plus kReturnShare
+/// of
+///   the flow's length away from its start.
 class Collector {
  public:
   /// All that `middle` refers to must outlive this object.
   Collector(const WindowFrame& middle, std::size_t half);
 
-  /// The next add() calls pass the frames after the middle (direction 1) or before it (-1), the nearest first.
+  /// Starts a direction in time. The next calls of add() pass the frames after the middle frame (1) or before it (-1),
+  /// the closest first.
   void start(int direction);
   void add(const WindowFrame& frame);
-  /// Returns the collected light; call once, at the end. Weighted means over the frames in which the pixel has `use`;
-  /// if there is no such frame, over all frames.
+  /// Returns the collected light; call once, at the end. The light is a weighted mean over the frames in which the
+  /// pixel has Surfaces::use, or over all frames if it has `use` in none.
   Light take();
 
  private:
@@ -48,7 +54,7 @@ class Collector {
   Plane px_, py_;       ///< position of each pixel in the last frame, whole numbers at pixel centres; NaN: lost
   Plane right_, down_;  ///< the last step of each pixel
   Light out_;           ///< sums of the weighted light; guides are the middle frame's
-  Plane edge_weight_;   ///< weight of edge pixels, where no pixel with `use` was found; `out_` then holds their light
+  Plane edge_weight_;  ///< weight of pixels without `use`; while no pixel with `use` was found `out_` holds their light
 };
 
 }  // namespace tempolux

@@ -9,7 +9,8 @@
 
 namespace tempolux {
 
-/// The two channels (formats/frames/frames.md 2); both are optional.
+/// The shares of a pixel's area that its own surface and the surfaces of neighbouring pixels cover, from 16 rays
+/// (formats/frames/frames.md 2). Both channels are optional.
 class Coverage {
  public:
   explicit Coverage(const Image& image)
@@ -35,7 +36,7 @@ class Coverage {
       counts >>= 4;
     }
   }
-  static constexpr std::uint32_t kRays = 16;  ///< of a pixel
+  static constexpr std::uint32_t kRays = 16;  ///< rays by which a pixel's shares are counted
 
  private:
   static const std::vector<std::uint32_t>* ids(const Image& image, const char* name) {

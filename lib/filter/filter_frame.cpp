@@ -37,7 +37,7 @@ class Candidates {
   Candidates(const LightGroup& group, const Coverage& coverage)
       : group_(group), coverage_(coverage), of_layer_(group.layers.size()) {}
 
-  /// Adds candidates from light that was collected from `frames` frames; the group's raw light is from one.
+  /// Adds candidates made from light of `frames` frames; 1: the group's raw light.
   void add(const BothHalves& collected, int frames) {
     const Plane variance = smoothed(group_.surfaces, group_.variance);
     const Surfaces& on = group_.surfaces;
@@ -116,8 +116,8 @@ struct FrameFilter::State {
   const FlowFrame& flow;
   std::optional<float> dark;
   std::size_t before, after, added = 0;
-  std::array<std::optional<Collector>, 2>
-      collectors;  ///< for the matte layers, by half; light of mirrors has no flow of its own
+  /// By half, for matte light. Light in mirrors does not move along the pixel flow, so it is not collected.
+  std::array<std::optional<Collector>, 2> collectors;
   RemainingNoise remaining;
 
   void filter_group(std::size_t g, const Coverage& coverage, const PictureLight& picture, Image& image) {
@@ -144,7 +144,8 @@ struct FrameFilter::State {
     }
   }
 
-  /// The mean of light that is not negative is not negative. Clamps what rounding has made negative.
+  /// Stores the means of the halves. If the raw light of a pixel is not negative, its result is not negative either:
+  /// values that rounding has made negative become 0.
   static void put_mean(const Halves& halves, std::size_t c, std::vector<float>& values) {
     for (std::size_t p = 0; p < values.size(); ++p) {
       const float mean = mean_of(halves.a[c][p], halves.b[c][p]);
@@ -201,9 +202,9 @@ RemainingError FrameFilter::remaining_error() const { return state_->remaining.e
 
 namespace {
 
-/// Distance in pixels from which other pixels affect a pixel: the windows of both fits, two for smoothing and the
-/// one-surface test, the windows of unmix() and resolve(), six times the window of choose() for a lone candidate (its
-/// error and what it gives back, two means of means each), and one for the light of the picture.
+/// Largest distance, in pixels, of another pixel that affects a pixel: the sum of the reaches of both fits, of
+/// smoothing and the one-surface test (2), of unmix() (6), of resolve() (1), of choose() (six box filters of reach 3:
+/// two for the error, four to restore the layer's sum), and of the picture's light (1).
 constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3 + 1; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
@@ -229,7 +230,7 @@ Image cut_out(const Image& image, int left, int top, int width, int height) {
 Image filter_alone(Image image) {
   constexpr int kWide = 640, kHigh = 360;
   const float dark = dark_of(picture_of(sum_layers(image), image));
-  // The next tiles read the frame's own light up to reach() rows above them. Filtered rows wait here until then.
+  // The next tiles read raw light up to reach() rows above them, so filtered rows wait here until these tiles are done.
   const int waiting_rows = std::min(image.height, kHigh + reach());
   std::map<std::string, std::vector<float>> waiting;
   int first_waiting = 0;

@@ -13,8 +13,8 @@
 
 namespace tempolux {
 
-/// Windows of the fits. The large window reads every fifth pixel of what a small one has fitted, so the small windows
-/// do not overlap; together they reach 7 pixels.
+/// Windows of the fits. The large window reads every fifth pixel of the result of a small window, so the small windows
+/// of the pixels that it reads do not overlap. Together they reach 7 pixels.
 inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge{1, 5, false};
 
 /// A frame of a window: its light, and the first fits of its matte light.
@@ -28,23 +28,23 @@ struct WindowLight {
 /// Filters a frame together with its neighbours in time. Each half of the light is fitted in small and large windows
 /// (fit.h), once with its own light alone and once with the light collected along the flow (collect.h); the other half
 /// decides the weights. Where `image` has coverage, edges are composed from their surfaces (unmix.h, resolve.h). Each
-/// candidate is multiplied by albedo, and choose() mixes the candidates with the raw layer. R G B becomes the sum of
-/// the layers plus any light it held besides them. LAYER.noise becomes
-/// half the difference of the layer's filtered halves. Other channels and all attributes stay.
+/// candidate is multiplied by albedo, and choose() mixes the candidates with the raw layer. R, G and B become the sum
+/// of the layers plus any light that they held besides the layers. LAYER.noise becomes half the difference of the
+/// layer's filtered halves. Other channels and all attributes stay.
 class FrameFilter {
  public:
   /// `middle` is made from the image that finish() or filter() receives; middle and flow must outlive this object.
-  /// `before` and `after` are the numbers of frames on each side of the window. If the image is a part of a
-  /// picture, `dark` is dark_of() of the whole picture (choose.h). If `dark` is empty, dark_of() of the image is used.
+  /// `before` and `after` are the numbers of frames on each side of the window. `dark`: dark_of() the whole picture if
+  /// the image is only a part of it (choose.h); empty: dark_of() the image.
   FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
               std::optional<float> dark = {});
   ~FrameFilter();
   FrameFilter(const FrameFilter&) = delete;
   FrameFilter& operator=(const FrameFilter&) = delete;
 
-  /// Adds the next frame of the window: first the `before` earlier frames, the nearest first, then the `after` later
-  /// ones. The frame is not used after the call. Throws InputError if it differs from the middle frame in size or
-  /// layers.
+  /// Adds the next frame of the window: first the `before` earlier frames, then the `after` later frames, in both
+  /// directions the closest first. The frame is not used after the call. Throws InputError if its size or its layers
+  /// are not those of the middle frame.
   void add(const WindowLight& frame, const FlowFrame& flow);
   /// Call once, after all frames were added. Writes the remaining noise to the image's attributes
   /// (write_remaining_noise in remaining_noise.h).

@@ -12,8 +12,8 @@
 namespace tempolux {
 namespace {
 
-/// Pulls slopes towards 0, as kPull times the window's pixels at distance 1 would. Makes the slopes unique if all
-/// pixels of a window are in one column.
+/// Adds kPull times the sum of weights to the second moments, which pulls slopes towards 0. The slopes are then unique
+/// even if all pixels of a window are in one column.
 constexpr float kPull = 0.02f;
 constexpr float kPlane = 3;  ///< variance of a fitted plane's value over the variance of a mean
 /// Sums of weight, weight dx ... over the window, for eight pixels at once.
@@ -37,9 +37,8 @@ class StripFit {
   void run(int y, std::size_t x0) {
     y_ = y;
     x0_ = x0;
-    count_ =
-        // the last eight may reach into the margin, which is never stored
-        std::min(kEight, std::size_t(surfaces_.width) - x0);
+    // The last eight pixels of a row may reach into the margin, whose results are not stored.
+    count_ = std::min(kEight, std::size_t(surfaces_.width) - x0);
     Float8* same = same_.data();
     for (int dy = -kRadius; dy <= kRadius; ++dy) {
       const SurfaceEight row(surfaces_, y, dy * options_.stride, std::ptrdiff_t(x0));
@@ -117,11 +116,11 @@ class StripFit {
     return where(z > 0, z * z);
   }
 
-  /// Computes the kernel that gives the fitted plane's value at the pixel: own + sum of kernel (value - own) over the
-  /// window, where own is the pixel's value. The sum of the kernel is 1, and its value at the offset (dx, dy) is
+  /// Computes the kernel of the window. The fitted plane's value at the pixel is own + sum of kernel (value - own),
+  /// where own is the pixel's value. The kernel has the sum 1; at the offset (dx, dy) it is
   ///     weight (1 / one + b (dx - mx) + c (dy - my)) = weight (a + b dx + c dy).
-  /// (mx, my) is the weighted mean of the offsets. Offsets from this mean have the weighted sum 0, so the plane's value
-  /// there is the weighted mean, and only the slopes remain to be solved for.
+  /// (mx, my) is the weighted mean of the offsets. At this mean the plane's value is the weighted mean of the values,
+  /// so only the slopes remain to be computed.
   void to_kernel(const Moments& moments) {
     const Int8 any = moments.one > 0;
     const Float8 one = where(any, moments.one) + where(~any, all8(1)), per_weight = where(any, 1 / one);
@@ -195,7 +194,7 @@ class StripFit {
   alignas(32) std::array<float, kEight> per_weight_{};  ///< 1 / sum of the weights
 };
 
-/// Computes the guide by which later fits and other frames compare the light.
+/// Computes the guide, by which later fits and other frames compare pixels.
 void take_guide(const Surfaces& surfaces, const Plane& variance, Light& light) {
   for (Plane& plane : light.guide) plane = Plane(surfaces.width, surfaces.height);
   light.guide_variance = Plane::unset(surfaces.width, surfaces.height);

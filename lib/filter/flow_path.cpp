@@ -1,7 +1,6 @@
 #include "lib/filter/flow_path.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "formats/error.h"
 
@@ -12,10 +11,6 @@ std::vector<float> samples_of(const Image& flow, const char* name) {
   const Channel* channel = flow.find(name);
   return channel ? channel->values : std::vector<float>();
 }
-std::vector<float> taken_samples(Image& flow, const char* name) {
-  Channel* channel = flow.find(name);
-  return channel ? std::exchange(channel->values, {}) : std::vector<float>();
-}
 
 }  // namespace
 
@@ -24,31 +19,15 @@ FlowFrame::FlowFrame(const Image& flow, int width, int height, const std::string
       forward_v_(samples_of(flow, "forward.v")),
       backward_u_(samples_of(flow, "backward.u")),
       backward_v_(samples_of(flow, "backward.v")) {
-  check(flow.width, flow.height, width, height, file);
-  take_valid(flow.find("valid"));
-}
-
-FlowFrame::FlowFrame(Image&& flow, int width, int height, const std::string& file)
-    : forward_u_(taken_samples(flow, "forward.u")),
-      forward_v_(taken_samples(flow, "forward.v")),
-      backward_u_(taken_samples(flow, "backward.u")),
-      backward_v_(taken_samples(flow, "backward.v")) {
-  check(flow.width, flow.height, width, height, file);
-  take_valid(flow.find("valid"));
-}
-
-void FlowFrame::check(int flow_width, int flow_height, int width, int height, const std::string& file) const {
-  if (flow_width != width || flow_height != height)
-    throw InputError(file + ": flow of " + std::to_string(flow_width) + "x" + std::to_string(flow_height) +
+  if (flow.width != width || flow.height != height)
+    throw InputError(file + ": flow of " + std::to_string(flow.width) + "x" + std::to_string(flow.height) +
                      " pixels, the frame has " + std::to_string(width) + "x" + std::to_string(height) +
                      "; take the flow of this frame");
   if (forward_u_.size() != forward_v_.size() || backward_u_.size() != backward_v_.size() || empty())
     throw InputError(file +
                      ": no flow: needs the channels forward.u and forward.v, or backward.u and backward.v; make it "
                      "with frame-render --channels motion or ibr-warp --flow");
-}
-
-void FlowFrame::take_valid(const Channel* valid) {
+  const Channel* const valid = flow.find("valid");
   if (!valid) return;
   valid_ = valid->ids;
   if (valid_.empty())

@@ -10,9 +10,10 @@
 
 namespace tempolux {
 
-/// Pixel flow of one frame (formats/flow/flow.md, or a frame with the channels of --channels motion), y down as in
-/// pictures. If only one direction is there, the other is its opposite. Without flow nothing moves.
+/// Pixel flow of one frame, from a flow file (formats/flow/flow.md) or from the frame's own motion channels. If only
+/// one direction in time is there, the other is its opposite. Without flow nothing moves.
 struct FlowFrame {
+  /// Displacement of a pixel's surface point to a neighbouring frame.
   struct Step {
     float right = 0, down = 0;  ///< pixels
     bool known = true;
@@ -20,8 +21,6 @@ struct FlowFrame {
   FlowFrame() = default;
   /// Copies the channels. Throws InputError, naming `file`, if the size is not the frame's.
   FlowFrame(const Image& flow, int width, int height, const std::string& file);
-  /// The same, but moves the samples out: the flow's channels are empty afterwards.
-  FlowFrame(Image&& flow, int width, int height, const std::string& file);
 
   bool has_forward() const { return !forward_u_.empty(); }
   bool has_backward() const { return !backward_u_.empty(); }
@@ -30,9 +29,6 @@ struct FlowFrame {
   Step step(std::size_t pixel, int direction) const;
 
  private:
-  void check(int flow_width, int flow_height, int width, int height, const std::string& file) const;
-  void take_valid(const Channel* valid);
-
   std::vector<float> forward_u_, forward_v_, backward_u_, backward_v_;
   std::vector<std::uint32_t> valid_;
 };
@@ -43,7 +39,7 @@ inline constexpr float kReturn = 0.75f, kReturnShare = 0.05f;
 
 inline FlowFrame::Step FlowFrame::step(std::size_t pixel, int direction) const {
   if (empty()) return {};
-  const bool forward = direction > 0 ? has_forward() : !has_backward();  // which of the two directions is read
+  const bool forward = direction > 0 ? has_forward() : !has_backward();  // the direction that is read
   const float sign = forward == (direction > 0) ? 1.0f : -1.0f;
   const float u = (forward ? forward_u_ : backward_u_)[pixel], v = (forward ? forward_v_ : backward_v_)[pixel];
   const bool known =

@@ -11,10 +11,11 @@
 
 namespace tempolux {
 
-inline constexpr std::size_t kStrip = 64;  ///< pixels whose sums fit into the first-level cache
+inline constexpr std::size_t kStrip = 64;  ///< pixels of a strip: their sums fit into the first-level cache
 using Lane = std::array<float, kStrip>;
 
-/// Eight pixels: a register (vector extensions of gcc and clang; other processors take two).
+/// Eight pixels are a register of AVX2. The types are vector extensions of gcc and clang, which use two registers on
+/// processors with shorter ones.
 inline constexpr std::size_t kEight = 8;
 using Float8 = float __attribute__((vector_size(4 * kEight)));
 using Int8 = std::int32_t __attribute__((vector_size(4 * kEight)));  ///< results of comparisons: -1 true, 0 false

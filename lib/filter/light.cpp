@@ -14,14 +14,6 @@
 namespace tempolux {
 namespace {
 
-constexpr std::array<const char*, 3> kMatte{"direct", "caustic", "indirect"};
-constexpr std::array<const char*, 2> kShown{"emission", "specular"};
-
-bool has_colour(const Image& image, const std::string& layer) {
-  return holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) &&
-         holds(image, channel_name(layer, 2));
-}
-
 bool is_black(const Image& image, const std::string& layer) {
   for (std::size_t c = 0; c < 3; ++c)
     if (const auto& values = image.find(channel_name(layer, c))->values;
@@ -30,7 +22,8 @@ bool is_black(const Image& image, const std::string& layer) {
   return true;
 }
 
-/// Creates noise for frames whose layers have no noise channels: by layer and colour, for light (radiance over albedo).
+/// Noise of light (radiance / albedo) by layer and colour, made up for frames whose layers have no channels of noise
+/// (FrameLight).
 class MadeUpNoise {
  public:
   MadeUpNoise(const Image& image, const LightGroup& group) : group_(group) {
@@ -50,8 +43,9 @@ class MadeUpNoise {
  private:
   float sign(int x, int y) const { return mix64(std::uint64_t(y) << 32 | std::uint64_t(x)) & 1 ? 1.0f : -1.0f; }
 
-  /// Estimates the variance by half the squared difference to the four neighbours on the surface: with noise alone the
-  /// mean of this is the variance, and smooth light adds little. Pixels that see several surfaces keep 0.
+  /// Estimates the variance as the mean of half the squared difference to the four neighbours on the surface. If pixels
+  /// differ by noise alone, the expectation of this mean is the variance; smooth light adds little. Pixels that see
+  /// several surfaces get no noise.
   void estimate(const Plane& light, Plane& noise) const {
     const Surfaces& on = group_.surfaces;
     for_each_row(on.height, [&](int y) {
@@ -68,7 +62,8 @@ class MadeUpNoise {
     });
   }
 
-  /// The share of layer l in the variance of the sum of the layers, by its share of the light.
+  /// Reads the variance of the sum of the layers. Layer l gets the share of the standard deviation that it has in the
+  /// light.
   void take(const std::vector<float>& variance, std::size_t l, std::size_t c, Plane& noise) const {
     const Surfaces& on = group_.surfaces;
     for_each_row(on.height, [&](int y) {
@@ -101,7 +96,7 @@ LightGroup::LightGroup(const Image& image, bool seen, std::vector<std::string> n
   }
 }
 
-/// Reads the light into the first half.
+/// Reads the light of the layers into the first half; take_noise() makes both halves from it.
 void LightGroup::take_light(const Image& image) {
   for (Light& half : raw) half.layers.resize(layers.size());
   for (std::size_t l = 0; l < layers.size(); ++l)
@@ -158,15 +153,15 @@ void LightGroup::take_noise(const Image& image) {
 
 bool knows_noise(const Image& image) {
   return has_colour(image, "diffuse.variance") || has_colour(image, "variance") || has_colour(image, "albedo") ||
-         std::any_of(kMatte.begin(), kMatte.end(),
+         std::any_of(kMatteLayers.begin(), kMatteLayers.end(),
                      [&](const std::string& layer) { return holds(image, layer + ".noise.R"); });
 }
 
 void check_noise(const Image& image) {
-  for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect"})
-    if (const std::string noise = std::string(layer) + ".noise";
+  for (const std::string layer : kFrameLayers)
+    if (const std::string noise = layer + ".noise";
         holds(image, noise + ".R") && !(has_colour(image, layer) && has_colour(image, noise)))
-      throw InputError("noise of layer " + std::string(layer) +
+      throw InputError("noise of layer " + layer +
                        " is not all there, or the layer is not; write it with --channels layers,halves");
 }
 
@@ -176,7 +171,7 @@ FrameLight::FrameLight(const Image& image) {
     std::vector<std::string> layers;
     bool noise = g == 0;
     for (const std::string layer :
-         g == 0 ? std::span<const char* const>(kMatte) : std::span<const char* const>(kShown)) {
+         g == 0 ? std::span<const char* const>(kMatteLayers) : std::span<const char* const>(kSeenLayers)) {
       noise = noise || holds(image, layer + ".noise.R");
       if (has_colour(image, layer)) layers.push_back(layer);
     }

@@ -12,12 +12,16 @@
 
 namespace tempolux {
 
-/// Light by layer and pixel, with its weights and the guide that other pixels compare it by.
+/// The layers of matte light, and the layers of light that lamps emit and that mirrors and glass show.
+inline constexpr std::array<const char*, 3> kMatteLayers{"direct", "caustic", "indirect"};
+inline constexpr std::array<const char*, 2> kSeenLayers{"emission", "specular"};
+
+/// Light by layer and pixel, with its weights, and the guide by which pixels are compared.
 struct Light {
   std::vector<ColourPlane> layers;  ///< radiance over albedo; empty planes: black everywhere
-  Plane weight;                     ///< number of pixels the light was averaged from; 0: no pixel that sees one surface
-  ColourPlane guide;                ///< sum of the layers, smoothed
-  Plane guide_variance;             ///< variance of the guide, summed over channels
+  Plane weight;          ///< number of pixels from which the light was averaged; 0: none of them sees a single surface
+  ColourPlane guide;     ///< sum of the layers, smoothed
+  Plane guide_variance;  ///< variance of the guide, summed over channels
 };
 using BothHalves = std::array<Light, 2>;
 
@@ -36,17 +40,21 @@ struct LightGroup {
 };
 
 /// A frame as the filter reads it.
-/// Half h of a layer is LAYER + LAYER.noise (0) or LAYER - LAYER.noise (1); the noise of the two is uncorrelated
-/// (formats/frames/frames.md). A frame without these channels gets noise of random sign whose square is the variance.
-/// The variance is read from the channels diffuse.variance or variance and divided among the layers in proportion to
-/// their light; without these, but with albedo, the variance is half the mean squared difference to the four neighbours
-/// on the surface; without albedo there is no noise, and the filter only replaces values that are not finite. Values
-/// plus and minus random noise of this variance are uncorrelated, too [Oliveira, Lei, Tibshirani: Unbiased risk
+/// Half 0 of a layer is LAYER + LAYER.noise, half 1 is LAYER - LAYER.noise; the noise of the two halves is uncorrelated
+/// (formats/frames/frames.md). A frame without channels of noise gets noise of random sign, whose square is the
+/// variance of the pixel:
+/// - The variance is read from the channels diffuse.variance or variance, and divided among the layers by their light.
+/// - Without these channels, but with albedo, the variance is half the mean squared difference to the four neighbours
+/// on
+///   the surface.
+/// - Without albedo there is no noise, and the filter only replaces values that are not finite.
+/// Values plus and minus random noise of this variance are uncorrelated, too [Oliveira, Lei, Tibshirani: Unbiased risk
 /// estimation in the normal means problem via coupled bootstrap techniques, 2021].
 class FrameLight {
  public:
-  /// Matte light is filtered by the surfaces that the pixel sees; emission and specular light by the surfaces in
-  /// mirrors and glass. A frame without layers has R G B only.
+  /// Group 0 is matte light, which is filtered by the surfaces that the pixel sees. Group 1 is emission and specular
+  /// light, which is filtered by the surfaces seen in mirrors and glass. In a frame without layers R, G and B are group
+  /// 0.
   static constexpr std::size_t kGroups = 2;
   /// Throws InputError as check_noise() does.
   explicit FrameLight(const Image& image);

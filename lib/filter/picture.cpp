@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace tempolux {
+
 std::string channel_name(const std::string& layer, std::size_t c) {
   return layer.empty() ? kComponents[c] : layer + "." + kComponents[c];
 }
@@ -11,6 +12,11 @@ std::string channel_name(const std::string& layer, std::size_t c) {
 bool holds(const Image& image, const std::string& name) {
   const Channel* channel = image.find(name);
   return channel && !channel->values.empty();
+}
+
+bool has_colour(const Image& image, const std::string& layer) {
+  return holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) &&
+         holds(image, channel_name(layer, 2));
 }
 
 Channel* float_channel(Image& image, const std::string& name) {
@@ -21,7 +27,7 @@ Channel* float_channel(Image& image, const std::string& name) {
 std::vector<std::size_t> confirmed_in(const Image& image, const std::string& layer) {
   std::vector<std::size_t> pixels;
   if (!holds(image, "halves.confirmed")) return pixels;
-  const auto bit = std::find(kLayersInOrder.begin(), kLayersInOrder.end(), layer) - kLayersInOrder.begin();
+  const auto bit = std::find(kFrameLayers.begin(), kFrameLayers.end(), layer) - kFrameLayers.begin();
   const std::vector<float>& layers = image.find("halves.confirmed")->values;
   for (std::size_t p = 0; p < layers.size(); ++p)
     if (layers[p] >= 1 && layers[p] < 64 && (int(layers[p]) >> bit & 1)) pixels.push_back(p);
@@ -39,8 +45,8 @@ void leave_numbers(Image& image) {
 LayerSums sum_layers(Image& image) {
   LayerSums sums;
   for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t l = 0; l < kLayersInOrder.size(); ++l) {
-      const Channel* layer = float_channel(image, channel_name(kLayersInOrder[l], c));
+    for (std::size_t l = 0; l < kFrameLayers.size(); ++l) {
+      const Channel* layer = float_channel(image, channel_name(kFrameLayers[l], c));
       if (!layer) continue;
       if (sums[c].empty()) sums[c] = layer->values;
       else

@@ -5,35 +5,35 @@
 #include <string>
 #include <vector>
 
+#include "lib/image/channel_groups.h"
 #include "lib/image/image.h"
 
 namespace tempolux {
 
 inline constexpr std::array<const char*, 3> kComponents{"R", "G", "B"};
-/// The layers of a frame, in the order of the bits of the channel halves.confirmed (formats/frames/frames.md).
-inline constexpr std::array<const char*, 6> kLayersInOrder{"emission", "specular", "direct",
-                                                           "caustic",  "indirect", "volume"};
-
 /// "direct.R", or "R" if `layer` is empty. c: 0, 1, 2.
 std::string channel_name(const std::string& layer, std::size_t c);
-/// True if the channel exists and has samples.
-bool holds(const Image& image, const std::string& name);
 /// nullptr if the channel does not exist or has no samples.
 Channel* float_channel(Image& image, const std::string& name);
+/// True if the channel exists and has samples.
+bool holds(const Image& image, const std::string& name);
+/// True if holds() is true for the R, G and B of a layer.
+bool has_colour(const Image& image, const std::string& layer);
 
-/// The pixels for which the channel halves.confirmed names a layer; none without that channel.
+/// The pixels in which halves.confirmed has the bit of a layer; bits are in the order of kFrameLayers. None without
+/// that channel.
 std::vector<std::size_t> confirmed_in(const Image& image, const std::string& layer);
 
-/// Sums of the layers by pixel, for R, G and B, in the order of frames.md 2; empty if there are no layers.
+/// Sums of the layers by pixel, for R, G and B; empty if there are no layers.
 using LayerSums = std::array<std::vector<float>, 3>;
 LayerSums sum_layers(Image& image);
 
-/// Updates R G B after the layers have changed. Light that R G B held besides its layers stays. Half floats are off by
-/// 2^-11 each, so a difference of up to twice that counts as no light.
+/// Updates R, G and B after the layers have changed. Light that R, G and B held besides the layers stays. A difference
+/// between R, G, B and the layers' sum of up to 2^-10 counts as the rounding of half floats, which are off by 2^-11
+/// each.
 void renew_picture(const LayerSums& before, const LayerSums& after, Image& image);
 
-/// Replaces values that are not finite by 0 in channels that pass the filter. Depth may be infinite; a NaN depth
-/// becomes infinite.
+/// Replaces values that are not finite: by infinity in Z, by 0 in all other channels.
 void leave_numbers(Image& image);
 
 }  // namespace tempolux

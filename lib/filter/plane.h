@@ -1,5 +1,4 @@
-// lib/filter/plane.h -- one number per pixel, with a margin around the picture, so that windows need no tests at its
-// borders.
+// lib/filter/plane.h -- one number per pixel. A margin around the picture makes tests at its borders unnecessary.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 namespace tempolux {
 
-/// Width of the margin in pixels: the farthest that any window reaches. The margin holds T{}.
+/// Width of the margin in pixels: the longest reach of a window. The margin holds T{}.
 inline constexpr int kMargin = 16;
 
 template <class T>
@@ -28,7 +27,7 @@ class PlaneT {
     plane.stride_ = std::size_t(width) + 2 * kMargin;
     plane.height_ = height;
     const std::size_t all = plane.stride_ * (std::size_t(height) + 2 * kMargin),
-                      count = all + kMargin;  // eight pixels may be read from any position
+                      count = all + kMargin;  // eight pixels are read together from any position
     plane.data_ = std::make_unique_for_overwrite<T[]>(count);
     formats::prefer_large_pages(plane.data_.get(), count * sizeof(T));
     std::fill_n(plane.data_.get() + all, kMargin, T{});

@@ -15,15 +15,15 @@ namespace {
 constexpr int kBlock = 32;  ///< pixels: edge of the blocks from which the standard error is estimated
 const std::string kNoise = "tempolux:noise.";
 
-double exposure_of(const std::array<const std::vector<float>*, 3>& picture) {
+double exposure_of(const PicturePlanes& picture) {
   std::vector<double> means(picture[0]->size());
   for (std::size_t p = 0; p < means.size(); ++p)
     means[p] = double(((*picture[0])[p] + (*picture[1])[p] + (*picture[2])[p]) / 3);
   return tempolux::exposure_of(std::move(means));
 }
 
-/// Squared error in codes over the squared linear error e^2 (`square`) at an exposed value, mean over both signs of e.
-/// For small errors the ratio is the squared slope of the display curve. The ratio times e^2 is at most 255^2.
+/// Squared error in codes divided by the squared linear error e^2 (`square`) at an exposed value, as the mean over both
+/// signs of e. For small errors the quotient is the squared slope of the display curve.
 double codes_for_square(double value, double square) {
   if (!(square > 0)) return 0;
   const double e = std::sqrt(square), code = srgb_code(value);
@@ -65,10 +65,10 @@ struct Errors {
   }
 };
 
-constexpr double kEnough = 1 << 17;  ///< pixels: conversions of all pixels of a large picture would cost too much
+constexpr double kEnough = 1 << 17;  ///< pixels whose codes are converted; all pixels of a large picture cost too much
 
-/// Sums over the blocks of a picture or layer; square_of(c, p) are `whole` and the square of the noise. A picture of
-/// many more than kEnough pixels is represented by a random share of them.
+/// Sums over the blocks of a picture or layer. square_of(c, p) returns `whole` and the squared noise of a pixel. If the
+/// picture has many more than kEnough pixels, a random share of them is summed.
 template <class Square>
 Errors sum_blocks(const Image& frame, const PicturePlanes& picture, double exposure, const Square& square_of) {
   Errors errors;
@@ -125,12 +125,12 @@ RemainingError RemainingNoise::error() const {
 
 void write_remaining_noise(const RemainingError& error, Image& frame) {
   std::erase_if(frame.numbers, [](const auto& number) { return number.first.starts_with(kNoise); });
-  if (error.whole[0].empty() || !holds(frame, "R") || !holds(frame, "G") || !holds(frame, "B")) return;
+  if (error.whole[0].empty() || !has_colour(frame, "")) return;
   const double exposure = exposure_of(frame.rgb(""));
   sum_blocks(frame, frame.rgb(""), exposure, [&](std::size_t c, std::size_t p) {
     return std::pair(double(error.whole[c][p]), double(error.noise[c][p]));
   }).write(kNoise, frame);
-  for (const std::string layer : kLayersInOrder) {
+  for (const std::string layer : kFrameLayers) {
     if (!holds(frame, layer + ".R") || !holds(frame, layer + ".noise.R")) continue;
     const auto noise = frame.rgb(layer + ".noise");
     const Errors errors = sum_blocks(frame, frame.rgb(layer), exposure, [&](std::size_t c, std::size_t p) {

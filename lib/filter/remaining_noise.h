@@ -39,10 +39,12 @@ class RemainingNoise {
 /// `whole`.
 ///
 /// The error in codes is the difference of the sRGB codes, clipped at 0 and 255, of the filtered value and of the value
-/// without the error. `whole` may have both signs, so the mean over both is taken. Noise k is subtracted: where it is
-/// not small beside the light, a few bright samples made most of the value, so that the true value is below. Light of
-/// samples that find L or nothing has |k| = L in the pixels that found L, and errs by c(L) - c(0) there. The standard
-/// error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are correlated.
+/// without the error.
+/// - The sign of the error that `whole` estimates is unknown, so the mean over both signs is taken.
+/// - Noise |k| is subtracted. If it is not small compared to the light, a few bright samples made most of the value, so
+///   the true value is smaller. Example: samples that find light L or nothing. A pixel that found L has |k| = L, and
+///   its error is c(L) - c(0).
+/// The standard error comes from blocks of 32 x 32 pixels, because errors of neighbouring pixels are correlated.
 ///
 /// If nothing was filtered or R, G and B are missing, the attributes are removed.
 void write_remaining_noise(const RemainingError& error, Image& frame);

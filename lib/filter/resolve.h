@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// One channel of the light of surfaces. Radiance is light times albedo; an empty albedo plane counts as 1.
+/// One channel of the light of surfaces. Radiance is light times albedo; an empty plane of albedo means 1.
 struct EdgePlane {
   const Plane& own;    ///< by pixel: light of the surface at the pixel's centre
   const Plane& other;  ///< by pixel: light of surfaces that no neighbouring centre shows; empty: black

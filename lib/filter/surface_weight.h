@@ -1,4 +1,4 @@
-// lib/filter/surface_weight.h -- decides for rows of pixels whether a pixel may take light from another one.
+// lib/filter/surface_weight.h -- decides for eight pixels at once which pixels are on their surfaces.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace tempolux {
 
-/// Compares the eight pixels (x + i, y) with those (dx, dy) away, for one dy: are both on one surface
-/// (PixelSurfaces::same)? The pixels' own values are loaded once. All of them lie in the picture or its margin.
+/// Compares the eight pixels (x + i, y), i from 0 to 7, with the pixels (dx, dy) away from them, for one dy and any dx:
+/// PixelSurfaces::same(). The values of the eight pixels are loaded once. All pixels lie in the picture or its margin.
 class SurfaceEight {
  public:
   SurfaceEight(const Surfaces& frame, int y, int dy, std::ptrdiff_t x)
@@ -29,7 +29,7 @@ class SurfaceEight {
     allowed_ = PixelSurfaces::kSameDepth * w + abs8(down);
   }
 
-  /// 1 if both are on one surface, else 0.
+  /// By pixel: 1 if it and the pixel (dx, dy) away are on one surface, else 0.
   Float8 surface(int dx) const {
     const Float8 facing =
         multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));

@@ -18,8 +18,8 @@ Plane plane_of(const Image& image, const std::string& name) {
   return plane;
 }
 
-/// 1 if the pixel and each of its 3 x 3 neighbours are on one surface, compared in both directions, else 0; for eight
-/// pixels. Neighbours outside the picture do not count.
+/// For eight pixels: 1 if the pixel and all of its 3 x 3 neighbours are on one surface, else 0. Each pair is compared
+/// in both directions. Neighbours outside the picture do not count.
 Float8 one_surface_around(const Surfaces& surfaces, int y, std::ptrdiff_t x0) {
   Float8 inside = all8(1);
   for (int dy = std::max(-1, -y); dy <= std::min(1, surfaces.height - 1 - y); ++dy)
@@ -71,7 +71,7 @@ void Surfaces::take_depth(const Channel* z) {
 }
 
 void Surfaces::take_albedo(const Image& image, const std::string& name) {
-  if (!holds(image, name + ".R") || !holds(image, name + ".G") || !holds(image, name + ".B")) return;
+  if (!has_colour(image, name)) return;
   for (std::size_t c = 0; c < 3; ++c) {
     albedo[c] = plane_of(image, channel_name(name, c));
     for_each_row(height, [&](int y) {

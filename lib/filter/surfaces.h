@@ -17,16 +17,17 @@ using ColourPlane = std::array<Plane, 3>;
 /// Values of light above this stay unfiltered, so that squares are finite.
 inline constexpr float kLargestLight = 1e18f;
 
+/// The surface of each pixel of a frame.
 struct Surfaces {
   int width = 0, height = 0;
   PlaneT<std::uint32_t> object;
   Plane w, w_right, w_down, nx, ny, nz;  ///< PixelSurfaces
   ColourPlane albedo;                    ///< divides radiance, at least .01; empty planes: 1
-  Plane use;     ///< 1: the pixel sees one surface and its values are finite; 0: no other pixel may take light from it
-  Plane inside;  ///< 1: `use`, and all neighbours are on the same surface
+  Plane use;     ///< 1: the pixel sees one surface and its values are finite; 0: no other pixel may use its light
+  Plane inside;  ///< 1: the pixel has `use`, and all neighbours are on its surface
 
-  /// The first surfaces, or with `seen` the surfaces in mirrors and glass, if the image has the channels seen.*
-  /// (formats/frames/frames.md).
+  /// The first surface on each pixel's ray. With `seen`: the surfaces that mirrors and glass show, if the image has the
+  /// channels seen.* (formats/frames/frames.md).
   Surfaces(const Image& image, bool seen);
 
   bool has_pixel(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }

@@ -9,10 +9,11 @@
 namespace tempolux {
 namespace {
 
-constexpr int kRadius = 6;              ///< pixels
-constexpr std::size_t kMostLayers = 3;  ///< of a group
-/// Weight of a first estimate without a fit: that of a pixel in which one ray sees the surface. The estimate also holds
-/// the light of other surfaces, so it only counts for surfaces of which pixels see no more than this.
+constexpr int kRadius = 6;  ///< pixels
+constexpr std::size_t kMostLayers = kMatteLayers.size();
+static_assert(kSeenLayers.size() <= kMostLayers);
+/// Weight of a first estimate without a fit: the square of a share of one ray, s = 1/16. The first estimate also holds
+/// light of other surfaces, so its weight must be small beside that of any pixel in which several rays see the surface.
 constexpr double kFirstEstimate = 1.0 / (Coverage::kRays * Coverage::kRays);
 
 class Unmixing {
@@ -60,8 +61,8 @@ class Unmixing {
   bool is_black(std::size_t layer) const { return collected_.layers[layer][0].empty(); }
   bool is_known(int x, int y) const { return fitted_.weight.at(x, y) >= kFewestPixels; }
   float albedo(std::size_t c, int x, int y) const { return surfaces_.albedo_at(c, x, y); }
-  /// Light of all surfaces of the pixel together: the mean over all frames if the pixel is an edge in all of them,
-  /// else of this frame.
+  /// Light of all surfaces of the pixel together: the mean over all frames if the pixel is at an edge in all of them,
+  /// else the light of this frame.
   float mixed(std::size_t l, std::size_t c, int x, int y) const {
     const Plane& plane = (collected_.weight.at(x, y) == 0 ? collected_ : raw_).layers[l][c];
     return plane.empty() ? 0 : plane.at(x, y);
@@ -113,7 +114,7 @@ std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const 
   for (std::size_t l = 0; l < other.size(); ++l)
     for (std::size_t c = 0; c < 3 && any_other && !fitted.layers[l][c].empty(); ++c)
       other[l][c] = Plane(surfaces.width, surfaces.height);
-  // Pixels whose light the fit found are only read, all others are only written, so any order gives the same result.
+  // Pixels with known light are only read, all other pixels are only written, so any order gives the same result.
   parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
     Unmixing unmixing(group, half, collected, coverage, frames, fitted, other);
     for (int y = int(first); y < int(last); ++y)

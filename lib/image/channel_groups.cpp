@@ -1,7 +1,6 @@
 #include "lib/image/channel_groups.h"
 
 #include <algorithm>
-#include <array>
 
 #include "formats/error.h"
 
@@ -13,8 +12,7 @@ bool is_in_group(std::string_view channel, std::string_view group) {
   };
   if (group == "RGBA") return channel == "R" || channel == "G" || channel == "B" || channel == "A";
   if (group == "layers") {
-    constexpr std::array<std::string_view, 6> layers{"emission", "specular", "direct", "caustic", "indirect", "volume"};
-    return channel.size() > 2 && std::any_of(layers.begin(), layers.end(), [&](std::string_view layer) {
+    return channel.size() > 2 && std::any_of(kFrameLayers.begin(), kFrameLayers.end(), [&](std::string_view layer) {
              return starts_with_group(layer) && channel.size() == layer.size() + 2;
            });
   }

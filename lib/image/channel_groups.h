@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "lib/image/image.h"
 
 namespace tempolux {
+
+/// The layers of a frame, in the order in which they are added to R, G and B (formats/frames/frames.md 2).
+inline constexpr std::array<const char*, 6> kFrameLayers{"emission", "specular", "direct",
+                                                         "caustic",  "indirect", "volume"};
 
 /// True if the channel belongs to the group. RGBA: R, G, B, A. layers: the colours of emission, specular, direct,
 /// caustic, indirect and volume. motion: forward.*, backward.*, valid, speed. Any other group: the channel of this

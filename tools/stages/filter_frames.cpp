@@ -98,8 +98,8 @@ class FilterRun {
     } catch (const InputError& error) { throw InputError(file + ": " + error.what()); }
   }
 
-  /// to_filter: true if the frame itself is filtered, now or later. Otherwise only the parts that its neighbours use
-  /// are read and kept.
+  /// to_filter: true if the frame itself is filtered, now or later. Otherwise only the channels that the filter needs
+  /// for its neighbours are read, and the image is not kept.
   LoadedFrame& load(std::size_t index, bool to_filter) {
     const auto [found, is_new] = loaded_.try_emplace(index);
     LoadedFrame& loaded = found->second;
@@ -107,14 +107,12 @@ class FilterRun {
     const Names& names = names_[index];
     tool_.stats().phase("read");
     loaded.image = read(names.frame, true, to_filter);
-    Image flow;
-    if (!names.flow.empty()) flow = read(names.flow, false, true);
-    tool_.stats().phase("prepare", true);
     Image& image = loaded.image;
-    if (!names.flow.empty()) loaded.flow = FlowFrame(std::move(flow), image.width, image.height, names.flow);
+    if (!names.flow.empty())
+      loaded.flow = FlowFrame(read(names.flow, false, true), image.width, image.height, names.flow);
     else if (image.find("forward.u") || image.find("backward.u"))
-      loaded.flow = to_filter ? FlowFrame(image, image.width, image.height, names.frame)
-                              : FlowFrame(std::move(image), image.width, image.height, names.frame);
+      loaded.flow = FlowFrame(image, image.width, image.height, names.frame);
+    tool_.stats().phase("prepare", true);
     naming(names.frame, [&] { check_noise(image); });
     if (windowed_) naming(names.frame, [&] { loaded.light = std::make_unique<WindowLight>(image, false); });
     explain(names, loaded);
@@ -122,8 +120,8 @@ class FilterRun {
     return loaded;
   }
 
-  /// colour: true if pixels may be NaN; these are filled from their neighbours. all: true to read every channel,
-  /// false to read the channels of --channels and those that the filter needs.
+  /// colour: true if pixels may be NaN; the filter fills such pixels from their neighbours. all: true to read every
+  /// channel, or those of --channels if the option is given; false to read only the channels that the filter needs.
   Image read(const std::string& file, bool colour, bool all) {
     const auto is_named = [&](const std::string& channel) {
       return std::any_of(options_.channels.begin(), options_.channels.end(),
