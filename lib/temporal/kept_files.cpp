@@ -28,7 +28,7 @@ std::string hash_of(const KeptHemisphere& of) {
   return hasher.hex();
 }
 
-/// Checks the records against the scene: returns the fault, or "" if all match.
+/// What the records contradict in the scene, in words; "" if they fit the scene.
 std::string fault_of(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points) {
   if (kept.point_light.size() != points.anchored)
     return "it has the light of " + std::to_string(kept.point_light.size()) + " points, of " +
@@ -78,7 +78,8 @@ void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHead
   for (std::uint32_t i = 0; i < hashes.size(); ++i) records_.emplace(hashes[i], i);
 }
 
-/// Writes an overlay on the base. If less than half of the samples are the base's, writes nothing and returns false.
+/// Turns the file into an overlay on the base. If the file cannot be one, or less than half of its samples are the
+/// base's, leaves it unchanged and returns false.
 bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::string>& hashes,
                               formats::RadsamplesFile& file) const {
   if (path_.empty() || !same_folder(path, path_) || segment_ != file.header.segment ||

@@ -14,11 +14,11 @@
 
 namespace tempolux {
 
-/// The points of a frame, and the data that samples must agree with.
+/// The points of a frame, with the hashes that kept samples must have been gathered from.
 struct FramePoints : DividedGatherPoints {
   FramePoints(DividedGatherPoints points, const SceneFrame& frame);
 
-  std::size_t anchored = 0;  ///< number of first points on static surfaces
+  std::size_t anchored = 0;  ///< number of points on static surfaces; they are the first ones
   std::string places_hash;   ///< hash of the positions and normals of these points
   std::string high_hash;     ///< hash of high_shares; "" without
 };
@@ -28,19 +28,19 @@ float sample_unit(const SceneFrame& frame);
 
 /// Reads a file into `kept`, which must be empty, in the space of the frame `now`.
 formats::RadsamplesFile read_kept(const std::string& file, const SceneFrame& now, KeptHemispheres& kept);
-/// Throws InputError unless the frame `now` can follow from a file: its segment, the static points and the part of the
-/// light must be the same.
+/// Throws InputError unless the frame `now` can continue from a file: both must have the same segment, the same static
+/// points and the same part of the light.
 void check_kept(const std::string& file, const formats::RadsamplesHeader& header, const SceneFrame& now,
                 const FramePoints& points, const KeptHemispheres& kept);
 
-/// Writes the files of a range of frames in order: a whole file, then overlays of it as long as at least half of their
-/// samples are the whole file's; then again a whole file.
+/// Writes the files of a range of frames in order. A whole file is followed by overlays on it as long as at least half
+/// of their samples are the whole file's; then the next whole file follows.
 class KeptFiles {
  public:
   using WriteBytes = std::function<void(const void*, std::size_t)>;
 
-  /// Writes the samples of a frame. `path`: the file's final name; "": a stream, which is whole and no base of others.
-  /// A file in another folder than the last whole file is whole, too.
+  /// Writes the samples of a frame. `path`: the file's final name; "": a stream, which is a whole file and no base of
+  /// others. A file in another folder than the last whole file is a whole file, too.
   void write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points,
              const std::string& history, const std::string& path, const WriteBytes& sink);
 

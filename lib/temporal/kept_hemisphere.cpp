@@ -7,7 +7,7 @@
 namespace tempolux {
 namespace {
 
-/// Random shares in [0, 1) by which the mantissas of a cell's radiance are rounded up in this update of the record.
+/// Random numbers in [0, 1) that round the mantissas of a cell's radiance in this update of the record.
 std::array<float, 3> rounding_of(const formats::RadsamplesRecord& record, std::uint32_t cell) {
   const std::uint64_t bits = mix64(record.key ^ mix64(std::uint64_t(record.updates) << 32 | cell));
   const auto share = [&](int from) { return float((bits >> from) & 0x1fffff) * 0x1p-21f; };

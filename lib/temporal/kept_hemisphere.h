@@ -21,17 +21,18 @@ struct KeptHemisphere {
 
   Vec3 position() const { return vec_of(record.position); }
   Vec3 normal() const { return vec_of(record.normal); }
-  /// Number of a cell's present ray, from which its random direction follows (GatherDirections::aim).
+  /// Number of the draw of a cell's ray. The ray's random direction is a function of this number
+  /// (GatherDirections::aim).
   std::uint32_t draw_of(std::uint32_t cell) const { return record.updates + 1 - formats::age_of(samples[cell]); }
 };
 
 /// All that is kept from one frame of a segment to the next.
 struct KeptHemispheres {
   std::vector<KeptHemisphere> records;
-  std::vector<Rgb> point_light;  ///< W/m^2, sum over kinds; anchors are indices of it
-  /// Hash of the explicit shares of bright points, whose light the samples leave out; "": samples hold all light
+  std::vector<Rgb> point_light;  ///< W/m^2, sum over kinds; anchors are indices into it
+  /// Hash of the explicit shares of bright points, which the samples leave out; "": samples hold all light.
   std::string high_hash;
-  bool changed = false;  ///< true if anything changed in the last frame that records follow; not stored in files
+  bool changed = false;  ///< true if the last frame changed anything that records depend on; not stored in files
 };
 
 /// Samples and anchors of one record, by cell; anchors may be empty.
@@ -40,9 +41,9 @@ struct SeenSamples {
   std::span<const std::uint32_t> anchors;
 };
 
-/// The unit of stored distances: 1/1024 of this, m.
+/// Stored distances: half floats in units of diagonal / 1024.
 struct SampleUnits {
-  float diagonal = 1;
+  float diagonal = 1;  ///< m, sample_unit()
   std::uint16_t encode(float distance) const { return formats::encode_half(distance * (1024 / diagonal)); }
   float decode(std::uint16_t distance) const { return formats::decode_half(distance) * (diagonal * (1.0f / 1024)); }
 };
@@ -59,13 +60,13 @@ void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float dist
 /// Computes irradiance and gradients from the samples alone.
 IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units);
 
-/// A file's content besides its header and samples.
+/// A file without samples: records, the points' light, and the hash of the high part.
 formats::RadsamplesFile head_of(const KeptHemispheres& kept);
 /// Takes a record and its samples from a file that is being read (formats::TakeSamples). `shift` is the file's origin
 /// minus the frame's.
 void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift,
                   KeptHemispheres& kept);
-/// Takes the file's other content after the records.
+/// Takes the points' light and the hash of the high part from a file that has been read.
 void take_head(const formats::RadsamplesFile& head, KeptHemispheres& kept);
 
 }  // namespace tempolux

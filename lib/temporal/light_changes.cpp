@@ -9,13 +9,15 @@
 namespace tempolux {
 namespace {
 
-/// updates in which each close hit is traced again once (table in docs/notebook/temporal.md)
+/// Each close hit is traced again once in this number of updates (table in docs/notebook/temporal.md).
 constexpr std::uint64_t kTurns = 8;
-/// Largest change of an anchor's light, as a factor up or down, by which a cell is scaled and not traced again.
+/// If the light of an anchor changes by more than this factor, up or down, its cells are traced again instead of
+/// scaled. Few cells meet this limit: 0, 0 and .1 % of them in the three sequences of docs/notebook/temporal.md.
 constexpr float kLargestRatio = 2;
 
 Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
-/// True if the cell is traced again in this update by rotation. The rotation does not depend on light, so it causes no
+
+/// True if it is the cell's turn to be traced again in this update. Turns do not depend on light, so they cause no
 /// bias.
 bool is_its_turn(const formats::RadsamplesRecord& record, std::uint32_t cell) {
   return (mix64(record.key + cell) + record.updates) % kTurns == 0;
@@ -41,14 +43,13 @@ LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& ke
   changes.ratios.resize(changes.points.size(), Rgb(1.0f));
   for (std::size_t i = 0; i < changes.points.size(); ++i) {
     const Rgb before = kept.point_light[i], light = scene.points[i].total();
-    if (is_bright(scene, std::uint32_t(i))) changes.points[i] = lost;  // the point became a bright point at this frame
-    if (before == light) continue;
-    if (changes.points[i] == lost) continue;
+    if (is_bright(scene, std::uint32_t(i))) changes.points[i] = lost;  // A bright point is no anchor.
+    if (before == light || changes.points[i] == lost) continue;
     changes.points[i] = scaled;
     changes.anything = true;
     for (int c = 0; c < 3; ++c) {
       if (before[c] == light[c]) continue;
-      // infinite if `before` is 0; the next line handles that
+      // If `before` is 0, the ratio is infinite and the cells are traced again.
       const float ratio = changes.ratios[i][c] = light[c] / before[c];
       if (!(ratio <= kLargestRatio && ratio * kLargestRatio >= 1)) changes.points[i] = lost;
     }
@@ -67,9 +68,8 @@ bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const G
       marks[c] = moved;
     } else if (flags & formats::sample_anchored) {
       marks[c] = changes.points[kept.anchors[c]];
-    } else if (flags &
-               // a cell that neither has an anchor nor a hit along its ray is black under any light
-               formats::sample_near) {
+    } else if (flags & formats::sample_near) {
+      // Without an anchor and without a hit along its ray a cell is black under any light, and stays unmarked.
       marks[c] = unanchored;
     }
   }

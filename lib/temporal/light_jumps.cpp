@@ -7,13 +7,13 @@
 namespace tempolux {
 namespace {
 
-constexpr double kLeast = 1.0 / 16;  ///< smaller steps are hidden in the noise of the filtered irradiance
-/// A jump is a step larger than this many times the sum of the neighbouring steps. Where motion starts or ends, one
-/// neighbouring step has the same size, so the start of a motion is no jump.
+constexpr double kLeast = 1.0 / 16;  ///< a smaller step is hidden in the noise of the filtered irradiance
+/// A jump is a step larger than this many times the sum of its neighbouring steps. At the start and the end of a motion
+/// one neighbouring step is about as large as the step itself, so neither is a jump.
 constexpr double kLeastOverNeighbours = 2;
 
-/// Power of all lights, without textures, to compare two frames. Unit: W for lights given in W/sr or W/m^2/sr;
-/// directional lights count with their irradiance.
+/// Power of all lights without their textures, W, to compare two frames. A directional light counts 4 pi times its
+/// irradiance.
 double lamp_power(const SceneFrame& frame) {
   double power = 0;
   for (const PlacedLight& lamp : frame.lights) power += 4 * std::numbers::pi * double(luminance(lamp.light.intensity));
@@ -35,8 +35,8 @@ double step_of_lamps(const SceneFrame& a, const SceneFrame& b) {
   return most > 0 ? std::abs(to - from) / most : 0;
 }
 
-/// Largest distance that a vertex of the surface moves, over the diagonal of the surface's box. All vertices are
-/// compared, which costs less than the tree of the moving surfaces of one frame.
+/// Largest distance that a vertex of the surface moves, divided by the diagonal of the surface's box. Comparing all
+/// vertices costs less than building the search tree of the moving surfaces.
 double step_of_surface(const Surface& a, const Surface& b) {
   const std::uint32_t count = std::uint32_t(a.primitive->positions.size());
   Box3 box_a, box_b;
@@ -53,17 +53,18 @@ double step_of_surface(const Surface& a, const Surface& b) {
 
 template <class Step>
 bool jumps(const FramesInARow& f, const Step& step) {
-  const double here = step(*f.last, *f.here);
+  const double here = step(*f.previous, *f.here);
   if (!(here > kLeast)) return false;
-  const double around = (f.before_last ? step(*f.before_last, *f.last) : 0) + (f.next ? step(*f.here, *f.next) : 0);
+  const double around =
+      (f.before_previous ? step(*f.before_previous, *f.previous) : 0) + (f.next ? step(*f.here, *f.next) : 0);
   return here > kLeastOverNeighbours * around;
 }
 
 }  // namespace
 
 bool light_jumps(const FramesInARow& frames) {
-  if (!frames.last || !frames.here) return false;
-  if ((lamp_power(*frames.last) > 0) != (lamp_power(*frames.here) > 0)) return true;
+  if (!frames.previous || !frames.here) return false;
+  if ((lamp_power(*frames.previous) > 0) != (lamp_power(*frames.here) > 0)) return true;
   if (jumps(frames, step_of_lamps)) return true;
   for (std::size_t s = frames.here->static_count; s < frames.here->surfaces.size(); ++s)
     if (jumps(frames,

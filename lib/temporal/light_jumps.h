@@ -8,15 +8,15 @@ namespace tempolux {
 
 /// Four consecutive frames of a segment; null outside the segment.
 struct FramesInARow {
-  const SceneFrame* before_last = nullptr;
-  const SceneFrame* last = nullptr;
+  const SceneFrame* before_previous = nullptr;
+  const SceneFrame* previous = nullptr;
   const SceneFrame* here = nullptr;
   const SceneFrame* next = nullptr;
 };
 
-/// True if the lights, or a surface in their light, jump between `last` and `here`: the step is larger than twice the
-/// sum of the steps before and after, and larger than 1/16 of the flux of all lights or of the moving surface's size.
-/// If all lamps go on or off, it is a jump in any case, even for one frame. False if `last` is null.
+/// True if the lights or a surface jump between `previous` and `here`. A jump is a step that is larger than twice the
+/// sum of the steps before and after it, and larger than 1/16 of the power of all lights or of the surface's size. If
+/// all lamps go on or off, light jumps in any case, even for a single frame. False if `previous` is null.
 bool light_jumps(const FramesInARow& frames);
 
 }  // namespace tempolux

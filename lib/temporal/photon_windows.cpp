@@ -16,12 +16,12 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kChunk = 1024;  ///< elements that one task processes
-constexpr int kRegions = 3;           ///< regions whose tests can reject constant light: element, kernel, ring
-/// Expected photons, counted as photons of equal flux, that a block needs to be tested: with fewer, the tails of its
-/// distribution are not Gaussian.
+constexpr int kRegions = 3;           ///< regions whose tests count as false alarms: element, kernel, ring
+/// Expected number of photons of equal flux in a block that is tested. The distribution of fewer photons does not have
+/// Gaussian tails.
 constexpr double kPhotonsInBlock = 8;
 
-constexpr double kLargestSum = 0x1p55;  ///< of one frame, so that the sums of 255 frames do not overflow
+constexpr double kLargestSum = 0x1p55;  ///< largest sum of one frame, so that sums over 255 frames do not overflow
 
 /// Last distance of the block that starts at `distance`: blocks have 1, 1, 2, 4, 8 ... frames.
 int block_end(int distance) { return distance == 0 ? 1 : 2 * distance; }
@@ -36,19 +36,20 @@ double two_sided_quantile(double p) {
   return low;
 }
 
-/// The frames that are added to a window, on each side.
+/// Numbers of frames that are added to a window on each side.
 struct Added {
   int before = 0, after = 0;
   int frames() const { return before + after; }
 };
 
+/// The sides of a window to which something applies.
 struct Sides {
   bool before = false, after = false;
   bool any() const { return before || after; }
 };
 
-/// Visits the steps by which a window grows on one side, first single frames, then blocks. `visit` receives the
-/// distance of the step's last frame from the window's middle.
+/// Calls visit(from, to) for each step by which a window grows on one side: the last frame's distance from the window's
+/// middle before and after the step. The frames of a block are visited one by one, then as a block.
 template <class Visit>
 void each_step(int reach, const Visit& visit) {
   for (int start = 0; start < reach; start = block_end(start)) {
@@ -71,6 +72,7 @@ int tests_of(double rate, const Added& most, int reach) {
   return tests;
 }
 
+/// Decides whether frames may join a window.
 class Grower {
  public:
   Grower(const WindowSeries& series, int at, int frames, const Added& most, const WindowThresholds& thresholds)
@@ -81,9 +83,9 @@ class Grower {
     threshold_ = thresholds.of(tests);
   }
 
-  /// On which sides the added frames may join the window. If both sides together do not differ from the window, both
-  /// may. Otherwise a side may join that does not differ by itself, but only if the other side does: if neither side
-  /// differs by itself, light passes through an extreme, and neither may join.
+  /// The sides on which the added frames may join the window. If both sides together do not differ from the window,
+  /// both may join. Otherwise a side may join if the other side differs and it does not. If neither side differs by
+  /// itself, light passes through an extreme at the middle, and neither may join.
   Sides sides(const Window& window, const Added& added) const {
     if (added.frames() == 0 || !differs(window, added)) return {true, true};
     const bool before = added.before > 0 && differs(window, {added.before, 0});
@@ -117,8 +119,7 @@ class Grower {
     if ((old + added).equal_photons() * p < kPhotonsInBlock) return false;
     return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
   }
-  /// True if the frames must not join: they would shift the mean of the region by more than the noise that they take
-  /// from the mean of the kernel.
+  /// True if the added frames shift the mean of the region by more than they reduce the noise of the kernel's mean.
   bool matters(const HitSeries& s, const Window& w, const Added& a, const HitBlock& kernel) const {
     const double old_frames = w.before + 1 + w.after, frames = old_frames + a.frames();
     const HitBlock all = all_of(s, w, a);
@@ -173,7 +174,7 @@ HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<
   return table;
 }
 
-/// The unit in which an entry's sums are counted.
+/// Unit of an entry's sums.
 double unit_of(std::span<const FrameCounts* const> frames, const HitTable::Entry& entry) {
   return frames[entry.frame]->unit;
 }
@@ -264,8 +265,8 @@ struct PlacedWindow {
   bool changes_size = false;
 };
 
-/// Writes the window's photons into the element. Returns their mean flux per frame [unit of the counts], scaled to the
-/// element's present area, and its variance.
+/// Adds the window's photons to the element. Returns the mean flux per frame [unit of the counts], scaled to the
+/// element's present area, and the variance of this mean.
 std::pair<Rgbd, double> put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries,
                                    const PlacedWindow& placed, formats::MeshElement& e) {
   const auto& [now, window, changes_size] = placed;

@@ -18,9 +18,10 @@ namespace tempolux {
 struct WindowOptions {
   int reach = 16;               ///< most frames to each side
   double false_alarms = 0.005;  ///< share of windows that end too early although light is constant
-  /// m: standard deviation of the Gaussian that smooths irradiance afterwards, for full windows with the mean density
-  /// of photons. Where photons are fewer by a factor f the Gaussian is wider by f^(1/4): with N photons per area its
-  /// error is about v / (N s^2) + b s^2, which is least at s^4 = v / (N b). f is at most that of a window of one frame.
+  /// Standard deviation s [m] of the Gaussian that smooths irradiance afterwards, at the mean density of photons in a
+  /// full window. If photons are fewer by a factor f, the Gaussian is wider by f^(1/4): with N photons per area its
+  /// squared error is about v / (N s^2) + b s^2 (noise and blur), which is least at s^4 = v / (N b). f is at most that
+  /// of a window of one frame.
   double width = 1;
 };
 
@@ -28,7 +29,7 @@ struct WindowOptions {
 struct FrameCounts {
   int frame = 0;
   double unit = 1;    ///< of sums and squares, over the result's unit; a power of two
-  bool jump = false;  ///< true if light jumps between the frame before and this one: no window reaches across
+  bool jump = false;  ///< true if light jumps between the previous frame and this one: no window holds both
   std::vector<formats::MeshElement> elements;  ///< elements with photons
 };
 
@@ -36,8 +37,8 @@ struct FrameCounts {
 struct HitBlock {
   double photons = 0;
   double flux = 0;     ///< sum of the photons' luminance
-  double squares = 0;  ///< sum of their squared luminance: the variance of `flux` (compound Poisson)
-  /// Number of photons of equal flux that would scatter as much: at most `photons`.
+  double squares = 0;  ///< sum of the photons' squared luminance: the variance of `flux` (compound Poisson)
+  /// Number of photons of equal flux whose sum has the same relative variance; at most `photons`.
   double equal_photons() const { return squares > 0 ? flux * flux / squares : 0; }
   HitBlock& operator+=(const HitBlock& o) {
     photons += o.photons;
@@ -51,17 +52,17 @@ struct HitBlock {
   }
 };
 
-/// How much the light of the added frames differs from the light of the old ones, in standard deviations. If the
-/// light is equal, each photon of both falls into an added frame with probability p = added / (old + added). With S
-/// the flux of both and Q the sum of squares of both, the flux of the added frames has the mean p S, the variance p
-/// (1 - p) Q, and, exactly for photons of equal flux, the skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S. The
-/// deviation z is corrected to z - g (z^2 - 1) / 6, which is nearly Gaussian (Cornish and Fisher). 0 if there are no
-/// photons.
+/// The difference in light between the added and the old frames, in standard deviations; 0 if there are no photons. If
+/// the light is constant, each photon falls into an added frame with the probability p = added / (old + added). Let S
+/// be the flux and Q the sum of squares of all frames. The flux of the added frames then has the mean p S, the variance
+/// p (1 - p) Q and the skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S, which is exact for photons of equal flux.
+/// Returns z - g (z^2 - 1) / 6, where z is the flux minus its mean in standard deviations; this value is nearly
+/// Gaussian (Cornish and Fisher).
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames);
 
-/// Thresholds, in standard deviations, above which a test rejects. The n tests of a window are independent, and each
-/// rejects constant light with probability 1 - (1 - false_alarms)^(1/n), so all together do with probability
-/// `false_alarms`.
+/// Thresholds [standard deviations] above which a test rejects. The n tests of a window count as independent. Each
+/// rejects constant light with probability 1 - (1 - false_alarms)^(1/n), so that a window ends too early with
+/// probability `false_alarms`.
 class WindowThresholds {
  public:
   explicit WindowThresholds(const WindowOptions& options);
@@ -92,12 +93,12 @@ class HitSeries {
   std::vector<HitBlock> until_;
 };
 
-/// The photons of an element and of the two regions around it, in all of which its light is tested.
+/// The photons of an element, of two regions around it, and of the frame. Its light is tested in all of them.
 struct WindowSeries {
   const HitSeries* element = nullptr;
-  const HitSeries* kernel = nullptr;  ///< region of about the photons that the spatial filter averages
-  const HitSeries* ring = nullptr;    ///< region of nine times as many photons
-  const HitSeries* frame = nullptr;   ///< all
+  const HitSeries* kernel = nullptr;  ///< a region as large as the Gaussian of the spatial filter
+  const HitSeries* ring = nullptr;    ///< a region nine times as large
+  const HitSeries* frame = nullptr;   ///< all photons
 };
 
 /// Finds the window of frame `at` among `frames` frames (numbered from 0). The window grows to both sides by blocks of
@@ -110,9 +111,9 @@ struct CollectedLight {
   std::vector<float> widths;  ///< m: deviation of the Gaussian of each element; 0: no photon is close
 };
 
-/// Fills photons, sums and windows of `elements` (all_elements() at frames[at]) from `frames`, which are consecutive
-/// frames of a segment. Elements of surfaces from number `moving` on may change their size. Throws
-/// std::invalid_argument if the counts belong to other elements.
+/// Finds the window of each element and collects its photons. `frames` are consecutive frames of a segment; `elements`
+/// are all_elements() at frames[at], whose photons, sums and windows are set. Elements of surfaces from number `moving`
+/// on may change their size. Throws std::invalid_argument if the counts belong to other elements.
 CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::size_t at, std::uint32_t moving,
                                const WindowOptions& options, std::vector<formats::MeshElement>& elements);
 

@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kMargin = 0x1p-18f;  ///< share of the largest coordinate: rounding of rays and boxes
+constexpr float kMargin = 0x1p-18f;  ///< rounding of rays and boxes, as a share of the largest coordinate
 constexpr float kAngle = 1e-3f;      ///< radians: rounding of angles
 
 void widen(Box3& box) {
@@ -41,7 +41,7 @@ std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now) {
 bool meets(const Ray& ray, float t, const Box3& box) {
   float first = 0, last = t * (1 + 0x1p-20f);
   for (int axis = 0; axis < 3; ++axis) {
-    // 0 x infinity is NaN (a ray in the plane of a face); std::min and std::max ignore NaN as second argument.
+    // A ray in the plane of a face gives 0 x infinity = NaN. std::min and std::max ignore NaN as their second argument.
     const float inverse = 1 / ray.direction[axis];
     const float a = (box.lower[axis] - ray.origin[axis]) * inverse, b = (box.upper[axis] - ray.origin[axis]) * inverse;
     first = std::max(first, inverse < 0 ? b : a);

@@ -10,22 +10,23 @@
 
 namespace tempolux {
 
-/// One box for each surface whose vertices differ between two frames of a segment: around both positions, slightly
-/// enlarged; m, scene space.
+/// One box for each surface whose vertices differ between two frames of a segment [m, scene space]: it encloses the
+/// surface at both frames, and is slightly larger because of rounding.
 std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now);
 
-/// True if the ray meets the box before `t` times its direction (infinity: anywhere). Also true where rounding cannot
-/// decide.
+/// True if the ray meets the box between its origin and origin + t direction; t may be infinite. Also true if rounding
+/// leaves the answer open.
 bool meets(const Ray& ray, float t, const Box3& box);
 
-/// Finds the cells of a hemisphere through which a box can be visible: all cells that may meet the cone around the
-/// box's sphere.
+/// Finds the cells of a hemisphere through which a box can be visible: all cells that the cone around the box's
+/// bounding sphere can meet.
 class CellsTowards {
  public:
   CellsTowards(Vec3 position, const Frame& frame, const Box3& box, int rings, int sectors);
 
+  /// Calls body(cell) for each of these cells.
   template <class Body>
-  void for_each(const Body& body) const {  // body(cell)
+  void for_each(const Body& body) const {
     for (int j = first_ring_; j <= last_ring_; ++j)
       for (int i = 0; i < sector_count_; ++i) body(std::uint32_t(j * sectors_ + (first_sector_ + i) % sectors_));
   }

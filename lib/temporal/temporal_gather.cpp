@@ -16,10 +16,10 @@
 namespace tempolux {
 namespace {
 
-constexpr int kFadingFrames = 4;
-constexpr float kLeastOfHidden = 1.0f / 64;  ///< share of the smallest radius, so that radii stay above 0
-constexpr std::uint32_t kAhead = 12;         ///< cells whose light is prefetched into the processor's cache
-/// Share of `refresh` that is always drawn by age, however many cells are traced for another reason.
+constexpr int kFadingFrames = 4;             ///< frames over which a superfluous record fades out (radsamples.md)
+constexpr float kLeastOfHidden = 1.0f / 64;  ///< radius of a hidden record over the smallest radius; must be above 0
+constexpr std::uint32_t kAhead = 12;         ///< number of cells ahead whose light is prefetched into the cache
+/// Share of TemporalOptions::refresh that is drawn by age, however many cells are traced for other reasons.
 constexpr auto kLeastAged = float(kUnguidedShare);
 
 /// Unit vectors along a triangle's first edge, across it in its plane, and along its normal.
@@ -30,7 +30,7 @@ std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
   return {along, cross(normal, along), normal};
 }
 
-/// True if the record's triangle has an area at both frames. A surface that is scaled to nothing has no place for
+/// True if the record's triangle has an area at both frames. A surface that is scaled to nothing has no room for
 /// records.
 bool stays(const SceneFrame& before, const SceneFrame& now, const formats::RadsamplesRecord& r) {
   for (const SceneFrame* frame : {&before, &now})
@@ -80,8 +80,8 @@ SurfacePoint TemporalGather::place_of(const KeptHemisphere& kept) const {
   return scene_.tracer.surface_point({0, r.surface, r.triangle, r.barycentric[0], r.barycentric[1]});
 }
 
-/// Moves a record with the triangle it lies on.
-void TemporalGather::ride(KeptHemisphere& kept) const {
+/// Moves a record with its triangle.
+void TemporalGather::move_with_surface(KeptHemisphere& kept) const {
   formats::RadsamplesRecord& r = kept.record;
   const auto before = edges_of(scene_.before->surfaces[r.surface], r.triangle);
   const auto now = edges_of(scene_.tracer.frame().surfaces[r.surface], r.triangle);
@@ -93,9 +93,9 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
   if (length2(turned) > 0) r.normal = array_of(turned);
 }
 
-/// Traces the marked cells along the rays that belong to their ages.
-void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
-                           std::span<const std::uint8_t> marks, GatherCounts& counts) const {
+/// Traces the marked cells. The direction of a cell's ray follows from its age (KeptHemisphere::draw_of).
+void TemporalGather::trace_cells(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
+                                 std::span<const std::uint8_t> marks, GatherCounts& counts) const {
   thread_local GatherRays shot;
   shot.clear();
   const GatherStrata strata(kept.record.rings, kept.record.sectors);
@@ -114,11 +114,11 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   }
 }
 
-/// True if the record must not have the smallest radius (which covers the pixels around a record) because a mover
-/// came close and hides the record from the camera. Example: a lamp glides along a ceiling. A record behind the lamp
-/// is dark, and with the smallest radius would darken the visible ceiling around the lamp.
-bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before,
-                              const IrradianceRecord& made) const {
+/// True if a mover has come so close that the record would get the smallest radius, which covers the pixels around it,
+/// and the camera does not see the record. Example: a lamp glides along a ceiling. A record behind the lamp is dark;
+/// with the smallest radius it would darken the visible ceiling around the lamp.
+bool TemporalGather::is_hidden(const SurfacePoint& place, const formats::RadsamplesRecord& before,
+                               const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
   const bool had_its_own = std::abs(before.radius - smallest) > 1e-4f * smallest;
   if (!scene_.eye || !had_its_own || radius_of(made, before.footprint, placement_) > smallest) return false;
@@ -126,8 +126,8 @@ bool TemporalGather::outlived(const SurfacePoint& place, const formats::Radsampl
   return !eye || scene_.tracer.occluded(spawn_shadow_ray(place, *eye, 0));
 }
 
-/// Recomputes the record from its samples. `changes`: null for a new record. A mover nearer than the mean distance
-/// changes the record.
+/// Computes the record from its samples. `changes`: nullptr for a new record. If something has moved within the
+/// record's mean distance, the mean distance is measured again.
 void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes,
                             GatherCounts& counts) const {
   const bool born = !changes;
@@ -137,7 +137,7 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, con
     made.radius_unclamped = gather_.distance(place, kept.normal(), counts);
   gather_.add_explicit(place, kept.record.key, made, counts);
   PlacementOptions placement = placement_;
-  if (!born && outlived(place, kept.record, made)) placement.min_radius_px *= kLeastOfHidden;
+  if (!born && is_hidden(place, kept.record, made)) placement.min_radius_px *= kLeastOfHidden;
   limit_radius(made, kept.record.footprint, placement);
   made.clearance = stored_values(kept.record).clearance;
   const bool look_again = born || near_a_mover(kept, *changes, kept.record.clearance_reach);
@@ -163,15 +163,14 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, GatherCounts& counts
   kept.samples.resize(strata_.cells());
   kept.anchors.assign(strata_.cells(), kNone);
   const std::vector<std::uint8_t> marks(strata_.cells(), all);
-  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), marks, counts);
+  trace_cells(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), marks, counts);
   finish(place, kept, nullptr, counts);
   return kept;
 }
 
-/// Moves a record with its surface and marks the cells to be traced again. False if nothing about its light has
-/// changed.
-bool TemporalGather::look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const {
-  if (kept.record.set == formats::SurfaceSet::dynamic_set) ride(kept);
+/// Moves a record with its surface and marks its cells. False if its light has not changed.
+bool TemporalGather::mark(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const {
+  if (kept.record.set == formats::SurfaceSet::dynamic_set) move_with_surface(kept);
   const SurfacePoint place = place_of(kept);
   const GatherDirections directions(place, kept.normal(), kept.record.rings, kept.record.sectors, kept.record.key);
   marked.changed = mark_cells(kept, changes, directions, units_, marked.marks);
@@ -193,8 +192,8 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     ages[c] = formats::age_of(kept.samples[c]);
     kept.samples[c].flags = std::uint16_t(kept.samples[c].flags + (ages[c] < formats::kMaxAge));
   }
-  // Draws by age from all cells, including marked ones. If marked cells were left out, a cell that is marked in every
-  // frame would keep its direction for good, and more and more cells would end in such directions.
+  // Draws by age from all cells, including marked cells. If marked cells were left out, a cell that is marked in every
+  // frame would keep its direction for ever, and more and more cells would get stuck in such directions.
   draw_by_age(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), mix64(r.key + r.updates),
               drawn);
   for (const std::uint32_t c : drawn) {
@@ -210,12 +209,12 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
     if (marks[ahead] == scaled) __builtin_prefetch(&changes.ratios[kept.anchors[ahead]]);
     if (marks[c] == scaled) scale_radiance(kept, c, changes.ratios[kept.anchors[c]]);
   }
-  shoot(place, kept, directions, marks, counts.update);
+  trace_cells(place, kept, directions, marks, counts.update);
   finish(place, kept, &changes, counts.update);
 }
 
-/// First marks the cells of all records, then updates the records that change: how many cells are drawn by age
-/// depends on how many are traced for other reasons.
+/// Marks the cells of all records, then updates the records that change. Two passes are needed because the number of
+/// cells that are drawn by age depends on the number of cells that are traced for other reasons.
 void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone,
                                 TemporalCounts& counts) const {
   std::vector<Marked> marked(kept.records.size());
@@ -227,7 +226,7 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
       if (gone[i]) continue;
       KeptHemisphere& k = kept.records[i];
       cells += k.record.samples();
-      if (look(k, changes, marked[i])) {
+      if (mark(k, changes, marked[i])) {
         here += marked[i].count;
         all += k.record.samples();
       } else {
@@ -240,15 +239,15 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
         others += all - here;
   });
   const double refresh = double(options_.refresh), cells = double(traced + others);
-  const double left = others > 0 ? (refresh * cells - double(traced)) / double(others) : 0;
-  const double aged_share = std::max(left, refresh * double(kLeastAged));
+  const double to_fill = others > 0 ? (refresh * cells - double(traced)) / double(others) : 0;
+  const double aged_share = std::max(to_fill, refresh * double(kLeastAged));
   parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
     TemporalCounts local;
     for (std::size_t i = first; i < last; ++i) {
       if (gone[i] || !(marked[i].changed || changes.divided)) continue;
       KeptHemisphere& k = kept.records[i];
       if (marked[i].changed) update(k, changes, aged_share, marked[i], local);
-      else finish(place_of(k), k, &changes, local.update);  // samples the bright points anew
+      else finish(place_of(k), k, &changes, local.update);  // Samples the bright points anew.
       std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
@@ -292,8 +291,8 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
 }
 
 /// Fills the store with the kept records. A record begins to fade if at its place the sum of the weights of all earlier
-/// records that do not fade is larger by 1 than when the record was placed.
-void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
+/// records, except those that fade, is larger by 1 than when the record was placed.
+void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = stored_values(k.record);
     record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames,
@@ -307,14 +306,13 @@ void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCou
     const bool begins = fading == 0 && store.weight_of_earlier(i, fades) >= 1 + kept.records[i].record.birth_weight;
     if (begins) fading = 1;
     fades[i] = fading > 0;
-    counts.fading += fades[i];
     if (begins) store.shrink(i, store.records()[i].radius * float(kFadingFrames - 1) / kFadingFrames);
   }
 }
 
 void TemporalGather::place(RecordPicture picture, KeptHemispheres& kept, RecordStore& store,
                            TemporalCounts& counts) const {
-  fill(kept, store, counts);
+  fill(kept, store);
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {

@@ -16,21 +16,21 @@
 namespace tempolux {
 
 struct TemporalOptions {
-  /// Share of cells that a frame traces again, of all cells of the records whose light changed. Cells that changed come
-  /// first. Cells drawn by age fill up the share; they are at least a quarter of it, however many cells changed.
+  /// Share of the cells that a frame traces again, in all records whose light changed. Cells that the change concerns
+  /// come first; cells drawn by age fill up the share, and are at least a quarter of it.
   float refresh = 0.05f;
 };
 
 /// Counts of one frame.
-/// - Cells that were traced again, by reason. `moved`: a mover blocks or blocked the old ray. `lost`: the light of the
-///   anchor is more than twice or less than half as strong as before. `unanchored`: no point represents the hit.
-///   `near`: close hits whose turn it was. `aged`: drawn by age, with a new ray.
+/// - Cells that were traced again, by reason. `moved`: something moved across the cell's ray, or the ray's hit moved.
+///   `lost`: the light of the anchor became more than twice or less than half as strong. `unanchored`: no point
+///   represents the hit. `near`: a close hit whose turn it was. `aged`: drawn by age, with a new ray.
 /// - `scaled`: cells whose radiance was multiplied by the ratio of their anchor's light.
-/// - `kept`: records that stayed the same. `explicit_only`: records in which only bright points were sampled anew.
+/// - `kept`: records that did not change. `explicit_only`: records in which only bright points were sampled anew.
 /// - `update`, `birth`: rays of kept and of new records.
 struct TemporalCounts {
   std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, near = 0, aged = 0, scaled = 0;
-  std::uint64_t records = 0, kept = 0, explicit_only = 0, born = 0, fading = 0, removed = 0, deforming = 0;
+  std::uint64_t records = 0, kept = 0, explicit_only = 0, born = 0, removed = 0, deforming = 0;
   GatherCounts update, birth;
   std::vector<std::uint64_t> ages;  ///< number of cells by age, after the frame
 };
@@ -47,8 +47,8 @@ struct TemporalScene {
   /// Else empty.
   std::span<const float> high_shares = {};
   std::string high_hash = {};
-  /// Direction towards the camera from a place that the camera sees, else nothing. A record that a mover comes close to
-  /// keeps the smallest radius if the camera sees it; without this function every record does.
+  /// Position of the camera that a place sees, scene space; nothing if the place is outside the picture. Records with
+  /// the smallest radius that a mover has hidden from the camera get a smaller radius; without this function none does.
   std::function<std::optional<Vec3>(Vec3)> eye = {};
 };
 
@@ -57,47 +57,51 @@ struct LightChanges;  // lib/temporal/light_changes.h
 /// Number of a frame's first points that lie on static surfaces.
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points);
 
-/// Temporal gathering of one frame. The records are the same for any number of threads.
+/// Gathers one frame from the kept records of the previous one. The same records for any number of threads.
 class TemporalGather {
  public:
+  /// `diagonal`: sample_unit() of the frame.
   TemporalGather(const TemporalScene& scene, const GatherOptions& gather, const PlacementOptions& placement,
                  const TemporalOptions& options, float diagonal);
 
-  /// Updates the kept records to this frame. Records on deforming surfaces, or on surfaces without area at either
-  /// frame, are removed. Another record changes if one of these holds for a cell; else it stays the same to the bit:
-  /// - The cell's ray meets a box in which something has moved, or what it hit moves. The cell is traced again along
-  ///   its old direction. A new direction would cause a bias: rays that hit the mover would be replaced, and rays that
-  ///   miss it kept.
+  /// Updates the kept records to this frame. Records on deforming surfaces, and on triangles that have no area at one
+  /// of the frames, are removed. Any other record changes if one of these cases holds for one of its cells; otherwise
+  /// it stays the same to the bit:
+  /// - The cell's ray meets a box in which something has moved, or its hit moves. The cell is traced again along its
+  /// old
+  ///   direction. A new direction would cause a bias: rays that hit the mover would be replaced, rays that miss it
+  ///   kept.
   /// - The light of the point that represents the cell's hit has changed. The cell's radiance is scaled by the ratio,
   ///   per channel; outside the range 1/2 to 2 the cell is traced again along its old direction.
   /// - No point represents the cell's hit (mirrors, corners). The cell is traced again along its old direction.
   /// If a record changes, two more sets of its cells are traced: cells whose radiance depends on several points (close
   /// hits) in turn, each in every eighth update; and cells drawn by age, which get a new ray in their stratum
   /// (TemporalOptions::refresh).
-  /// With bright points, cells that hit a bright point have no anchor, since the light that rays bring from it depends
-  /// on the distance, too. If anything has changed, the bright points are sampled anew for every record, with the
+  /// Cells that hit a bright point have no anchor, because the light that a ray contributes from a bright point depends
+  /// on the ray's length, too. If anything has changed, bright points are sampled anew for every record, with the
   /// record's own random numbers.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
-  /// Puts the kept records into a store and places new records where the kept ones do not cover what the camera sees;
-  /// new records are kept, too. After a change a record becomes superfluous if at its place the sum of the weights of
-  /// all earlier records is larger by 1 than when the record was placed. It then fades out over four frames.
+  /// Puts the kept records into a store, and places new records at visible places that the kept records do not cover;
+  /// new records are kept, too. After a change a record is superfluous if at its place the sum of the weights of all
+  /// earlier records is larger by 1 than when the record was placed. A superfluous record fades out over four frames.
   void place(RecordPicture picture, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;
 
  private:
   struct Marked;
-  bool outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const;
-  bool look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const;
+  bool is_hidden(const SurfacePoint& place, const formats::RadsamplesRecord& before,
+                 const IrradianceRecord& made) const;
+  bool mark(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const;
   void update(KeptHemisphere& kept, const LightChanges& changes, double aged_share, Marked& marked,
               TemporalCounts& counts) const;
   void update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone,
                   TemporalCounts& counts) const;
-  void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
-             std::span<const std::uint8_t> marks, GatherCounts& counts) const;
+  void trace_cells(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
+                   std::span<const std::uint8_t> marks, GatherCounts& counts) const;
   void finish(const SurfacePoint& place, KeptHemisphere& kept, const LightChanges* changes, GatherCounts& counts) const;
   KeptHemisphere birth(const SeenPoint& seen, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
-  void ride(KeptHemisphere& kept) const;
-  void fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;
+  void move_with_surface(KeptHemisphere& kept) const;
+  void fill(KeptHemispheres& kept, RecordStore& store) const;
 
   TemporalScene scene_;
   GatherOptions gather_options_;
