@@ -7,12 +7,14 @@
 //     ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr
 //
 // Method: docs/methods/warping.md. Formats: formats/flow/flow.md, formats/mask/mask.md.
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
+#include "lib/aqm/vision_model.h"
+#include "lib/image/channel_groups.h"
 #include "lib/render/frame_renderer.h"
-#include "lib/warp/slow_speed.h"
 #include "lib/warp/warped_image.h"
 #include "tools/common/cli.h"
 #include "tools/common/keep_memory.h"
@@ -32,11 +34,11 @@ void check(const tools::Tool& tool, tools::WarpFramesOptions& options, bool seve
   if (!options.view.empty() && (several || !options.flow.empty()))
     throw InputError("--view: shows one frame and knows no others; --frames and --flow need --scene");
   for (const std::string& group : options.channels)
-    if (group == "RGBA" || group == "layers" || has_layer_name(group))
+    if (group == "RGBA" || group == "layers" || std::ranges::count(kFrameLayers, group) > 0)
       throw InputError("--channels: '" + group +
                        "' is colour, which comes from the keys; name data: Z, N, P, id, albedo, motion");
   check_channels(options.channels);
-  if (options.warp.slow_deg_per_s < 0) options.warp.slow_deg_per_s = slow_speed(tools::kPixelsPerDegree);
+  if (options.warp.slow_deg_per_s < 0) options.warp.slow_deg_per_s = vision::slow_speed(tools::kPixelsPerDegree);
 }
 
 void add_options(tools::Tool& tool, tools::WarpFramesOptions& options) {

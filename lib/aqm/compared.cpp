@@ -6,16 +6,19 @@
 #include <set>
 
 #include "formats/error.h"
+#include "lib/image/nonzero_pixels.h"
 
 namespace tempolux {
 namespace {
+
+std::string layer_name(const std::string& layer) { return layer.empty() ? "RGB" : layer; }
 
 /// Lists the image's content: "layers RGB, direct, indirect; channels Z, id.object".
 std::string what_is_there(const Image& image) {
   std::string layers, channels;
   std::set<std::string> in_layers;
   for (const std::string& layer : image.layers()) {
-    layers += (layers.empty() ? "" : ", ") + (layer.empty() ? "RGB" : layer);
+    layers += (layers.empty() ? "" : ", ") + layer_name(layer);
     for (const char* suffix : {"R", "G", "B"}) in_layers.insert(layer.empty() ? suffix : layer + "." + suffix);
   }
   for (const Channel& channel : image.channels)
@@ -23,8 +26,6 @@ std::string what_is_there(const Image& image) {
   return "it has layers " + (layers.empty() ? "none" : layers) + "; other channels " +
          (channels.empty() ? "none" : channels);
 }
-
-std::string layer_name(const std::string& layer) { return layer.empty() ? "RGB" : layer; }
 
 void check_size(const NamedImage& image, const NamedImage& test) {
   const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
@@ -42,15 +43,6 @@ std::vector<const std::vector<float>*> planes_like(const NamedImage& image, cons
   for (const std::string& suffix : like) wanted += (wanted.empty() ? "" : ", ") + suffix;
   throw InputError(image.name + ": layer " + layer_name(layer) + " has other channels than the test frame's (" +
                    wanted + "); " + what_is_there(*image.image));
-}
-
-/// By pixel: 1 if a channel is not 0.
-std::vector<std::uint8_t> not_zero(const Image& image) {
-  std::vector<std::uint8_t> found(image.pixel_count(), 0);
-  for (const Channel& channel : image.channels)
-    for (std::size_t i = 0; i < found.size(); ++i)
-      if (channel.ids.empty() ? channel.values[i] != 0.0f : channel.ids[i] != 0) found[i] = 1;
-  return found;
 }
 
 void check_some_count(const std::vector<std::uint8_t>& counted, const NamedImage& image, const char* remedy) {
@@ -111,12 +103,12 @@ Compared compare_layers(const ComparedInputs& inputs) {
   if (second.image) pair.second = planes_like(second, layer, pair.channels);
   if (smooth.image) pair.smooth = planes_like(smooth, layer, pair.channels);
   if (mask.image) {
-    pair.counted = not_zero(*mask.image);
+    pair.counted = nonzero_pixels(*mask.image);
     check_some_count(pair.counted, mask, "make it other than 0 where pixels count");
   }
   if (except.image) {
     if (pair.counted.empty()) pair.counted.assign(except.image->pixel_count(), 1);
-    const std::vector<std::uint8_t> left_out = not_zero(*except.image);
+    const std::vector<std::uint8_t> left_out = nonzero_pixels(*except.image);
     for (std::size_t i = 0; i < left_out.size(); ++i)
       if (left_out[i]) pair.counted[i] = 0;
     check_some_count(pair.counted, except, "it is other than 0 everywhere that counts");

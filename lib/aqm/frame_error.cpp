@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/core/check.h"
+#include "lib/core/statistics.h"
 
 namespace tempolux {
 namespace {
@@ -102,7 +103,7 @@ std::optional<double> SquaredFigure::root_standard_error() const {
 }
 
 bool SquaredFigure::resolved() const {
-  return squared.value > 0 && squared.standard_error && *squared.standard_error < squared.value / 3;
+  return squared.value > 0 && squared.standard_error && *squared.standard_error * kCertain < squared.value;
 }
 
 ErrorSums sum_errors(const Compared& pair, int frame) {

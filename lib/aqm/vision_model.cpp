@@ -9,6 +9,8 @@ namespace tempolux::vision {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kFastestTracked = 80;  ///< deg/s: eyes do not follow faster motion [Daly 1998]
+constexpr double kUsefulBand = 0.9;     ///< share of a display's highest frequency
 
 /// h of a band's inner mesa, 2^-band.
 double inner(int band) { return std::ldexp(1.0, -band); }
@@ -18,7 +20,7 @@ constexpr double kBaseSigma = kBaseCut / 3;
 
 }  // namespace
 
-double tracked_retinal_speed(double speed) { return speed - std::min(0.82 * speed + kDriftSpeed, 80.0); }
+double tracked_retinal_speed(double speed) { return speed - std::min(0.82 * speed + kDriftSpeed, kFastestTracked); }
 
 double retinal_speed(double speed, Gaze gaze) {
   return std::max(gaze == Gaze::track ? std::abs(tracked_retinal_speed(speed)) : speed, kDriftSpeed);
@@ -40,6 +42,29 @@ double static_contrast_sensitivity(double frequency, double luminance, double ar
     return size * peak * 0.9 * f * std::exp(-0.9 * falls) * std::sqrt(1 + 0.06 * std::exp(0.9 * falls));
   };
   return 250 * std::min(at(frequency / accommodation), at(frequency));
+}
+
+double highest_visible_frequency(double speed) {
+  // Sensitivity has one peak and falls above it. Doubling finds an upper end of the interval, bisection the frequency.
+  double low = 45.9 / (2 * kPi * 0.67 * (1.7 * speed + 2)), high = low;
+  while (contrast_sensitivity(high, speed) > 1) high *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (contrast_sensitivity(middle, speed) > 1 ? low : high) = middle;
+  }
+  return low;
+}
+
+double slow_speed(double pixels_per_degree) {
+  const double band = kUsefulBand * pixels_per_degree / 2;
+  double low = kDriftSpeed, high = kFastestTracked;
+  if (highest_visible_frequency(low) <= band) return low;
+  if (highest_visible_frequency(high) > band) return high;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (highest_visible_frequency(middle) > band ? low : high) = middle;
+  }
+  return high;
 }
 
 double receptor_response(double luminance) {

@@ -37,6 +37,14 @@ double receptor_response(double luminance);
 /// Derivative of the response by the logarithm of luminance, at the response `response`.
 double response_per_log_luminance(double response);
 
+/// Highest spatial frequency, cpd, that an eye sees (contrast sensitivity 1) in a pattern that moves across the retina
+/// at `speed` >= kDriftSpeed deg/s (docs/methods/formulas.md).
+double highest_visible_frequency(double speed);
+/// Speed of a pattern on the display, deg/s, above which an eye that does not follow the pattern sees at most .9 of the
+/// frequencies that a display of this many pixels per degree shows: blur below a pixel is then invisible
+/// (docs/methods/formulas.md). 1.41 for 30 pixels per degree. At least kDriftSpeed, at most 80.
+double slow_speed(double pixels_per_degree);
+
 // The cortex transform: K = 6 frequency bands, the first five in 6 orientations. Frequencies in c/px.
 inline constexpr int kBands = 6, kBaseBand = 6, kOrientations = 6;
 

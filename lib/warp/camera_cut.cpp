@@ -5,8 +5,11 @@
 namespace tempolux {
 namespace {
 
+/// Points per row and column. Of 32 x 32 points the share that jumps has a standard error of at most 1.6 %.
 constexpr int kGrid = 32;
-constexpr double kJump = 0.25;  // share of the picture's width
+/// Share of the picture's width. At 24 frames a second and a field of view of 60 degrees this is 360 degrees a second.
+/// Eyes follow up to 80, so no film pans as fast.
+constexpr double kJump = 0.25;
 
 bool within(const std::optional<RasterPoint>& at, const FrameCamera& camera) {
   return at && at->x >= 0 && at->y >= 0 && at->x < camera.width() && at->y < camera.height();

@@ -6,8 +6,8 @@
 namespace tempolux {
 namespace {
 
-/// a += w (b - c), over a stride, which is a multiple of 8. With differences equal colours keep their bits, whatever
-/// the weights.
+/// a += w (b - c) for `stride` floats, a multiple of 8. Differences keep the bits of equal colours, whatever the
+/// weights.
 void add_difference(float* a, float w, const float* b, const float* c, std::size_t stride) {
   for (std::size_t i = 0; i < stride; i += 8)
     for (std::size_t j = 0; j < 8; ++j) a[i + j] += w * (b[i + j] - c[i + j]);
@@ -26,12 +26,11 @@ void mean_of(const KeyFrame& key, const Taps& taps, std::size_t stride, float* m
 Compositor::Compositor(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options)
     : target_(target), keys_(keys), options_(options), stride_(keys[0].view->key().stride()) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    // The weight by distance in time is linear between two keys: the weight of a key is the other key's distance
-    // divided by the sum of both distances.
+    // Between two keys the weight is linear in time: a key's weight is the other key's distance over the sum of both.
     const double other = keys.size() < 2 ? 1 : keys[1 - k].frames_away;
     const double sum = keys.size() < 2 ? 1 : keys[0].frames_away + keys[1].frames_away;
-    nearness_[k] = float(sum > 0 ? other / sum : 0.5);
-    stays_[k] = !keys[k].cut_off && keys[k].view->same_camera();
+    time_weight_[k] = float(sum > 0 ? other / sum : 0.5);
+    same_camera_[k] = !keys[k].cut_off && keys[k].view->same_camera();
   }
 }
 
@@ -49,8 +48,8 @@ void Compositor::start(ComposedPixel& pixel) const {
   pixel.missing = pixel.undersampled = pixel.resampled = false;
 }
 
-/// True if the pixel can be copied from the key to the bit: target and key show the same at the same place in the pixel
-/// and its neighbours.
+/// True if the pixel can be copied from the key to the bit: in the pixel and its neighbours, target and key show the
+/// same unmoved surfaces.
 bool Compositor::shows_the_same(std::size_t p, const KeyView& view) const {
   const SeenSurfaces &here = *target_.seen, &there = view.key().seen();
   const int x = int(p % std::size_t(here.width)), y = int(p / std::size_t(here.width));
@@ -68,13 +67,13 @@ bool Compositor::shows_the_same(std::size_t p, const KeyView& view) const {
 bool Compositor::copy_unmoved(std::size_t p, ComposedPixel& pixel) const {
   int unmoved = 0;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
-    if (!stays_[k] || !shows_the_same(p, *keys_[k].view)) continue;
+    if (!same_camera_[k] || !shows_the_same(p, *keys_[k].view)) continue;
     const float* colour = keys_[k].view->key().colour(p);
     std::copy_n(colour, stride_, pixel.of_key[k].begin());
     pixel.parts[k] = 1;
-    // In the form a + w (b - a), two equal colours give exactly the same colour.
+    // a + w (b - a) keeps the bits of two equal colours.
     for (std::size_t c = 0; c < stride_; ++c)
-      pixel.colour[c] = unmoved == 0 ? colour[c] : pixel.colour[c] + nearness_[k] * (colour[c] - pixel.colour[c]);
+      pixel.colour[c] = unmoved == 0 ? colour[c] : pixel.colour[c] + time_weight_[k] * (colour[c] - pixel.colour[c]);
     ++unmoved;
   }
   return unmoved > 0;
@@ -91,7 +90,7 @@ bool Compositor::weigh(const LookedUp& points, std::size_t i, ComposedPixel& pix
       continue;
     }
     const float magnified = points.found[k].magnification[i];
-    weight[k] = std::max(nearness_[k], 1e-6f) / std::clamp(magnified, 1.0f, 64.0f);
+    weight[k] = std::max(time_weight_[k], 1e-6f) / std::clamp(magnified, 1.0f, 64.0f);
     sharp |= double(magnified) <= options_.most_magnified;
     any = true;
     ++pixel.parts[k];

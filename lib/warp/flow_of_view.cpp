@@ -21,8 +21,8 @@ class Neighbour {
         of_object_(motions_.transforms(there.camera->camera_from_world(), here.camera().world_from_camera(), still_)),
         surfaces_(same_surfaces(here.frame(), *there.frame)) {}
 
-  /// The point in the neighbour's camera space; nothing if the point does not exist there. For a point at infinity, its
-  /// direction.
+  /// Where the pixel's point `at` (this camera's space) is in the neighbour's camera space; for a point at infinity,
+  /// its direction. Nothing if the point does not exist in the neighbour.
   std::optional<Vec3d> follow(std::size_t pixel, Vec3d at) const {
     const std::uint32_t object = here_.seen().object[pixel];
     if (object == kNoObject) return still_.direction(at);
@@ -53,6 +53,7 @@ class Neighbour {
   std::vector<const Surface*> surfaces_;
 };
 
+/// A pixel's point in a neighbouring frame.
 struct Followed {
   Vec2 flow;
   Vec3d there;  ///< in the neighbour's camera space

@@ -14,9 +14,9 @@ struct NeighbourView {
   const FrameCamera* camera = nullptr;
 };
 
-/// Flow as in formats/flow/flow.md. Points of rigid objects follow the object's transform in double precision; points
-/// of deforming objects follow their triangle's corners; points at infinity turn with the camera. fps: frames per
-/// second.
+/// Flow as in formats/flow/flow.md. A point of a rigid object follows the object's transform, in double precision. A
+/// point of a deforming object follows the corners of its triangle. A point at infinity keeps its direction in world
+/// space. fps: frames per second.
 PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const NeighbourView& previous, double fps);
 
 /// Angular speed, degrees per second, of a point seen in directions a and b (camera space) one frame apart.

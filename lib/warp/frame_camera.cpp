@@ -41,7 +41,7 @@ FrameCamera::FrameCamera(const std::array<double, 16>& world_to_camera, const st
   const Form x = after(column(world_to_ndc, 0), world_from_camera_);
   const Form y = after(column(world_to_ndc, 1), world_from_camera_);
   Form w = after(column(world_to_ndc, 3), world_from_camera_);
-  // Rounding errors become exact zeros: w is z, or a constant.
+  // w is z (perspective) or a constant (orthographic). Rounding errors in the other terms become exact zeros.
   const double scale = std::max({std::abs(w.factors.x), std::abs(w.factors.y), std::abs(w.factors.z)});
   const bool flat = !(scale > 1e-6 * std::abs(w.shift));
   if (flat) w.factors = {};

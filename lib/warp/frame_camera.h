@@ -22,8 +22,8 @@ struct RasterPoint {
 /// shifted.
 class FrameCamera {
  public:
-  /// From worldToCamera and worldToNDC as in formats/frames/frames.md. Throws std::invalid_argument if either is not
-  /// invertible.
+  /// The matrices are the attributes worldToCamera and worldToNDC of formats/frames/frames.md. Throws
+  /// std::invalid_argument if one of them is not invertible.
   FrameCamera(const std::array<double, 16>& world_to_camera, const std::array<double, 16>& world_to_ndc, int width,
               int height);
 
@@ -62,15 +62,15 @@ class FrameCamera {
 
   /// True if distant objects look as large as close ones.
   bool orthographic() const { return w_.z == 0; }
-  /// Area of the surface that a pixel shows, m^2 times a constant of this picture. Point and normal are in camera
-  /// space. With distance d, cosine c to the normal and angle g to the axis, the area is d^2 cos^3 g / c = z^3 / |n .
-  /// p|.
+  /// Area of the surface that a pixel shows, m^2 times a constant of this picture. Point p and normal n are in camera
+  /// space. For a perspective camera the area is d^2 cos^3 g / c = z^3 / |n . p|, with the distance d, the cosine c
+  /// between ray and normal, and the angle g between ray and axis.
   double area_of_pixel(Vec3d point, Vec3d normal) const {
     const double area = pixel_width_ * pixel_width_;
     if (orthographic()) return area / std::max(std::abs(normal.z), 1e-3);
     return area * point.z * point.z * point.z / std::max(std::abs(dot(normal, point)), 1e-3 * length(point));
   }
-  /// |n . r| of a surface, in camera space; r is the unit vector of the ray.
+  /// |n . r|: cosine between the normal of a surface and its ray; point and normal are in camera space.
   double facing(Vec3d point, Vec3d normal) const {
     return orthographic() ? std::abs(normal.z) : std::abs(dot(normal, point)) / length(point);
   }
@@ -88,7 +88,9 @@ class FrameCamera {
   Vec3d x_, y_, w_;
   double x_shift_ = 0, y_shift_ = 0, w_shift_ = 0;
   double pixel_width_ = 0;
-  bool axes_apart_ = false;  ///< raster x depends on x and depth alone, y on y and depth, so unproject need not solve
+  /// True if raster x depends only on x and depth, and raster y only on y and depth: unproject() then solves no
+  /// equations.
+  bool axes_apart_ = false;
   double per_x_ = 0, per_y_ = 0;
 };
 

@@ -17,15 +17,15 @@ inline constexpr std::size_t kMostChannels = 64;  ///< colour channels in a key
 /// A key's colour and surfaces, laid out for look-ups.
 class KeyFrame {
  public:
-  /// Takes the image's colour layers (RGBA and LAYER.R .G .B), its depth and, if there, objects and normals. Albedo
-  /// is not taken: the target computes it from its own surfaces. Variance is not taken: an interpolated value has
-  /// another variance. Throws InputError, beginning with `name`.
+  /// Copies the image's colour (RGBA and LAYER.R .G .B), its depth and, if there, objects and normals. Albedo is left
+  /// out, because the target computes it from its own surfaces; variance, because interpolation changes it. Throws
+  /// InputError, beginning with `name`.
   KeyFrame(const Image& image, const std::string& name, const FrameCamera& camera);
 
   const std::string& name() const { return name_; }
   const FrameCamera& camera() const { return camera_; }
   const SeenSurfaces& seen() const { return seen_; }
-  /// See whole_pixels().
+  /// True if the pixel shows a single face (whole_pixels()).
   bool whole(std::size_t pixel) const { return (whole_[pixel] & 1) != 0; }
   /// True if this pixel, the one to its right and the two below are whole; false in the last row and column.
   bool four_whole(std::size_t pixel) const { return (whole_[pixel] & 2) != 0; }

@@ -5,8 +5,8 @@
 namespace tempolux {
 namespace {
 
-/// Distance in pixels from a pixel's centre within which a position counts as the centre. Interpolation could change
-/// the colour by less than a thousandth of the difference to the neighbour, and unmoved pixels keep their bits.
+/// A position within this distance [pixels] of a pixel's centre counts as the centre, so that unmoved pixels keep their
+/// bits. Interpolation would change the colour by less than a thousandth of the difference to the neighbour.
 constexpr double kSamePixel = 1e-3;
 
 }  // namespace
@@ -14,7 +14,7 @@ constexpr double kSamePixel = 1e-3;
 KeyView::KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target,
                  const ObjectMotions& key_from_target)
     : key_(key), camera_(camera), target_(target), motions_(key_from_target), same_camera_(camera == target) {
-  // Composed camera to camera, in double: world coordinates may be large, the difference of two cameras is small.
+  // One transform from camera to camera, in double: world coordinates may be large, the cameras differ by little.
   still_ = same_camera_ ? Affine{} : camera.camera_from_world() * target.world_from_camera();
   if (motions_.all_still()) return;
   moved_ = motions_.transforms(camera.camera_from_world(), target.world_from_camera(), still_);

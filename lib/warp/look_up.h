@@ -1,4 +1,4 @@
-// lib/warp/look_up.h -- finds in a key the points that another picture shows.
+// lib/warp/look_up.h -- finds the points of the target picture in a key.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct WantedPoints {
   std::size_t count = 0;
   std::array<RasterPoint, kMost> at;  ///< position in the target picture
   std::array<FacePoint, kMost> face;  ///< the surface there
-  std::array<double, kMost> x, y, z;  ///< the point in the target camera's space; its direction, if it is at infinity
+  std::array<double, kMost> x, y, z;  ///< the point in the target camera's space; at infinity: its direction
   std::array<double, kMost> area;     ///< FrameCamera::area_of_pixel() there
   bool infinite = false;              ///< true if any of the points is at infinity
 
@@ -44,22 +44,22 @@ struct WantedPoints {
 struct FoundPoints {
   std::array<LookUp, WantedPoints::kMost> result;
   std::array<Taps, WantedPoints::kMost> taps;
-  /// area of target pixels per area of the key's pixel (docs/methods/formulas.md)
+  /// Number of target pixels that one pixel of the key covers (docs/methods/formulas.md).
   std::array<float, WantedPoints::kMost> magnification;
 };
 
 /// One key, seen from a target camera at another frame.
 class KeyView {
  public:
-  /// `camera` is the key's own camera, or a more exact one than its attributes give. `key_from_target`: motions of
-  /// objects from the target's frame to the key's. All references must outlive this object.
+  /// `camera` is the camera of the key's attributes, or the same camera with more digits. `key_from_target`: motions of
+  /// objects from the target's frame to the key's frame. All references must outlive this object.
   KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target,
           const ObjectMotions& key_from_target);
 
-  /// Finds the colour of target points. A pixel of the key counts only if it is whole and shows the same face.
-  /// Between pixel centres colour is interpolated linearly. If some of the four surrounding pixels do not count, the
-  /// others share their weight. If none of the four counts, the nearest counting pixel of the 16 surrounding ones is
-  /// taken. A position within kSamePixel of a centre is that pixel.
+  /// Finds the colours of target points. A pixel of the key counts only if it is whole and shows the same face. Colour
+  /// is interpolated linearly between pixel centres. If some of the four surrounding pixels do not count, the others
+  /// share their weight. If none of the four counts, the closest of the 16 surrounding pixels that counts is taken. A
+  /// position within kSamePixel of a pixel's centre takes this pixel alone.
   void find(const WantedPoints& wanted, FoundPoints& found) const;
 
   /// True if the target sees this object's pixels exactly as the key does: the same camera, and the object has not
@@ -77,11 +77,11 @@ class KeyView {
     std::array<double, WantedPoints::kMost> magnification, facing;
     std::array<FacePoint, WantedPoints::kMost> face;  ///< in world space at the key's frame
   };
-  /// Places static points that are not at infinity, all together.
+  /// Places all points, which must be static and not at infinity.
   void place(const WantedPoints& wanted, Places& places) const;
-  /// Places any point.
+  /// Places one point of any kind.
   void place_one(const WantedPoints& wanted, std::size_t i, Places& places) const;
-  /// Gathers the pixels that show the face around a position of the key, counted in pixels from the first pixel's
+  /// Finds the pixels around a position that show the face. (cx, cy) is counted in pixels from the first pixel's
   /// centre.
   LookUp gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const;
 

@@ -1,4 +1,4 @@
-// lib/warp/masking.h -- decides which warped pixels must be traced although keys give them.
+// lib/warp/masking.h -- decides which pixels must be traced although keys show them.
 #pragma once
 
 #include <array>
@@ -11,14 +11,15 @@
 
 namespace tempolux {
 
+/// The decisions about the pixels of one warped frame.
 class Masking {
  public:
   /// All references must outlive this object.
   Masking(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options,
           const std::vector<std::string>& names);
 
-  /// Causes (slow, specular) to mask a pixel that is not the same in target and key. `first` and `second` are the
-  /// candidates of both keys; nullptr if a key does not give the whole pixel.
+  /// The causes slow and specular of a pixel that was resampled. `first` and `second` are its colours from each key
+  /// alone; nullptr if a key does not show the whole pixel.
   std::uint32_t of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const;
 
   /// True if WarpTarget::see_gloss decides about differences between the keys' specular light.
@@ -30,7 +31,7 @@ class Masking {
   /// Masks pixels in which a viewer would see the error of specular light.
   void mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error,
                        std::vector<std::uint32_t>& why) const;
-  /// True if the keys agree about a pixel that is composed of several surfaces.
+  /// True if the colours from both keys agree about a pixel that shows several surfaces (WarpOptions::edge_share).
   bool edge_agrees(const float* first, const float* second) const;
 
   /// Mean and mean square of the colours at several positions.
@@ -38,19 +39,20 @@ class Masking {
     std::array<float, 3> mean{}, square{};  ///< R, G, B
   };
   Spread spread(const float* mean, const float* square) const;
-  /// Number of positions at which a pixel composed of several surfaces is looked up, so that its error is
+  /// Number of positions n at which a pixel with several surfaces must be looked up so that its error is
   /// WarpOptions::edge_share of its light. n positions of which no two share a row or a column have the error sigma
-  /// n^(-5/6) (docs/pixels.md), with sigma the standard deviation of the colours.
-  /// `at`: spread of the colours at the `count` positions tried. A surface that all of these missed covers a share of
-  /// about 1 / (2 count) of the pixel. `around`: spread of the colours at the centres of the 3 x 3 pixels. An edge
-  /// leaves a third of these centres on its other side, so `around` gives the difference in colour of the missed
-  /// surface.
+  /// n^(-5/6) (docs/pixels.md), where sigma is the standard deviation of the colours. sigma is the larger of
+  /// - the deviation at the `count` positions that were looked up (`at`), and
+  /// - the deviation that a missed surface could cause. A surface missed by all positions covers about 1 / (2 count) of
+  /// the
+  ///   pixel. Its colour follows from `around`, the colours at the centres of the 3 x 3 pixels, of which about a third
+  ///   lie on the other side of an edge.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 
   /// True if the light may differ on any surface that a key shows; else mark_changed_light() has nothing to do.
   bool light_may_differ() const;
-  /// Masks pixels around which the two keys' light differs, and pixels given by one key alone whose light may differ
-  /// from the target's. `light`: by key and pixel, the luminance; < 0 if the key does not give the whole pixel.
+  /// Masks pixels around which the light of both keys differs, and pixels shown by only one key if its light may differ
+  /// from the target's light. `light`: luminance by key and pixel; < 0 if the key does not show the whole pixel.
   void mark_changed_light(const std::array<std::vector<float>, 2>& light, std::vector<std::uint32_t>& why) const;
 
   float luminance_of(const float* colour) const;

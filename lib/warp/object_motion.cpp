@@ -29,7 +29,8 @@ std::map<std::uint32_t, std::vector<const Surface*>> by_node(const SceneFrame& f
   return nodes;
 }
 
-/// Converts a world transform to scene space; the scene spaces of two segments may have different origins.
+/// The transform from this frame's scene space to the other frame's. The scene spaces of two segments may have
+/// different origins.
 Affine in_scene_space(const Affine& world_to_world, Vec3d here_origin, Vec3d other_origin) {
   Affine move = world_to_world;
   move.translation = world_to_world.point(here_origin) - other_origin;

@@ -28,13 +28,14 @@ class ObjectMotions {
   ObjectMotions() = default;
   ObjectMotions(const SceneFrame& here, const SceneFrame& other);
 
-  /// Motion of an object. Objects that the scene does not have, and kNone, are still.
+  /// Motion of an object. An object that the scene does not have, and kNone, is still.
   const ObjectMotion& of(std::uint32_t object) const { return object < motions_.size() ? motions_[object] : still_; }
-  /// Number of objects; objects from this number on are still.
+  /// Number of known objects.
   std::size_t count() const { return motions_.size(); }
   bool all_still() const { return all_still_; }
-  /// By object, the transform from a space of this frame, such as a camera's, to one of the other frame. `still` is the
-  /// transform of objects that do not move.
+  /// By object, the transform from a space of this frame (such as camera space) to a space of the other frame.
+  /// `space_from_other` and `here_from_space` convert to and from world space; `still` is the transform of objects that
+  /// do not move.
   std::vector<Affine> transforms(const Affine& space_from_other, const Affine& here_from_space,
                                  const Affine& still) const;
 

@@ -10,6 +10,7 @@
 
 namespace tempolux {
 
+/// The first surface on each camera ray, without media.
 class SceneView {
  public:
   /// Traces a ray through the centre of each pixel. Both references must outlive this object.
@@ -21,7 +22,7 @@ class SceneView {
   const std::vector<Hit>& hits() const { return hits_; }
   const SceneFrame& frame() const { return tracer_.frame(); }
 
-  /// The surfaces at any raster positions: points[i] belongs to at[i].
+  /// Traces rays through any raster positions: points[i] becomes the surface at at[i].
   void look(std::span<const RasterPoint> at, FacePoint* points) const;
 
   /// One entry per pixel; 1: the material has a specular or transmitting lobe.

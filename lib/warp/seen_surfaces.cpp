@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNothingDepth = 1e10f;  // depth that Blender writes where no surface is
+constexpr float kNothingDepth = 1e10f;  ///< Blender writes this depth where no surface is
 
 FacePoint point_at(const SeenSurfaces& seen, std::size_t p) {
   return {seen.depth[p], seen.object_at(p), seen.normal_at(p)};
@@ -29,7 +29,7 @@ std::string pixel_of(const std::string& name, const std::string& channel, std::s
          std::to_string(p / std::size_t(width)) + "): ";
 }
 
-/// A pixel's N with length 1; 0 if unknown. Other programs filter normals and write any length.
+/// The normal with length 1; 0 stays 0 (unknown). Other programs filter normals, which changes their length.
 Vec3 unit_normal(Vec3 n) {
   const float length2_of = length2(n);
   if (std::abs(length2_of - 1) < 1e-3f) return n;  // N from frame-render keeps its bits
@@ -48,7 +48,7 @@ std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCame
   parallel_pixels(columns, rows, [&](int x, int y, std::size_t p) {
     tolerance[p] = depth_tolerance(angle, facing(camera, seen.normal_at(p), x + 0.5, y + 0.5));
   });
-  // One bit for each neighbour that shows another face: right, and the three below.
+  // One bit for each of four neighbours (right, and the three below) that shows another face.
   std::vector<std::uint8_t> ends(seen.pixel_count());
   parallel_pixels(columns, rows, [&](int x, int y, std::size_t p) {
     const FacePoint here = point_at(seen, p);

@@ -36,14 +36,15 @@ struct FacePoint {
 };
 
 /// Largest relative difference of two depths on one smooth surface within a pixel: two pixel widths along the surface,
-/// but at least a thousandth. `facing` is |n . r| of the surface, `pixel_angle` a pixel's width at depth 1
-/// (docs/methods/formulas.md). facing counts as at least .05, since normals interpolated over a mesh turn away farther
-/// than its triangles do.
+/// but at least a thousandth (docs/methods/formulas.md). `facing` is |n . r| of the surface, `pixel_angle` a pixel's
+/// width at depth 1. facing counts as at least .05, because interpolated normals may turn farther away than the
+/// triangles.
 inline float depth_tolerance(float pixel_angle, float facing) {
   return std::max(1e-3f, 2 * pixel_angle / std::max(facing, 0.05f));
 }
 
-/// Cosine below which two normals belong to two faces: their irradiance differs (docs/methods/formulas.md).
+/// Two normals with a smaller cosine belong to different faces, which have different irradiance
+/// (docs/methods/formulas.md).
 inline constexpr float kSameFace = PixelSurfaces::kSameNormal;
 
 /// True if two objects may be the same one; an unknown object may be any.
@@ -59,8 +60,8 @@ inline bool same_face(const FacePoint& a, const FacePoint& b, float tolerance) {
   return !known || dot(a.normal, b.normal) >= kSameFace;
 }
 
-/// One entry per pixel; 1: the pixel's whole area shows the face at its centre, judged by the centres of the 8 pixels
-/// around. A surface narrower than a pixel may lie between two centres and be missed.
+/// One entry per pixel; 1: the centres of the pixel and of its 8 neighbours show one face, so the whole area of the
+/// pixel shows this face. A surface narrower than a pixel that lies between the centres is missed.
 std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCamera& camera);
 
 /// Reads depth, object and normal from the channels of a frame: Z (1e10 and more: no surface) and, if there, id.object

@@ -5,17 +5,17 @@
 #include <stdexcept>
 
 #include "lib/core/parallel.h"
+#include "lib/image/channel_groups.h"
 #include "lib/warp/compositor.h"
 #include "lib/warp/masking.h"
 
 namespace tempolux {
 namespace {
 
-/// Number of positions inside a pixel from which an edge is composed: kParts at first, and up to kMostParts if the
-/// surfaces differ much.
+/// Number of positions inside a pixel at an edge: kParts at first, and up to kMostParts if its surfaces differ much.
 constexpr std::size_t kParts = 8, kMostParts = 64;
 
-/// n positions (n a power of two from 8 to 64) with one in each of n rows and n columns: Hammersley's points.
+/// At least n positions, a power of two from 8 to 64, one in each of as many rows and columns: Hammersley's points.
 std::span<const RasterPoint> part_positions(std::size_t n) {
   static const auto all = [] {
     std::array<std::array<RasterPoint, kMostParts>, 4> sets{};
@@ -41,7 +41,7 @@ std::uint32_t why_missing(const ComposedPixel& pixel) {
   }
 }
 
-/// Recomputes RGB as the float32 sum of the layers, in their order, if all layers are there; see frames.md 2.
+/// Computes R, G and B as the float32 sum of the layers, in the order of kFrameLayers (frames.md 2).
 class LayerSum {
  public:
   explicit LayerSum(const std::vector<std::string>& names) {
@@ -52,7 +52,7 @@ class LayerSum {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::string channel(1, "RGB"[c]);
       total_[c] = find(channel);
-      for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect", "volume"})
+      for (const char* layer : kFrameLayers)
         if (const int at = find(std::string(layer) + "." + channel); at >= 0) parts_[c].push_back(at);
     }
   }
@@ -78,7 +78,7 @@ class LayerSum {
   std::array<std::vector<int>, 3> parts_;
 };
 
-/// Colours of consecutive pixels, before they are stored by channel.
+/// Colours of consecutive pixels by pixel, before they are stored by channel.
 struct Strip {
   std::array<std::array<float, kMostChannels>, WantedPoints::kMost> colour;
   std::array<std::array<std::array<float, kMostChannels>, WantedPoints::kMost>, 2> of_key;
@@ -133,7 +133,7 @@ class Warping {
   }
 
  private:
-  /// Composes pixels from their centres; pixels without an edge are finished.
+  /// Composes pixels from their centres. Pixels without an edge are then finished.
   void centres(std::size_t first, std::size_t last, LookedUp& points, ComposedPixel& pixel, Strip& strip) {
     const SeenSurfaces& seen = *target_.seen;
     points.wanted.count = last - first;
@@ -198,8 +198,9 @@ class Warping {
     return spread;
   }
 
-  /// Decides whether the pixel is masked, and why. `count`: number of positions; `known`: they suffice. Sums the
-  /// layers. A key that does not give the whole pixel counts as if it gave the composed colour.
+  /// Decides whether the pixel is masked, and why; sums its layers; stores what the decisions about light and gloss
+  /// need. `count`: number of positions; `known`: true if these are enough. The candidate of a key that does not show
+  /// the whole pixel becomes the composed colour.
   void judge(std::size_t p, ComposedPixel& pixel, int count, bool known) {
     if (summed_) layers_.set(pixel.colour.data());
     std::array<const float*, 2> given{};

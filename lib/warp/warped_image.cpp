@@ -1,7 +1,10 @@
 #include "lib/warp/warped_image.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
+
+#include "lib/image/channel_groups.h"
 
 namespace tempolux {
 namespace {
@@ -19,19 +22,12 @@ void add_candidate(WarpedFrame& warped, std::size_t key, Image& image) {
 }
 
 bool has_layer(const KeyFrame& key, const std::string& layer) {
-  return std::find(key.colour_names().begin(), key.colour_names().end(), layer + ".R") != key.colour_names().end();
-}
-
-bool has_layer_name(const std::string& group) {
-  for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect", "volume"})
-    if (group == layer) return true;
-  return false;
+  return std::ranges::count(key.colour_names(), layer + ".R") > 0;
 }
 
 bool is_data_channel(const std::string& channel) {
-  for (const char* prefix : {"N.", "P.", "albedo."})
-    if (channel.starts_with(prefix)) return true;
-  return channel == "Z" || channel == "id.object";
+  return std::ranges::any_of(std::array{"Z", "N", "P", "id", "albedo"},
+                             [&](const char* group) { return is_in_group(channel, group); });
 }
 
 }  // namespace tempolux

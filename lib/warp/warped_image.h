@@ -13,13 +13,11 @@ namespace tempolux {
 /// Moves the composed colour channels to an image of the frame's size.
 void add_colour(WarpedFrame& warped, Image& image);
 
-/// Moves the colours from one key alone (WarpedFrame::candidates).
+/// Moves the colours from one key alone (WarpedFrame::candidates) to an image of the frame's size.
 void add_candidate(WarpedFrame& warped, std::size_t key, Image& image);
 
 /// True if the key has the channel LAYER.R.
 bool has_layer(const KeyFrame& key, const std::string& layer);
-/// True if the name is that of a colour layer (formats/frames/frames.md 2).
-bool has_layer_name(const std::string& group);
 /// True if the channel holds surface data: Z, N, P, id.object, albedo.
 bool is_data_channel(const std::string& channel);
 

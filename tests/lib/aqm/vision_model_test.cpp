@@ -126,5 +126,14 @@ TEST(VisionModelTest, DetectionIsTheTable) {
   EXPECT_NEAR(probability(kHalfSeen), 0.5, 1e-4);
 }
 
+/// Tables of docs/methods/formulas.md: where sensitivity falls to 1, and what is slow on displays of 30 and 60 pixels
+/// per degree.
+TEST(VisionModelTest, SlowSpeedIsTheTable) {
+  for (const auto& [speed, cutoff] : {std::pair{0.15, 26.3347}, {1.0, 16.0878}, {5.0, 5.4202}, {20.0, 1.5232}})
+    EXPECT_NEAR(highest_visible_frequency(speed), cutoff, 1e-3);
+  EXPECT_NEAR(slow_speed(30), 1.41, 0.01);
+  EXPECT_NEAR(slow_speed(60), 0.15, 1e-9);
+}
+
 }  // namespace
 }  // namespace tempolux::vision

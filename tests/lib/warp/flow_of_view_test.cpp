@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "lib/warp/camera_cut.h"
-#include "lib/warp/slow_speed.h"
 
 namespace tempolux::test {
 namespace {
@@ -110,15 +109,6 @@ TEST(FlowOfView, SpeedIsInDegreesPerSecond) {
   EXPECT_EQ(standing.valid[middle], 3u);
   // 1e-9 radians: an arc cosine of floats would say 0.
   EXPECT_NEAR(angular_speed({0, 0, 1}, {1e-9, 0, 1}, 24) / (1e-9 * 180 / std::numbers::pi * 24), 1, 1e-6);
-}
-
-/// Tables of docs/methods/formulas.md: where sensitivity falls to 1, and what is slow on displays of 30 and 60 pixels
-/// per degree.
-TEST(SlowSpeed, AsInTheTable) {
-  for (const auto& [speed, cutoff] : {std::pair{0.15, 26.3347}, {1.0, 16.0878}, {5.0, 5.4202}, {20.0, 1.5232}})
-    EXPECT_NEAR(highest_visible_frequency(speed), cutoff, 1e-3);
-  EXPECT_NEAR(slow_speed(30), 1.41, 0.01);
-  EXPECT_NEAR(slow_speed(60), 0.15, 1e-9);
 }
 
 TEST(CameraCut, AJumpIsOneAndAPanIsNot) {
