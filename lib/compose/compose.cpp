@@ -16,21 +16,22 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kChunk = 256;  ///< pixels
-constexpr float kMostSlices = 4096;  ///< along a ray
-/// limit of the weight extinction / linear extinction, where a linear extinction is nearly 0 at a corner
+constexpr float kMostSlices = 4096;  ///< in a piece of a ray
+/// Largest weight extinction / linear extinction of a sampled place. The linear extinction of a slice can be almost 0
+/// at one end.
 constexpr float kMostAbove = 8;
-/// below this, light from behind adds nothing to a float; it also prevents a division by 0
+/// Slices behind this transmittance are left out: their light adds nothing to a float. Also prevents a division by 0.
 constexpr float kLeastTransmittance = 1e-30f;
 
-/// A piece of a ray over which extinction is taken as linear.
+/// A piece of a ray in which extinction counts as linear.
 struct Slice {
   float begin, length;  ///< m
   float tau;
-  float transmittance;  ///< from its start to the eye
+  float transmittance;  ///< between the slice's start and the eye
   float slope;          ///< extinction at its end minus extinction at its start, 1/m
   float extinction(float t) const { return tau / length + slope * (t - 0.5f); }
-  /// Position in the slice, 0 to 1, at which the optical depth from its start is `depth`: depth = length (extinction(0)
-  /// t + slope t^2 / 2).
+  /// The place t in the slice, from 0 to 1, at which the optical depth from its start is `depth`. Solves
+  /// depth = length (extinction(0) t + slope t^2 / 2).
   float place_of(float depth) const {
     const float first = std::max(0.0f, extinction(0)), wanted = depth / length;
     const float root = first + std::sqrt(std::max(0.0f, first * first + 2 * slope * wanted));
@@ -47,7 +48,8 @@ double finest_voxel(const Media& media) {
 /// (1 - exp(-x)) / x.
 float mean_transmittance(float x) { return x < 1e-4f ? 1 - x / 2 : -std::expm1(-x) / x; }
 
-/// Cuts the ray into slices where there may be a medium; optical depth by Gauss-Legendre quadrature with two points.
+/// Cuts the parts of the ray with a majorant above 0 into slices. The optical depth of a slice is computed by
+/// Gauss-Legendre quadrature with two points.
 void cut(const Media& media, const Ray& ray, float end, float step, std::vector<Slice>& slices) {
   slices.clear();
   constexpr float kGauss = 0.21132487f;
@@ -80,8 +82,8 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
   cut_piece();
 }
 
-/// A place on a ray where the medium scatters, and the ray in the direction drawn from the phase function.
-struct SentOn {
+/// A ray from a place in the medium, in a direction drawn from the phase function.
+struct ScatteredRay {
   Ray ray;
   std::uint64_t key;
   Rgb weight;  ///< factor of the radiance along the ray
@@ -95,40 +97,39 @@ struct Marcher {
   const ComposeOptions& options;
   float step;  ///< m: longest slice
   RayCounts counts{};
-  std::vector<Slice> slices{};    ///< of the ray
-  std::vector<SentOn> sent_on{};  ///< of the pixel: rays whose radiance is to be added
+  std::vector<Slice> slices{};            ///< of the ray
+  std::vector<ScatteredRay> scattered{};  ///< rays whose radiance the pixel still needs
 
   SmokePixel march(const Ray& ray, float end, const PixelRandom& random);
 
  private:
-  void send_on(const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random);
+  void add_ray(const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random);
   Rgb sampled_light(const Ray& ray, float whole, const PixelRandom& random);
 };
 
-/// Adds a ray from a place in the medium, if rays take a share of its light.
-void Marcher::send_on(const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random) {
+/// Adds a ray from a place in the medium, if rays estimate a share of its light.
+void Marcher::add_ray(const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random) {
   const PhaseShare& share = light.share(point.g);
   if (!share.has_rays()) return;
   const Vec3 travel = sample_hg(point.g, point.travel, random.get2(bounce, Purpose::phase));
   const float q = 4 * kPi * pdf_hg(point.g, point.travel, travel);
-  sent_on.push_back({{point.position, travel, 0, INFINITY},
-                     random.hashed().bits(bounce, Purpose::gather),
-                     point.albedo * (weight * share.of_rays(q))});
+  scattered.push_back({{point.position, travel, 0, INFINITY},
+                       random.hashed().bits(bounce, Purpose::gather),
+                       point.albedo * (weight * share.of_rays(q))});
 }
 
-/// Radiance of the light that comes directly from lights and is scattered towards the eye. Places on the ray are drawn
-/// in proportion to extinction x transmittance, with the extinction that is linear within a slice. The weight of a
-/// place is the medium's extinction divided by this linear extinction. `whole`: share of the light behind the slices
-/// that the slices scatter or absorb.
+/// Radiance that comes directly from lights and that the medium scatters towards the eye. Places on the ray are drawn
+/// in proportion to linear extinction x transmittance. The weight of a place is the medium's extinction divided by the
+/// linear extinction of its slice. `whole`: 1 - transmittance of all slices.
 Rgb Marcher::sampled_light(const Ray& ray, float whole, const PixelRandom& random) {
   const int samples = options.light_samples;
-  const std::size_t before = sent_on.size();
+  const std::size_t before = scattered.size();
   Rgb sum{0.0f};
   std::size_t at = 0;
   float passed = 0;  // sum over the slices before slice `at`
   for (int k = 0; k < samples; ++k) {
     const float wanted = (float(k) + random.get1(0, Purpose::place)) / float(samples) * whole;
-    // Samples ascend; the last slice takes the remainder from rounding.
+    // Samples ascend along the ray. The last slice takes the remainder that rounding leaves.
     while (at + 1 < slices.size() && passed + slices[at].transmittance * -std::expm1(-slices[at].tau) <= wanted) {
       passed += slices[at].transmittance * -std::expm1(-slices[at].tau);
       ++at;
@@ -145,9 +146,9 @@ Rgb Marcher::sampled_light(const Ray& ray, float whole, const PixelRandom& rando
     sum += medium.albedo * weight *
            scattered_lamp_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
                                 {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
-    send_on(point, bounce, weight, random);
+    add_ray(point, bounce, weight, random);
   }
-  for (std::size_t i = before; i < sent_on.size(); ++i) sent_on[i].weight *= whole / float(samples);
+  for (std::size_t i = before; i < scattered.size(); ++i) scattered[i].weight *= whole / float(samples);
   return sum * (whole / float(samples));
 }
 
@@ -162,20 +163,20 @@ SmokePixel Marcher::march(const Ray& ray, float end, const PixelRandom& random) 
     tau += double(slice.tau);
   }
   pixel.transmittance = float(std::exp(-tau));
-  const auto whole = float(-std::expm1(-tau));  // 1 - transmittance has only two digits if tau is 1e-6
+  const auto whole = float(-std::expm1(-tau));  // In float32 1 - transmittance has only two digits if tau is 1e-6.
   if (options.sample_lights && whole > 0) pixel.light += sampled_light(ray, whole, random);
   return pixel;
 }
 
-/// Radiance that the rays of a pixel add.
-Rgb brought(const IncomingRadiance& incoming, const std::vector<SentOn>& sent_on, RayCounts& counts) {
+/// Weighted sum of the radiance that arrives along the rays.
+Rgb radiance_of(const IncomingRadiance& incoming, const std::vector<ScatteredRay>& scattered, RayCounts& counts) {
   thread_local std::vector<Ray> rays;
   thread_local std::vector<std::uint64_t> keys;
   thread_local std::vector<Rgb> radiance;
   thread_local std::vector<float> distance;
   rays.clear();
   keys.clear();
-  for (const SentOn& sent : sent_on) rays.push_back(sent.ray), keys.push_back(sent.key);
+  for (const ScatteredRay& each : scattered) rays.push_back(each.ray), keys.push_back(each.key);
   radiance.resize(rays.size());
   distance.resize(rays.size());
   GatherCounts gathered;
@@ -184,7 +185,7 @@ Rgb brought(const IncomingRadiance& incoming, const std::vector<SentOn>& sent_on
   counts.shadow += gathered.shadow_rays;
   counts.points_read += gathered.points_read;
   Rgb sum{0.0f};
-  for (std::size_t i = 0; i < sent_on.size(); ++i) sum += sent_on[i].weight * radiance[i];
+  for (std::size_t i = 0; i < scattered.size(); ++i) sum += scattered[i].weight * radiance[i];
   return sum;
 }
 
@@ -260,7 +261,7 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
   const Media* const media = scene.frame().media.get();
   if (!media) return pixels;
   if (light.has_rays() && !(options.incoming && options.sample_lights))
-    throw std::invalid_argument("rays bring a part of the light, and there are none");
+    throw std::invalid_argument("compose_media: rays estimate a part of the light, but options.incoming is missing");
   const auto step = float(finest_voxel(*media) / 2);
   std::mutex joining;
   std::size_t done = 0;
@@ -269,7 +270,7 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
     for (std::size_t p = first; p < last; ++p) {
       const auto x = float(p % std::size_t(view.width())), y = float(p / std::size_t(view.width()));
       SmokePixel sum{Rgb(0.0f), 0};
-      marcher.sent_on.clear();
+      marcher.scattered.clear();
       for (int s = 0; s < options.samples; ++s) {
         const PixelRandom random(options.seed, p, std::uint32_t(s));
         const Vec2 within = options.surfaces_by_depth ? Vec2{0.5f, 0.5f} : random.get2(0, Purpose::pixel);
@@ -288,7 +289,7 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
         sum.light += one.light;
         sum.transmittance += one.transmittance;
       }
-      if (!marcher.sent_on.empty()) sum.light += brought(*options.incoming, marcher.sent_on, marcher.counts);
+      if (!marcher.scattered.empty()) sum.light += radiance_of(*options.incoming, marcher.scattered, marcher.counts);
       pixels[p] = {sum.light * (1 / float(options.samples)), sum.transmittance / float(options.samples)};
     }
     const std::scoped_lock lock(joining);

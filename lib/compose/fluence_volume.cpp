@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lib/core/parallel.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 using Cell = std::array<float, 4>;
 
-constexpr float kWidest = 16;      ///< cells
+constexpr float kWidest = 16;      ///< cells: widest automatic Gaussian
 constexpr std::size_t kLine = 64;  ///< lines of cells that one task processes
 
 /// Weights of a Gaussian for the cells in a line around the centre; their sum is 1.
@@ -26,7 +27,7 @@ std::vector<float> kernel(float width) {
   return weights;
 }
 
-/// One axis of a separable filter. Cells outside the box have neither sum nor volume.
+/// Filters the cells along one axis. Cells outside the box have no sum and no volume.
 void filter_axis(std::vector<Cell>& cells, const std::array<std::int32_t, 3>& counts, int axis,
                  const std::vector<float>& weights) {
   const std::size_t stride[3] = {std::size_t(counts[1]) * std::size_t(counts[2]), std::size_t(counts[2]), 1};
@@ -100,8 +101,8 @@ std::size_t FluenceSums::cell_of(Vec3 point) const {
 void FluenceSums::add(Vec3 point, Rgb contribution, int times) {
   const std::size_t cell = cell_of(point);
   if (cell >= sums_.size() || !is_finite(contribution)) return;
-  for (int c = 0; c < 3;
-       ++c) {  // unsigned: an overflow from a damaged file wraps, and is undone when the photon is subtracted
+  // In unsigned numbers an overflow from a damaged file wraps, and is undone when the photon is subtracted.
+  for (int c = 0; c < 3; ++c) {
     std::int64_t& sum = sums_[cell][std::size_t(c)];
     const auto more = std::uint64_t(std::llrint(std::clamp(double(contribution[c]) / unit_, -9e18, 9e18)));
     sum = std::int64_t(std::uint64_t(sum) + std::uint64_t(std::int64_t(times)) * more);
@@ -126,7 +127,7 @@ FluenceVolume::FluenceVolume(const FluenceSums& sums, float width)
     // A Gaussian of deviation s averages as many cells as (4 pi s^2)^(3/2).
     const double density = double(sums.photons()) / double(std::max<std::size_t>(1, open));
     width_ = std::clamp(
-        float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f,
+        float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * std::numbers::pi)), 0.25f,
         kWidest);
   }
   const std::vector<float> weights = kernel(width_);

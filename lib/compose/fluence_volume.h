@@ -11,23 +11,23 @@
 
 namespace tempolux {
 
-/// Sums of photon flux over the cells of a grid. The grid covers the majorants' box and cuts each majorant cell into
-/// `per_majorant`^3 cells. A cell holds, by channel, the sum of flux / majorant [W m] of its photons as a 64-bit
-/// multiple of `unit`. Such sums are exact: a photon that is added and subtracted again leaves no trace, in any order.
+/// Sums of photon flux over the cells of a grid, which covers the majorants' box and divides each majorant cell into
+/// equal cells. A cell holds, by channel, the sum of flux / majorant [W m] of its photons as a 64-bit multiple of
+/// unit(). Such sums are exact: a photon that is added and subtracted again leaves no trace, whatever the order.
 class FluenceSums {
  public:
   static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 25;
 
   FluenceSums() = default;
-  /// `emitted_flux` [W]: of all lights, all channels together. The unit is a power of two, about 2^-44 of that flux
-  /// times the box's diagonal, so that a sum can hold 2^19 times the contribution of all photons that cross the box
-  /// once. `cell` [m]: the size of a cell is this or a little less; larger if there would be more than kMostCells.
+  /// `emitted_flux` [W]: that of all lights, summed over channels. The unit is a power of two, about 2^-44 of this flux
+  /// times the box's diagonal. A sum can then hold 2^19 times the contribution of photons of all flux that cross the
+  /// box once. `cell` [m]: largest edge of a cell; cells are larger only if there would be more than kMostCells.
   FluenceSums(const MajorantGrid& majorants, double cell, double emitted_flux);
 
   const Box3& box() const { return box_; }
   const std::array<std::int32_t, 3>& counts() const { return counts_; }
-  double unit() const { return unit_; }
-  /// m^3.
+  double unit() const { return unit_; }  ///< W m
+  /// Volume of a cell, m^3.
   double cell_volume() const;
   /// Index of the cell that holds a scene-space point; the product of counts() outside the box.
   std::size_t cell_of(Vec3 point) const;
@@ -55,15 +55,16 @@ class FluenceSums {
 
 inline constexpr auto kPhotonsInFilter = float(kPhotonsInKernel);  ///< photons under a filter of automatic width
 
-/// Fluence [W/m^2] at any place: sums over volumes, both filtered by the same Gaussian, so that cells at the border of
-/// the lit region are not darkened. Trilinear between the cells' centres; 0 outside.
+/// Fluence [W/m^2] at any place: filtered sums divided by filtered volumes, interpolated trilinearly between the
+/// centres of cells. The volume of cells without a medium is 0, so that cells at the border of a medium are not too
+/// dark. 0 outside the box.
 class FluenceVolume {
  public:
   FluenceVolume() = default;
   /// `width`: standard deviation of the Gaussian, cells; 0: so that about kPhotonsInFilter photons count.
   FluenceVolume(const FluenceSums& sums, float width);
   Rgb at(Vec3 point) const;
-  float width() const { return width_; }  ///< cells: the width used, also if it was chosen automatically
+  float width() const { return width_; }  ///< cells: the width that was used, given or automatic
 
  private:
   Box3 box_;

@@ -8,23 +8,22 @@
 
 namespace tempolux {
 
-/// Light that a medium scatters towards the eye is estimated in two ways. Photons fly in all directions and are weighed
-/// by the phase function p; if p has a peak, few photons carry nearly all light. Rays from the eye are drawn from p
-/// itself. The balance heuristic (Veach and Guibas 1995) divides the light of each direction between the two, so that
-/// their sum has the right expectation. With q = 4 pi p:
+/// Light that a medium scatters towards the eye is estimated in two ways. Photons arrive from all directions and have
+/// the phase function p as weight; if p has a peak, few photons carry almost all light. The directions of rays are
+/// drawn from p. The balance heuristic (Veach and Guibas 1995) divides the light of each direction between both, so
+/// that the expectation of their sum is right for any n and m. With q = 4 pi p:
 ///
 ///     share of photons = n / (n + m q)     n photons in the filter, m rays per pixel
 ///
-/// The weight of a photon is then at most n / m times an isotropically scattered one's. The expectation is right for
-/// any n and m; the noise depends on them.
+/// The weight of a photon, q times its share, is then at most n / m.
 class PhaseShare {
  public:
-  /// `rays` = 0: photons take all light.
+  /// `rays`: m; 0: photons take all light.
   explicit PhaseShare(float g, int rays) {
     const float a = std::min(std::abs(g), kLargestG), peak = (1 + a) / ((1 - a) * (1 - a));  // largest q
     if (peak * float(rays) > kPhotonsInFilter) per_photon_ = float(rays) / kPhotonsInFilter;
   }
-  /// True if there are directions of which rays take more light than photons; otherwise rays take none.
+  /// True if in some direction rays would take more light than photons. Otherwise photons take all light.
   bool has_rays() const { return per_photon_ > 0; }
   float of_photons(float q) const { return 1 / (1 + per_photon_ * q); }
   float of_rays(float q) const { return 1 - of_photons(q); }

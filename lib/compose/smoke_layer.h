@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// True if the layer volume of the frame has any light.
+/// True if the frame's layer volume is not black everywhere.
 bool has_smoke(const Image& frame);
 
 /// Adds the light of the smoke to the layer volume and to R, G, B, and multiplies all other light and 1 - A by the

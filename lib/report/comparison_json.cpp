@@ -20,7 +20,7 @@ void put_estimate(Json& to, const std::string& name, const std::optional<Estimat
   to[name + "_standard_error"] = estimate ? number(estimate->standard_error) : Json(nullptr);
 }
 
-/// Writes ROOT, its standard error, the mean square it comes from, and whether the mean square is significant.
+/// Writes a root mean square, its standard error, the mean square, and SquaredFigure::resolved().
 void put_squared(Json& to, const std::string& root, const std::string& squared, const SquaredFigure& figure) {
   to[root] = number(figure.root());
   to[root + "_standard_error"] = number(figure.root_standard_error());
@@ -28,7 +28,7 @@ void put_squared(Json& to, const std::string& root, const std::string& squared, 
   to[root + "_resolved"] = figure.resolved();
 }
 
-/// id, and name where it is known.
+/// The object's id, and its name if it is known.
 Json id_json(std::uint32_t id, const ObjectNames& names) {
   Json json = {{"id", id}};
   if (const auto name = names.find(id); name != names.end()) json["name"] = name->second;

@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "lib/core/statistics.h"
+
 namespace tempolux {
 namespace {
 
@@ -15,7 +17,7 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Repetitions of one setting.
+/// The runs of one setting, which differ only in their seeds.
 struct Setting {
   std::optional<double> x;
   std::vector<double> times, squares;
@@ -30,7 +32,7 @@ struct Setting {
       known = known && standard_errors[i];
       if (known) variance += *standard_errors[i] * *standard_errors[i];
     }
-    return sum > 0 && median(times) > 0 && (!known || std::sqrt(variance) < sum / 3);
+    return sum > 0 && median(times) > 0 && (!known || kCertain * std::sqrt(variance) < sum);
   }
   CurvePoint point() const {
     double sum = 0;
@@ -39,6 +41,7 @@ struct Setting {
   }
 };
 
+/// log e = intercept + slope log t.
 struct Line {
   double slope = 0, intercept = 0;
   std::optional<double> slope_standard_error;
@@ -58,7 +61,7 @@ std::optional<Line> log_log_line(const std::vector<CurvePoint>& points) {
     tt += t * t;
     te += t * (0.5 * std::log(p.mse) - mean_e);
   }
-  if (points.size() < 2 || tt <= 1e-12) return std::nullopt;  // all points at one time have no slope
+  if (points.size() < 2 || tt <= 1e-12) return std::nullopt;  // Points at one time have no slope.
   Line line{te / tt, mean_e - te / tt * mean_t, std::nullopt};
   double residuals = 0;
   for (const CurvePoint& p : points) {
@@ -69,7 +72,8 @@ std::optional<Line> log_log_line(const std::vector<CurvePoint>& points) {
   return line;
 }
 
-/// a/t + b with relative weights: unknowns A = a/t0 and b, rows (t0/t)/e^2 and 1/e^2, target 1.
+/// e^2 = a/t + b by least squares of relative deviations. The unknowns are a / t0 and b; a point's equation is
+/// (t0 / t / e^2) a / t0 + (1 / e^2) b = 1.
 struct FloorModel {
   double a = 0, b = 0, b_standard_error = 0, residuals = 0;
 };
@@ -171,7 +175,7 @@ CurveFit fit_curve(const std::vector<CurvePoint>& points) {
 std::optional<double> time_at_error(const std::vector<CurvePoint>& points, double rmse) {
   const double wanted = std::log(rmse);
   const auto error = [&](std::size_t i) { return 0.5 * std::log(points[i].mse); };
-  constexpr double kEqual = 1e-9;  // relative rounding of an end of the range, after root and square
+  constexpr double kEqual = 1e-9;  // relative rounding by root and square
   if (points.empty() || error(0) < wanted - kEqual) return std::nullopt;
   if (error(0) <= wanted + kEqual) return points[0].time_s;
   for (std::size_t i = 1; i < points.size(); ++i) {

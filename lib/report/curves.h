@@ -23,20 +23,21 @@ struct CurvePoint {
 struct Curve {
   std::string scene, name;
   std::vector<CurvePoint> points;
-  std::size_t left_out = 0;  ///< runs without a comparison, or with an error that the reference's noise hides
+  std::size_t left_out = 0;  ///< number of runs without a comparison, or with an error below the reference's noise
 };
 
-/// Curves in order of first appearance. Times and errors that are not positive are left out and counted.
+/// Curves in the order in which the runs name them first. A point with a time or error that is not positive is left
+/// out.
 std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs);
 
 /// Slope and floor of a curve.
 struct CurveFit {
-  /// Least-squares slope of log error over log time (-1/2 for Monte Carlo), over the points whose squared error is
-  /// above ten times the floor's (there a/t + b has a slope of -0.45 or steeper).
+  /// Least-squares slope of log error over log time; -1/2 for Monte Carlo. Only points with a squared error above ten
+  /// times the floor's count: there a/t + b has a slope of -0.45 or steeper.
   std::optional<double> slope;
   std::optional<double> slope_standard_error;  ///< from the scatter around the line; needs three points
   std::size_t slope_points = 0;
-  /// e^2 = a/t + b, least squares of relative deviations, a and b not negative. Needs three points.
+  /// The fit e^2 = a/t + b by least squares of relative deviations; a and b are not negative. Needs three points.
   double noise = 0;          ///< a [error^2 s]
   double floor_squared = 0;  ///< b
   /// sqrt(b), if a floor is significant: b is above two of its standard errors and above 1 % of the smallest e^2, and
@@ -57,7 +58,8 @@ struct SpeedUp {
   double ratio() const { return baseline_time_s / time_s; }
 };
 
-/// At both ends and at the geometric mean of the range of errors that both curves reach; empty if they share none.
+/// Speed-ups at both ends and at the geometric mean of the range of errors that both curves reach; empty if there is no
+/// such range.
 std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points, const std::vector<CurvePoint>& baseline);
 
 }  // namespace tempolux

@@ -7,8 +7,7 @@
 namespace tempolux {
 namespace {
 
-/// Quotes text in single quotes, where gnuplot interprets nothing but a doubled quote; control characters become
-/// spaces.
+/// Text in single quotes, in which gnuplot interprets only a doubled quote. Control characters become spaces.
 std::string quoted(const std::string& text) {
   std::string safe = "'";
   for (const char c : text) {

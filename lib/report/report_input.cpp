@@ -9,6 +9,7 @@
 #include "formats/error.h"
 #include "lib/core/json.h"
 #include "lib/core/json_file.h"
+#include "lib/core/statistics.h"
 
 namespace tempolux {
 namespace {
@@ -146,7 +147,7 @@ MeasuredRun run_of(const Place& entry, const Folder& folder) {
 
 double ErrorRecord::rmse() const { return mse > 0 ? std::sqrt(mse) : 0; }
 
-bool ErrorRecord::usable() const { return mse > 0 && (!mse_standard_error || *mse_standard_error < mse / 3); }
+bool ErrorRecord::usable() const { return mse > 0 && (!mse_standard_error || *mse_standard_error * kCertain < mse); }
 
 double MeasuredRun::cpu_s() const {
   double sum = 0;

@@ -16,7 +16,7 @@ struct StatsRecord {
   double peak_memory_bytes = 0;
 };
 
-/// The object whose light is farthest off.
+/// The object with the largest bias.
 struct WorstObject {
   std::uint32_t id = 0;
   std::string name;  ///< "": not known
@@ -29,11 +29,12 @@ struct ErrorRecord {
   std::optional<double> mse_standard_error;
   std::optional<double> relmse, bias, bias_standard_error, flicker;
   bool halves = false;                      ///< the reference's noise is not in mse
-  std::optional<WorstObject> worst_object;  ///< objects of few pixels apart
+  std::optional<WorstObject> worst_object;  ///< without objects of few pixels
 
   /// Square root of mse; 0 if mse is not positive.
   double rmse() const;
-  /// True if mse is positive and above three of its standard errors, if these are known: it is then a point of a curve.
+  /// True if mse is positive, and above three of its standard errors if these are known: the run is then a point of a
+  /// curve.
   bool usable() const;
 };
 
@@ -56,6 +57,7 @@ struct GivenPoint {
   double cpu_s = 0, rmse = 0;
 };
 
+/// Everything that a report shows.
 struct ReportInput {
   std::string title = "Error against time";
   std::string baseline;  ///< name of the curve that speed-ups refer to; empty: each scene's first
@@ -64,7 +66,7 @@ struct ReportInput {
   std::vector<std::string> files;  ///< all files that were read
 };
 
-/// Read one file. Throw InputError "FILE: PLACE: WHAT; REMEDY".
+/// Reads one file. Throws InputError "FILE: PLACE: WHAT; REMEDY".
 StatsRecord read_stats(const std::string& path);
 ErrorRecord read_comparison(const std::string& path);
 

@@ -12,10 +12,10 @@ namespace tempolux {
 /// Bytes of the drawn plots by file name ("error-S2.svg").
 using Plots = std::map<std::string, std::string>;
 
-/// Tables, and links to the plots that exist.
+/// The report in Markdown: tables, and links to the plots that exist.
 std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
-/// The same as one self-contained file: plots are data URIs.
+/// The report as one HTML file, which contains the plots as data URIs.
 std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots);
 
 }  // namespace tempolux

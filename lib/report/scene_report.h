@@ -9,6 +9,7 @@
 
 namespace tempolux {
 
+/// A table of the report.
 struct Table {
   std::string heading;
   std::vector<std::string> header;
@@ -16,6 +17,7 @@ struct Table {
   std::string note;
 };
 
+/// What the report shows of one scene.
 struct SceneReport {
   std::string scene;
   std::string file_stem;  ///< "error-SCENE", unique, of letters, digits, - _ only
@@ -30,8 +32,8 @@ std::vector<SceneReport> scene_reports(const ReportInput& input);
 
 enum class PlotFormat { svg, png };
 
-/// gnuplot script that draws error against time, log-log, to its standard output: points, the fitted curve sqrt(a/t +
-/// b), slope and floor in the key, given points. Empty without any point.
+/// A gnuplot script that draws error against time to its standard output, log-log: the points, the fitted curve
+/// sqrt(a/t + b), slope and floor in the key, and the given points. "" if there is no point.
 std::string plot_script(const SceneReport& report, PlotFormat format);
 
 }  // namespace tempolux

@@ -1,18 +1,16 @@
 // lib/report/text.h -- formats numbers as cells of a table.
 #pragma once
 
-#include <cstdio>
 #include <optional>
 #include <string>
 
+#include "lib/core/formatted.h"
+
 namespace tempolux {
 
-/// A number in printf's notation; empty if there is none.
+/// A number in printf's notation; "" if there is none.
 inline std::string number_text(std::optional<double> value, const char* pattern = "%.4g") {
-  if (!value) return "";
-  char text[64];
-  std::snprintf(text, sizeof text, pattern, *value);
-  return text;
+  return value ? formatted(pattern, *value) : "";
 }
 
 }  // namespace tempolux
