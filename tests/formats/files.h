@@ -34,6 +34,14 @@ class Folder {
 
 inline void save(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
+/// The text with each line indented by four blanks, as pages show text files.
+inline std::string as_on_a_page(const std::string& text) {
+  std::string page;
+  for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != text.npos; begin = end + 1)
+    page += "    " + text.substr(begin, end + 1 - begin);
+  return page;
+}
+
 inline std::string load(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/error.h"
+#include "tests/formats/files.h"
 
 namespace tempolux::formats {
 namespace {
@@ -22,11 +23,11 @@ TEST(View, ReadsBackToTheSameBits) {
   EXPECT_TRUE(parse_view(view_text({}), "view").empty());
 }
 
-// The example of plan.md.
-TEST(View, TheWorkedExample) {
-  const std::vector<ViewSphere> read = parse_view("tempolux view 1.0\n1 1 -1 1.75 0.5\n3 1 -1 1.75 0.25\n", "view");
-  ASSERT_EQ(read.size(), 2u);
-  EXPECT_EQ(view_text(read), "tempolux view 1.0\n1 1 -1 1.75 0.5\n3 1 -1 1.75 0.25\n");
+TEST(View, WorkedExampleOfThePageIsWhatTheWriterWrites) {
+  const std::string text = view_text(std::vector<ViewSphere>{{{1, 1, -1}, 1.75, 0.5}, {{3, 1, -1}, 1.75, 0.25}});
+  EXPECT_NE(testing::load("../formats/plan/plan.md").find("\n\n" + testing::as_on_a_page(text) + "\n"),
+            std::string::npos)
+      << text;
 }
 
 TEST(View, RefusesWhatIsNone) {
