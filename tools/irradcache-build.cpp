@@ -131,16 +131,16 @@ int main(int argc, char** argv) {
                                                                                       : tools::SceneInput::a_camera;
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
     importance.emplace(tool, input, options.importance);
-    StaticTree standing;
+    StaticTree tree;
     if (options.mode() == "points")
       for (int frame : frames)
         if (options.map == "static") tools::build_static_points(tool, input, seeded(frame), frame);
-        else if (!options.update.empty()) tools::build_updated_points(tool, input, seeded(frame), frame, standing);
-        else tools::build_points(tool, input, seeded(frame), frame, standing);
+        else if (!options.update.empty()) tools::build_updated_points(tool, input, seeded(frame), frame, tree);
+        else tools::build_points(tool, input, seeded(frame), frame, tree);
     else if (!options.update.empty() && !tools::has_frame_pattern(options.output))
-      tools::build_updated_records(tool, input, seeded(frames.front()), frames, standing);
+      tools::build_updated_records(tool, input, seeded(frames.front()), frames, tree);
     else if (!options.update.empty())
-      for (int frame : frames) tools::build_updated_records(tool, input, seeded(frame), {frame}, standing);
+      for (int frame : frames) tools::build_updated_records(tool, input, seeded(frame), {frame}, tree);
     else tools::build_records(tool, input, seeded(frames.front()), frames);
     return tools::exit_ok;
   });

@@ -69,7 +69,7 @@ Smoke smoke_of(tools::Tool& tool, const Options& options, const RenderScene& sce
   return smoke;
 }
 
-void compose(tools::Tool& tool, tools::SceneInput& input, Options options, int number, StaticTree& standing) {
+void compose(tools::Tool& tool, tools::SceneInput& input, Options options, int number, StaticTree& tree) {
   for (std::string* name : {&options.output, &options.base, &options.photons, &options.points})
     *name = tools::frame_name(*name, number);
   options.compose.seed = tool.common().seed_for_frame(number);
@@ -84,7 +84,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, Options options, int n
   Smoke smoke{std::vector<SmokePixel>(base.image.pixel_count()), "", {}};
   if (frame.media) {
     tool.stats().phase("build");
-    const Tracer tracer(frame, standing);
+    const Tracer tracer(frame, tree);
     const Lights lights(frame, input.emission(frame.frame));
     smoke = smoke_of(tool, options, {tracer, lights}, view, base);
   }
@@ -134,8 +134,8 @@ int main(int argc, char** argv) {
     options.compose.sample_lights = !options.light.direct;
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
-    StaticTree standing;
-    for (const int frame : frames) compose(tool, input, options, frame, standing);
+    StaticTree tree;
+    for (const int frame : frames) compose(tool, input, options, frame, tree);
     return tools::exit_ok;
   });
 }

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <string_view>
 #include <unordered_set>
 
 #include "formats/error.h"
+#include "lib/core/formatted.h"
 
 namespace tempolux::tools {
 namespace {
@@ -77,11 +77,7 @@ Field field_at(const std::string& pattern, std::size_t at) {
   return field;
 }
 
-std::string digits_of(int frame, int width, bool zeros) {
-  char text[128];
-  std::snprintf(text, sizeof text, zeros ? "%0*d" : "%*d", width, frame);
-  return text;
-}
+std::string digits_of(int frame, int width, bool zeros) { return formatted(zeros ? "%0*d" : "%*d", width, frame); }
 
 /// Parses all of `text` as a number.
 template <class Number>

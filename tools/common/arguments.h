@@ -10,7 +10,7 @@ namespace tempolux::tools {
 
 /// Frames of a range: item{,item}; item = A, A-B, A-BxS (every S-th) or A-ByS (all but every S-th).
 /// B below A counts down; numbers may be negative ("-5--2"). Duplicates are dropped, the order is kept.
-/// Throws InputError if malformed, empty, beyond +-10^8, or of more than 10^6 frames.
+/// Throws InputError if the text is malformed or empty, if a frame is outside +-10^8, or for more than 10^6 frames.
 std::vector<int> parse_frames(const std::string& text);
 
 /// A name with the frame number inserted: a run of n '#' becomes the number with at least n digits; "%d", "%4d" and
@@ -19,6 +19,7 @@ std::vector<int> parse_frames(const std::string& text);
 std::string frame_name(const std::string& pattern, int frame);
 /// "f.0012.exr" with "_a" becomes "f.0012_a.exr".
 std::string name_with(const std::string& path, const std::string& ending);
+/// True if frame_name() inserts a number into the name.
 bool has_frame_pattern(const std::string& pattern);
 
 /// "250000", "10k", "1.5M", "1G": decimal factors 10^3, 10^6, 10^9; must come out whole and below 2^63.

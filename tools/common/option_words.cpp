@@ -2,16 +2,13 @@
 #include "tools/common/option_words.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "lib/core/formatted.h"
 
 namespace tempolux::tools {
 namespace {
 
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
+std::string text_of(double value) { return formatted("%.10g", value); }
 
 /// The part of the type that comes before the checks in CLI11's "INT:1 to 512" or "TEXT:{raw,spec}".
 std::string before_colon(const std::string& type) { return type.substr(0, type.find(':')); }

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <vector>
 
+#include "lib/core/formatted.h"
 #include "lib/core/json.h"
 
 namespace tempolux::tools {
@@ -123,12 +124,8 @@ std::string Stats::json(const std::string& tool, const std::string& command, int
 
 std::string Stats::summary() const {
   std::string text;
-  for (const State::Phase& phase : state_->phases) {
-    char line[160];
-    std::snprintf(line, sizeof line, "%s%s %.2f s (%.2f CPU s)", text.empty() ? "" : ", ", phase.name.c_str(),
-                  phase.wall_s, phase.cpu_s);
-    text += line;
-  }
+  for (const State::Phase& phase : state_->phases)
+    text += (text.empty() ? "" : ", ") + phase.name + formatted(" %.2f s (%.2f CPU s)", phase.wall_s, phase.cpu_s);
   return text;
 }
 

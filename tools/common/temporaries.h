@@ -18,7 +18,7 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
 
   const char* path() const;
-  /// The file has been renamed or passed on: it is no longer removed.
+  /// From now on the file is not removed, because it has been renamed or passed on.
   void release();
   /// Removes the file now.
   void remove();

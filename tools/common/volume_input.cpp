@@ -144,30 +144,28 @@ std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
 
 std::string VolumeInput::hash(const std::vector<Medium>& media) {
   Hasher hasher;
-  hasher.add(std::string_view("media 1"));
+  hasher.add("media 1");
   for (const Medium& medium : media) hasher.add(std::string_view(medium.hash()));
   return hasher.hex();
 }
 
 std::shared_ptr<const Media> VolumeInput::at(int frame, Vec3d origin) {
   if (!any()) return nullptr;
-  if (has_last_ && last_at_ == frame && last_origin_ == origin) return last_;
+  if (last_ && last_->frame == frame && last_->origin == origin) return last_->media;
   std::vector<Medium> media = read(frame, origin);
+  std::shared_ptr<const Media> made;
   if (const MajorantGrid* const majorants = majorants_for(frame, origin)) {
     try {
-      last_ =
-          majorants->empty() && media.empty() ? nullptr : std::make_shared<const Media>(std::move(media), *majorants);
+      if (!majorants->empty() || !media.empty()) made = std::make_shared<const Media>(std::move(media), *majorants);
     } catch (const std::invalid_argument& error) {
       throw InputError(tool_.common().volume.majorants + ": " + error.what() + " at frame " + std::to_string(frame) +
                        "; run scene-plan again");
     }
-  } else {
-    last_ = media.empty() ? nullptr : std::make_shared<const Media>(std::move(media));
+  } else if (!media.empty()) {
+    made = std::make_shared<const Media>(std::move(media));
   }
-  last_at_ = frame;
-  last_origin_ = origin;
-  has_last_ = true;
-  return last_;
+  last_ = At{frame, origin, made};
+  return made;
 }
 
 }  // namespace tempolux::tools

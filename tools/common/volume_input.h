@@ -14,6 +14,7 @@
 
 namespace tempolux::tools {
 
+/// Reads the media of frames, and keeps some of them in memory.
 class VolumeInput {
  public:
   /// `--volume` replaces the media that the scene names; "none" removes them. Throws InputError for options that
@@ -25,7 +26,8 @@ class VolumeInput {
   bool frozen() const { return !tool_.common().volume.majorants.empty(); }
   /// The last frame for which any volume has a file. -1 if there is no volume, or one does not name its frames.
   int last_frame() const;
-  /// The media of a frame in scene space; nullptr: none. Their files become dependencies of the tool.
+  /// The media of a frame in scene space, whose origin in world space is `origin`; nullptr: none. Their files become
+  /// dependencies of the tool.
   std::shared_ptr<const Media> at(int frame, Vec3d origin);
   /// The same media without majorants.
   std::vector<Medium> read(int frame, Vec3d origin);
@@ -41,20 +43,25 @@ class VolumeInput {
   std::vector<VolumeSource> sources_;
   std::vector<std::string> files_;
   std::optional<VdbSeries> series_;
+  /// The majorants of --majorants in scene space; nullptr without the option.
   const MajorantGrid* majorants_for(int frame, Vec3d origin);
+  /// Reads the media from their files.
   std::vector<Medium> parse(int frame, Vec3d origin);
   struct Kept {
     Vec3d origin;
     std::vector<Medium> media;
   };
+  /// A result of at().
+  struct At {
+    int frame = 0;
+    Vec3d origin;
+    std::shared_ptr<const Media> media;
+  };
   std::map<int, Kept> kept_;  ///< results of read(), up to kMostKept bytes
   std::size_t kept_bytes_ = 0;
   std::optional<FrozenMajorants> majorants_;
   MajorantGrid scene_majorants_;
-  std::shared_ptr<const Media> last_;  ///< the last result of at()
-  int last_at_ = 0;
-  Vec3d last_origin_;
-  bool has_last_ = false;
+  std::optional<At> last_;
 };
 
 }  // namespace tempolux::tools

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "lib/core/formatted.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/object_names.h"
 #include "lib/render/audit.h"
@@ -35,9 +35,7 @@ struct Sum {
 std::string percent(double value, double error) {
   const double digit = error > 0 ? std::floor(std::log10(100 * error)) : 0;
   const int decimals = int(std::clamp(-digit, 0.0, 6.0));
-  char text[64];
-  std::snprintf(text, sizeof text, "%+.*f +- %.*f %%", decimals, 100 * value, decimals, 100 * error);
-  return text;
+  return formatted("%+.*f +- %.*f %%", decimals, 100 * value, decimals, 100 * error);
 }
 
 const double* number(const Image& image, const std::string& name) {

@@ -1,9 +1,9 @@
 #include "tools/info/info_facts.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "formats/error.h"
+#include "lib/core/formatted.h"
 #include "lib/core/json.h"
 #include "tools/common/file_head.h"
 
@@ -22,11 +22,7 @@ std::string leaf_text(const Facts& value) {
   if (value.is_null()) return "none";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.9g", value.get<double>());
-    return text;
-  }
+  if (value.is_number_float()) return formatted("%.9g", value.get<double>());
   if (!value.is_array()) return value.dump();
   std::string text;
   for (const Facts& item : value) text += (text.empty() ? "" : "  ") + leaf_text(item);

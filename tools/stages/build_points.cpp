@@ -53,18 +53,18 @@ void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& opti
 void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree) {
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(number), standing = static_scene_of(frame);
+  const SceneFrame frame = input.at(number), static_frame = static_scene_of(frame);
   const EmissionTable& emission = input.emission(frame.frame);
   tool.stats().phase("build");
-  const Tracer whole(frame, tree), without(standing, tree);
+  const Tracer whole(frame, tree), without(static_frame, tree);
   const Lights lights(frame, emission);
   tool.stats().phase("read points");
-  GatherPoints points = read_points(tool, frame_name(options.update, number), standing);
+  GatherPoints points = read_points(tool, frame_name(options.update, number), static_frame);
   tool.stats().phase("read photons");
   const std::string dynamic = frame_name(options.dynamic.front(), number);
   const formats::PhotonMap moved = read_photons(tool, dynamic, frame, {.map = "dynamic"});
   const formats::PhotonMap fixed =
-      read_photons(tool, frame_name(options.photons, number), standing,
+      read_photons(tool, frame_name(options.photons, number), static_frame,
                    {.map = "static", .keep = static_photons_read(frame, options.point, points.points, moved.photons)});
   if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
     throw InputError(dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
@@ -81,12 +81,12 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   tool.stats().count("points_anew", double(counts.anew));
 }
 
-void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& standing) {
+void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree) {
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   tool.stats().phase("build");
-  const Tracer tracer(frame, standing);
+  const Tracer tracer(frame, tree);
   const Lights lights(frame, input.emission(frame.frame));
   const GatherPoints points = options.high.empty() ? points_of_photons(tool, frame_name(options.photons, number),
                                                                        tracer, lights, options.points_of(frame))

@@ -15,16 +15,17 @@ namespace tempolux::tools {
 
 /// The options of irradcache-build.
 struct CacheOptions {
-  std::vector<std::string> inputs;  // [points|records] SCENE
+  std::vector<std::string> inputs;  ///< [points|records] SCENE
   std::string photons, points, importance, high, output, keep_points, map = "global", update;
-  std::vector<std::string> dynamic;  // the frame's own map comes first
+  std::vector<std::string> dynamic;  ///< the frame's own map comes first
   std::uint64_t point_count = PointOptions{}.count;
-  std::vector<formats::ViewSphere> view;  // of importance
+  std::vector<formats::ViewSphere> view;  ///< spheres that --importance names
   int width = 640, height = 360;
   PointOptions point;
   GatherOptions gather;
   PlacementOptions placement;
 
+  /// "points", "records", or "both" without a step.
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
   const std::string& scene() const { return inputs.back(); }
   /// Options for the points of a frame.
@@ -35,18 +36,19 @@ struct CacheOptions {
   }
 };
 
-/// Estimates points from a file of photons. Only the second of the two phases, the estimate, uses all threads.
+/// Estimates points from a file of photons. One thread reads the file; all threads estimate.
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
                                const PointOptions& options);
-/// The same from a divided map: the low part options.photons and the high part options.high.
+/// Estimates points from both parts of a divided map: options.photons is the low part, options.high the high part.
 DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer,
                                     const Lights& lights);
 
 /// Writes the .irradpoints of a frame from its global map.
-void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& standing);
+void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree);
 /// Writes the static points of a segment from its static map.
 void build_static_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number);
-/// Writes the points of a frame from the static points: adds the dynamic map's light, and points on the movers.
+/// Writes the points of a frame: the static points, to which the dynamic map's light is added, and points on the
+/// movers.
 void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StaticTree& tree);
 
 }  // namespace tempolux::tools

@@ -30,7 +30,7 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   return header;
 }
 
-/// Throws InputError unless two frames are equal except for their cameras.
+/// Throws InputError unless two frames differ only in their cameras.
 void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const SceneFrame& first) {
   if (!formats::stale_concerns(identity_of(frame), identity_of(first)).empty())
     throw InputError(options.scene() + ": frame " + std::to_string(frame.frame) +
@@ -38,8 +38,8 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
                      ": one cache cannot hold for both; make one for each");
 }
 
-/// The cameras that records are placed for. `at`: the scene at a frame, or the static scene; `first`: at the first
-/// frame.
+/// The cameras for which records are placed. `at` returns the scene at a frame, or its static scene; `first` is its
+/// result for the first frame.
 RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                          const SceneFrame& first, std::function<SceneFrame(int)> at) {
   RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {},
@@ -72,8 +72,8 @@ DividedGatherPoints gather_points(Tool& tool, const CacheOptions& options, const
   return {points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame())), {}};
 }
 
-/// Dynamic maps of a frame (its own comes first) as densities over the static scene.
-std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing,
+/// The dynamic maps of options.dynamic as densities over the static scene; the frame's own map comes first.
+std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& static_scene,
                                         const SceneFrame& frame) {
   std::vector<SignedDensity> maps;
   const DensityOptions density{options.point.neighbours, options.point.max_radius, kChangeProbes};
@@ -82,7 +82,7 @@ std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options,
     const bool own = maps.empty();
     const formats::PhotonMap map =
         own ? read_photons(tool, file, frame, {.map = "dynamic"}) : read_earlier_change(tool, file, frame);
-    maps.emplace_back(standing, map.photons, density, shift_of(map.header.origin, frame));
+    maps.emplace_back(static_scene, map.photons, density, shift_of(map.header.origin, frame));
   }
   return maps;
 }
@@ -92,8 +92,8 @@ std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options,
 void build_records(Tool& tool, SceneInput& input, CacheOptions options, const std::vector<int>& frames) {
   Output output(options.output);
   tool.stats().phase("evaluate");
-  const bool standing = options.map == "static";
-  const auto state = [&](int number) { return standing ? static_scene_of(input.at(number)) : input.at(number); };
+  const bool is_static = options.map == "static";
+  const auto state = [&](int number) { return is_static ? static_scene_of(input.at(number)) : input.at(number); };
   const SceneFrame first = state(frames.front());
   tool.stats().phase("build");
   const Tracer tracer(first);
@@ -108,8 +108,9 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   }
   const PointsRead read(tool, tracer, lights, divided, options.gather);
   const Lights guided = guided_lights(tracer, lights, points.points);
-  // Records of the static scene are joined with changes by movers, which know no lamps apart.
-  options.gather.lamps_apart = !standing && !read.beside_lamps.empty();
+  // Light of lamps close to surfaces is left to pixels, but not in static records: these are later updated by dynamic
+  // photons, which do not leave out such light.
+  options.gather.lamps_apart = !is_static && !read.beside_lamps.empty();
   const FinalGather gather(tracer, guided, read.lookup, options.gather);
   RecordStore store;
 
@@ -119,7 +120,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   tool.stats().phase("write");
   formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
   if (options.gather.lamps_apart) header.lamps_apart = double(kBesideLamp * points.spacing);
-  if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
+  if (is_static) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
   header.history = points.history + tool.history_line();
   write_records(header, to_file(store.records(), first), output);
   tool.stats().end_phase();
@@ -131,9 +132,9 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const int number = frames.front();
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(number), standing = static_scene_of(frame);
+  const SceneFrame frame = input.at(number), static_frame = static_scene_of(frame);
   tool.stats().phase("build");
-  const Tracer tracer(frame, tree), without(standing, tree);
+  const Tracer tracer(frame, tree), without(static_frame, tree);
   const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("read points");
   const DividedGatherPoints whole{read_points(tool, frame_name(options.points, number), frame), {}};
@@ -149,7 +150,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
                      ": its records leave out light of lamps close to surfaces; give a file made with --map static");
   RecordStore fixed({.least_cosine = float(file.header.least_cosine)});
   LocalisedRecords cache;
-  cache.history = add_records(tool, name, file, standing, fixed) + points.history;
+  cache.history = add_records(tool, name, file, static_frame, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
   GatherOptions gathering = options.gather;
   const PointsRead read(tool, tracer, lights, whole, gathering);

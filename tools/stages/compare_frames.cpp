@@ -6,6 +6,7 @@
 
 #include "formats/error.h"
 #include "lib/aqm/difference.h"
+#include "lib/core/formatted.h"
 #include "lib/image/exr_io.h"
 #include "lib/report/comparison.h"
 #include "tools/stages/compare_inputs.h"
@@ -132,9 +133,8 @@ int compare(Tool& tool, const CompareOptions& o, bool frames_given) {
   tool.stats().set("rmse", result.total.squared_error.root());
   if (result.quality) tool.stats().set("aqm", result.quality->all.share());
   std::string table = comparison_text(result);
-  char line[80];
-  std::snprintf(line, sizeof line, ": red +%g, blue -%g\n", outputs.scale, outputs.scale);
-  if (o.difference.ends_with(".png")) table += o.difference + line;
+  if (o.difference.ends_with(".png"))
+    table += o.difference + formatted(": red +%g, blue -%g\n", outputs.scale, outputs.scale);
   if (!tool.common().quiet) std::fputs(table.c_str(), json && json->is_stdout() ? stderr : stdout);
   const double judged = o.fails_by_aqm ? result.quality->all.share() : result.total.squared_error.root();
   return o.fail_above >= 0 && judged > o.fail_above ? exit_differs : exit_ok;

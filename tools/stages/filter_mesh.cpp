@@ -26,11 +26,11 @@ std::vector<Rgbd> flux_of(const formats::MeshirradFile& file) {
   return flux;
 }
 
-void make_texture(Tool& tool, SceneInput& input, const Options& options, int number, StaticTree& standing) {
+void make_texture(Tool& tool, SceneInput& input, const Options& options, int number, StaticTree& tree) {
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  const Tracer tracer(frame, standing);
+  const Tracer tracer(frame, tree);
   auto [file, mesh] = count_photons(tool, input, options.count, tracer);
   file.header.history += tool.history_line(number);
   if (!options.count.for_windows) {
@@ -72,8 +72,8 @@ int filter_mesh(int argc, char** argv) {
                                                                : Kind::gaussian;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);
-    StaticTree standing;
-    for (const int frame : frames) make_texture(tool, input, options, frame, standing);
+    StaticTree tree;
+    for (const int frame : frames) make_texture(tool, input, options, frame, tree);
     return exit_ok;
   });
 }

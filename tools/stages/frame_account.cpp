@@ -1,16 +1,13 @@
 #include "tools/stages/frame_account.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "lib/core/formatted.h"
 
 namespace tempolux::tools {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.3g", value); }
 
 void add(const Noise& noise, const std::string& name, std::map<std::string, double>& numbers) {
   if (!(noise.codes >= 0)) return;
@@ -42,11 +39,7 @@ const AuditEntry* worst_of(const std::vector<AuditEntry>& audit, Layer layer, co
   return worst;
 }
 
-std::string percent(double value, double error) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%+.3g +- %.2g %%", 100 * value, 100 * error);
-  return text;
-}
+std::string percent(double value, double error) { return formatted("%+.3g +- %.2g %%", 100 * value, 100 * error); }
 
 /// An object by its name in the file; other parts by their description.
 std::string in_words(const AuditEntry& part, const std::vector<std::string>& object_names) {

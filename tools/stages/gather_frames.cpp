@@ -28,14 +28,14 @@ class GatherRun {
   Tool& tool_;
   SceneInput& input_;
   const TemporalGatherOptions& options_;
-  StaticTree standing_;
+  StaticTree tree_;
   KeptHemispheres kept_;              ///< records of the previous frame
   std::optional<SceneFrame> before_;  ///< the scene at the previous frame; empty: nothing is kept
   std::string places_hash_;           ///< of the points that anchors name
   KeptFiles files_;
 };
 
-/// Anchors are numbers of points, so each point must lie where the previous frame's point of that number lay.
+/// Anchors are numbers of points, so each point must lie at the place of the previous frame's point of the same number.
 void GatherRun::check_points(const std::string& file, const FramePoints& points) const {
   if (!before_ || places_hash_.empty() || places_hash_ == points.places_hash) return;
   throw InputError(file + ": its " + std::to_string(points.anchored) +
@@ -84,7 +84,7 @@ void count(Tool& tool, const TemporalCounts& counts, int frame, bool first) {
         double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
 }
 
-/// Reads what the previous frame has kept, and that frame's scene.
+/// Reads the kept samples of the previous frame, and evaluates the scene at that frame.
 void GatherRun::read_previous(const SceneFrame& now, const FramePoints& points) {
   const std::string& file = options_.previous;
   tool_.depends_on(file, InputRole::replaceable);
@@ -95,7 +95,7 @@ void GatherRun::read_previous(const SceneFrame& now, const FramePoints& points) 
   check_identity(tool_, file, header.identity, *before_);
 }
 
-/// Prepares for a frame: reads the previous frame where it is a file, and forgets it in a new segment.
+/// Prepares for a frame: reads the previous frame if it is a file, and drops it at the start of a segment.
 void GatherRun::continue_chain(const SceneFrame& frame, const FramePoints& points) {
   if (!options_.previous.empty() && !before_) {
     tool_.stats().phase("read samples");
@@ -107,7 +107,7 @@ void GatherRun::continue_chain(const SceneFrame& frame, const FramePoints& point
   if (!before_) kept_ = {};
 }
 
-/// Direction towards the camera from a place that it sees, as TemporalScene::eye needs it.
+/// Position of the camera that a place sees, as in TemporalScene::eye.
 std::optional<Vec3> eye_from(const CameraView& view, Vec3 place) {
   const auto at = view.project(place);
   if (!at) return std::nullopt;
@@ -125,7 +125,7 @@ void GatherRun::gather(int number) {
   Output kept_output(named(options_.output)), cache_output(named(options_.cache));
   continue_chain(frame, points);
   tool_.stats().phase("build");
-  const Tracer tracer(frame, standing_);
+  const Tracer tracer(frame, tree_);
   const Lights lights(frame, input_.emission(frame.frame));
   GatherOptions rays = options_.gather;
   rays.seed = tool_.common().seed_for_frame(number);

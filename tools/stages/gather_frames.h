@@ -12,7 +12,7 @@
 namespace tempolux::tools {
 
 struct TemporalGatherOptions {
-  std::vector<std::string> inputs;  // final SCENE
+  std::vector<std::string> inputs;  ///< final SCENE
   std::string points, high, previous, output, cache;
   int width = 640, height = 360;
   GatherOptions gather;
@@ -22,7 +22,8 @@ struct TemporalGatherOptions {
   const std::string& scene() const { return inputs.back(); }
 };
 
-/// Gathers the frames of the run, each from the one before; the first from options.previous, if there is one.
+/// Gathers the frames of the run. Each frame continues from the previous one; the first from options.previous, if
+/// given.
 void gather_frames(Tool& tool, SceneInput& input, const TemporalGatherOptions& options);
 
 }  // namespace tempolux::tools

@@ -29,9 +29,9 @@ struct WantedPhotons {
   std::function<bool(Vec3, const formats::Photon&)> keep = {};
 };
 
-/// Reads the photons of a map made for this state of the scene (else InputError, see check_identity); for a static map
-/// `frame` is the static scene. The map must hold the kinds that the scene's surfaces require: without indirect light
-/// it is refused, without caustic light there is a warning.
+/// Reads the photons of a map that was made for this state of the scene (else InputError, see check_identity). For a
+/// static map `frame` is the static scene. The map must hold the kinds of light that the scene's surfaces need: without
+/// indirect light it is refused, without caustic light there is a warning.
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame,
                                 const WantedPhotons& wanted);
 
@@ -45,16 +45,16 @@ formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, cons
 
 /// Reads a .irradpoints file made for this state of the scene; checks its kinds of light as read_photons does.
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
-/// Reads the two parts of divided points as read_points; throws InputError if they are not the parts of one file. If
-/// `high` is "" the file `low` holds all light, and there are no shares.
+/// Reads the two parts of divided points, checked as read_points checks a file. Throws InputError if the files are not
+/// the two parts of one file. If `high` is "", the file `low` holds all light, and there are no shares.
 DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, const std::string& high,
                                         const SceneFrame& frame);
-/// Points as gather rays read them, with the light that records sample explicitly: that of lamps close to surfaces, and
+/// Points prepared for gather rays, and the light that records sample explicitly: light of lamps close to surfaces, and
 /// of points with a high share (photonmap-split). All arguments must outlive this object.
 struct PointsRead {
   PointLookup lookup;
   std::vector<LampPhoton> beside_lamps;
-  std::optional<BrightPoints> bright;  ///< if light is to be sampled explicitly; `gather` then names them
+  std::optional<BrightPoints> bright;  ///< empty: no light is sampled explicitly; else `gather` points to it
 
   PointsRead(Tool& tool, const Tracer& tracer, const Lights& lights, const DividedGatherPoints& points,
              GatherOptions& gather);
@@ -64,7 +64,7 @@ struct PointsRead {
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
                   std::optional<std::array<int, 2>> frames = {});
 
-/// Header of a cache of a frame's records, without the frames that it was placed for and without history.
+/// Header of a cache of a frame's records; placed_frames and history are left to the caller.
 formats::IrradcacheHeader records_header(const SceneFrame& frame, std::span<const IrradianceRecord> records,
                                          float least_cosine, const GatherOptions& gather,
                                          const PlacementOptions& placement);

@@ -1,8 +1,7 @@
 #include "tools/stages/measured.h"
 
-#include <cstdio>
-
 #include "formats/error.h"
+#include "lib/core/formatted.h"
 #include "lib/core/json.h"
 #include "lib/core/json_file.h"
 
@@ -14,17 +13,14 @@ using Json = nlohmann::ordered_json;
 /// "AQM 8 % with 6250 photons a frame (9.6 % with 3125); asked: 10 %"
 std::string in_words(const Json& chosen, const Json& tried, double share) {
   const auto words = [](const Json& one) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%.3g %% with %llu", 100 * one.at("aqm").get<double>(),
-                  static_cast<unsigned long long>(one.at("photons").get<std::uint64_t>()));
-    return std::string(text);
+    return formatted("%.3g %% with ", 100 * one.at("aqm").get<double>()) +
+           std::to_string(one.at("photons").get<std::uint64_t>());
   };
   std::string others;
   for (const Json& one : tried)
     if (one != chosen) others += (others.empty() ? " (" : ", ") + words(one);
-  char asked[40];
-  std::snprintf(asked, sizeof asked, "; asked: %.3g %%", 100 * share);
-  return "measured: AQM " + words(chosen) + " photons a frame" + others + (others.empty() ? "" : ")") + asked;
+  return "measured: AQM " + words(chosen) + " photons a frame" + others + (others.empty() ? "" : ")") +
+         formatted("; asked: %.3g %%", 100 * share);
 }
 
 Measured chosen_of(const Json& segment, double share) {

@@ -22,7 +22,7 @@ struct Options {
   WindowOptions window;
 };
 
-/// The counts of a frame.
+/// The counts of a frame, with the header of their file.
 struct Counted {
   formats::MeshirradHeader header;
   FrameCounts counts;
@@ -32,8 +32,8 @@ struct Counted {
 class Counts {
  public:
   /// `range`: the requested frames, ascending.
-  Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range, StaticTree& standing)
-      : tool_(tool), input_(input), options_(options), range_(range), standing_(standing) {
+  Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range, StaticTree& tree)
+      : tool_(tool), input_(input), options_(options), range_(range), tree_(tree) {
     if (!options.count.photons.empty() || (options.counts.size() == 1 && has_frame_pattern(options.counts[0]))) return;
     for (const std::string& name : options.counts) {
       std::shared_ptr<Counted> counted = read(name);
@@ -69,7 +69,7 @@ class Counts {
   }
   std::shared_ptr<Counted> make(int number) {
     const SceneFrame frame = input_.at(number);
-    return keep(count_photons(tool_, input_, options_.count, Tracer(frame, standing_)).file);
+    return keep(count_photons(tool_, input_, options_.count, Tracer(frame, tree_)).file);
   }
   std::shared_ptr<Counted> read(const std::string& name) {
     tool_.stats().phase("read counts");
@@ -95,20 +95,21 @@ class Counts {
   SceneInput& input_;
   const Options& options_;
   const std::vector<int>& range_;
-  StaticTree& standing_;
+  StaticTree& tree_;
   bool named_ = false;  ///< true if counts are given as a list of names, not as a pattern or photons
   std::map<int, std::shared_ptr<const Counted>> kept_;
 };
 
-/// Unit of the windows' sums, W: that of the frame's counts, but at least 2^-10 of the largest one. Sums of one frame
-/// reach about 2^44, those of its neighbours then 2^54. A frame without light has an arbitrary tiny unit.
+/// Unit of the windows' sums, W: the unit of the frame's counts, but at least 2^-10 of the largest unit in the window.
+/// Counts of one frame reach about 2^44 in their own unit, so in the windows' unit they reach at most 2^54. A frame
+/// without light has an arbitrary tiny unit.
 double unit_of(const std::vector<std::shared_ptr<const Counted>>& found, std::size_t at) {
   double unit = found[at]->header.unit;
   for (const auto& counted : found) unit = std::max(unit, std::ldexp(counted->header.unit, -10));
   return unit;
 }
 
-/// Checks that the counts of a window are of one segment, one mesh and one kind.
+/// Throws InputError if the counts of a window differ in scene, cell or kinds.
 void check_alike(const Counted& here, const Counted& other) {
   const auto& a = here.header;
   const auto& b = other.header;
@@ -119,12 +120,11 @@ void check_alike(const Counted& here, const Counted& other) {
                      " differ in scene, cell or kinds; count all frames of a segment with the same options");
 }
 
-void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts& counts, StaticTree& standing,
-                  int number) {
+void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts& counts, StaticTree& tree, int number) {
   Output output(frame_name(options.output, number));
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  const Tracer tracer(frame, standing);
+  const Tracer tracer(frame, tree);
   std::size_t at = 0;
   const auto found = counts.around(frame, at);
   const Counted& here = *found[at];
@@ -206,10 +206,10 @@ int photon_windows(int argc, char** argv) {
     options.count.frames = 2 * options.window.reach + 1;
     tool.stats().phase("load");
     SceneInput input(tool, options.scene, SceneInput::nothing);
-    StaticTree standing;
-    Counts counts(tool, input, options, frames, standing);
+    StaticTree tree;
+    Counts counts(tool, input, options, frames, tree);
     for (const int& frame : frames) {
-      make_windows(tool, input, options, counts, standing, frame);
+      make_windows(tool, input, options, counts, tree, frame);
       tool.progress(double(&frame - frames.data() + 1) / double(frames.size()));
     }
     return exit_ok;

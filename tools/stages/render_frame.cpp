@@ -1,10 +1,10 @@
 #include "tools/stages/render_frame.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 
 #include "formats/error.h"
+#include "lib/core/formatted.h"
 #include "lib/core/random.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
@@ -29,7 +29,7 @@ struct MotionFrame {
   std::optional<SceneFrame> frame;
   std::optional<CameraView> view;
   MotionFrame(SceneInput& input, const RenderOptions& options, int camera, int number) {
-    if (std::find(options.channels.begin(), options.channels.end(), "motion") == options.channels.end()) return;
+    if (!asked(options.channels, "motion")) return;
     frame = input.at(number, false);
     view.emplace(frame->camera(camera), frame->origin, options.width, options.height);
   }
@@ -64,21 +64,21 @@ struct Shot {
   Lights aimed(Lights::Which which) const { return aimed_lights(scene.tracer, emission, view, which); }
 };
 
-/// Warns of light that the frame lacks: no camera path hits a light without extent after a mirror or smooth glass. For
-/// a reference any such light counts. Other frames may lack as much as an audit tolerates: photons of these lights
-/// measure the light.
+/// Warns if the frame lacks light of point, spot and sun lights that mirrors or smooth glass send on: no camera path
+/// finds such light. A frame by path tracing is warned of in any case. For other frames photons measure the missing
+/// light, and a share that an audit tolerates gives no warning.
 void warn_of_missing_light(Tool& tool, const Shot& shot) {
   const SceneFrame& frame = shot.scene.frame();
   const KnownLight* const known = shot.options.known;
   if (!may_hide_light(frame) || (known && known->has_caustic())) return;
   const auto shines =
       std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
-  char share[48] = "";
+  std::string share;
   if (known) {
     const double missing = hidden_share(shot.scene, shot.aimed(Lights::Which::punctual), shot.view,
                                         mean_to_white(shot.rendered.mean.pixels, {}));
     if (!(missing > 0)) return;
-    std::snprintf(share, sizeof share, " (%.2g %% of the picture)", 100 * missing);
+    share = formatted(" (%.2g %% of the picture)", 100 * missing);
   }
   const std::string &material = frame.materials[first_smooth_material(frame)].name, &light = shines->light.name;
   tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
@@ -87,11 +87,13 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
             ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
 }
 
-/// Measures the bias of the frame's layers. Photons estimate the light of lamps, because few camera paths meet a bright
-/// spot close to a lamp. Camera paths estimate the light of sun and sky, because few photons of sun and sky arrive in
-/// view. If the scene has a sun and a mirror or smooth glass, photons estimate all light, because no camera path meets
-/// a sun via a smooth surface. Paths have nothing to audit in a frame by paths: `unbiased` is then set, and nothing is
-/// measured.
+/// Measures the bias of the frame's layers, with photons or camera paths of its own:
+/// - Light of lamps: photons, because few camera paths meet a bright spot close to a lamp.
+/// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
+/// - All light if the scene has a sun and a mirror or smooth glass: photons, because no camera path meets a sun via a
+///   smooth surface.
+/// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
+/// true.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Shot& shot, bool& unbiased) {
   if (!(options.audit > 0)) return {};
   const RenderScene& scene = shot.scene;
@@ -120,25 +122,25 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
     return entry.part == "picture" && entry.layer != Layer::direct && is_biased(entry);
   };
   if (std::ranges::none_of(entries, warns)) return entries;
-  // One right frame in a hundred is as far off as this by chance: a larger audit with a seed of its own decides.
+  // In one of a hundred unbiased frames chance alone gives such a figure. A larger audit with another seed decides.
   effort.photon_paths *= kAuditAgain, effort.eye_paths *= kAuditAgain, effort.seed = mix64(effort.seed);
   return measure();
 }
 
 /// Options of the frame `number`, without mask and known light.
 FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
-  const bool yardstick = options.integrator == "path";
+  const bool is_reference = options.integrator == "path";
   FrameOptions frame = options.frame;
   frame.seed = tool.common().seed_for_frame(number);
-  // With the frame's own random numbers a reference would have the frame's noise, and the frame's error would seem too
-  // small.
-  if (yardstick) frame.seed = mix64(frame.seed ^ 0x7265666572656e63ull);
-  frame.spread_outliers = !options.keep_outliers && !yardstick;
+  // A reference gets other random numbers than a frame. With the same numbers both would have the same noise, and the
+  // frame's error would look too small.
+  if (is_reference) frame.seed = mix64(frame.seed ^ 0x7265666572656e63ull);
+  frame.spread_outliers = !options.keep_outliers && !is_reference;
   frame.progress = tool.progress_sink();
   return frame;
 }
 
-void render(Tool& tool, SceneInput& input, const RenderOptions& options, int number, StaticTree& standing) {
+void render(Tool& tool, SceneInput& input, const RenderOptions& options, int number, StaticTree& tree) {
   FrameOutputs outputs(frame_name(options.output, number), options.frame.halves);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
@@ -153,15 +155,15 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
     frame_options.mask = base.mask;
   }
   tool.stats().phase("build");
-  const Tracer tracer(frame, standing);
+  const Tracer tracer(frame, tree);
   Lights lights(frame, input.emission(frame.frame));
-  const bool yardstick = options.integrator == "path";
-  const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
-  if (!yardstick && lights.has_environment()) lights = guided_lights(scene, view);
+  const bool is_reference = options.integrator == "path";
+  const RenderScene scene{tracer, lights, !is_reference && lights.has_suns()};
+  if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
   const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
 
   tool.stats().phase("render", true);
-  if (!yardstick) frame_options.known = &light.get();
+  if (!is_reference) frame_options.known = &light.get();
   Image image{options.width, options.height, {}, {}, {}, {}};
   std::vector<std::uint8_t> edges = add_coverage_channel(scene, view, options.channels, image);
   if (asked(options.channels, "halves")) frame_options.edges = std::move(edges);
@@ -197,7 +199,7 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   report_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
 
-/// With photons or a cache, the tools that made them have given this warning.
+/// Only for frames by path tracing: the tools that made photons or a cache have given this warning already.
 void warn_of_light_units(Tool& tool, const Scene& scene) {
   if (const std::string doubt = doubt_of_light_units(scene); tool.common().light_units == "raw" && !doubt.empty())
     tool.warn(doubt);
@@ -270,8 +272,8 @@ void check(const Tool& tool, RenderOptions& options) {
 void render_frames(Tool& tool, SceneInput& input, const RenderOptions& options) {
   warn_of_darkness(tool, input.scene());
   if (options.integrator == "path") warn_of_light_units(tool, input.scene());
-  StaticTree standing;
-  for (const int frame : tool.common().frames) render(tool, input, options, frame, standing);
+  StaticTree tree;
+  for (const int frame : tool.common().frames) render(tool, input, options, frame, tree);
 }
 
 }  // namespace tempolux::tools

@@ -24,8 +24,8 @@ constexpr double kWidth = 128;  ///< width in pixels of the larger sample, at mo
 constexpr int kFewerRays = 4;   ///< of a record
 constexpr std::array kSamples{"small", "large"};
 
-/// How often a stage runs for the requested frames, and the mean factors by which its work and bytes exceed those of
-/// a sample; picture size is not included.
+/// How often a stage runs for the requested frames, and sums over its runs of the factors by which work and bytes
+/// exceed those of a sample, apart from the size of the picture.
 struct Runs {
   double count = 0, work = 0, bytes = 0;
 };
@@ -38,7 +38,7 @@ std::map<std::string, Runs> runs_by_stage(const Planned& whole, double photons, 
     const GraphFile* file = whole.graph.find(name);
     if (!file || !needed.insert(file).second) return;
     const bool records = file->name.ends_with(".irradcache");
-    // Commas stand between the frames of the cameras that share records.
+    // The options of records list the frames whose cameras share them, separated by commas.
     const double bytes = file->name.ends_with(".photons") ? photons
                          : records ? d.records_of(1 + double(std::ranges::count(file->words, ',')))
                                    : 1;

@@ -19,8 +19,8 @@
 namespace tempolux::tools {
 namespace {
 
-/// A density estimate from this many photons has a standard error of 14 %. With fewer photons in each sphere, estimates
-/// also take light from outside the sphere.
+/// A density estimate from 50 photons has a standard error of 14 %. If a sphere that cameras see holds fewer photons,
+/// estimates in it also use photons outside of it.
 constexpr std::uint64_t kNeededPerSphere = 50;
 
 /// The movers in one interval of a segment: their boxes, and a hash of their states.
@@ -38,7 +38,7 @@ Movers movers_in(SceneInput& input, const Segment& segment, std::size_t i, std::
     const SceneFrame frame = input.at(f, false);
     movers.boxes.add(moving_boxes(frame));
     for (const std::string& hash : {frame.hashes.moving_geometry, frame.hashes.lights, frame.hashes.materials})
-      hasher.add(std::string_view(hash));
+      hasher.add(hash);
   }
   movers.hash = hasher.hex();
   return movers;
@@ -189,15 +189,15 @@ void PhotonTracing::trace_static(int frame_number) {
 }
 
 /// Refuses touched paths of another segment, another static scene or other movers.
-void PhotonTracing::check_paths(const std::string& file, const formats::PathsHeader& paths, const SceneFrame& standing,
-                                const std::string& emission, int frame) {
-  const Segment segment = standing.segment;
+void PhotonTracing::check_paths(const std::string& file, const formats::PathsHeader& paths,
+                                const SceneFrame& static_frame, const std::string& emission, int frame) {
+  const Segment segment = static_frame.segment;
   if (paths.identity.first_frame != segment.first || paths.identity.last_frame != segment.last)
     throw InputError(file + ": holds for the segment of frames " + std::to_string(paths.identity.first_frame) + " to " +
                      std::to_string(paths.identity.last_frame) + ", and frame " + std::to_string(frame) + " lies in " +
                      std::to_string(segment.first) + " to " + std::to_string(segment.last) +
                      "; trace the static map of that one");
-  check_identity(tool_, file, paths.identity, standing);
+  check_identity(tool_, file, paths.identity, static_frame);
   std::string stale;
   if (!paths.identity.emission.empty() && paths.identity.emission != emission)
     stale = "emission (lights, or what --importance aims at)";
@@ -218,9 +218,9 @@ void PhotonTracing::trace_dynamic(int frame_number) {
   const formats::PathsFile paths = formats::load_paths(file);
   tool_.stats().phase("evaluate");
   const SceneFrame frame = input_.at(frame_number);
-  const SceneFrame standing = static_scene_of(frame);
+  const SceneFrame static_frame = static_scene_of(frame);
   const EmissionTable emission = aimed_emission(frame, frame_number);
-  check_paths(file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
+  check_paths(file, paths.header, static_frame, emission_hash(emission, frame.segment), frame.frame);
   if (tool_.app().get_option("--seed")->count() > 0 && tool_.common().seed != paths.header.seed)
     throw InputError("--seed " + std::to_string(tool_.common().seed) +
                      ": of --map dynamic the static map has it: " + std::to_string(paths.header.seed));
@@ -231,8 +231,8 @@ void PhotonTracing::trace_dynamic(int frame_number) {
   for (const formats::TouchedPath& path : paths.paths)
     if (path.intervals & bit) touched.push_back(path.path);
   tool_.stats().phase("build");
-  const Tracer tracer(frame, static_tree_), static_tracer(standing, static_tree_);
-  const Lights lights(frame, emission), static_lights(standing, emission);
+  const Tracer tracer(frame, static_tree_), static_tracer(static_frame, static_tree_);
+  const Lights lights(frame, emission), static_lights(static_frame, emission);
 
   PhotonOptions photon_options;
   photon_options.seed = paths.header.seed;
@@ -244,7 +244,8 @@ void PhotonTracing::trace_dynamic(int frame_number) {
 
   tool_.stats().phase("trace", true);
   const PhotonTracer whole(tracer, lights, photon_options), without(static_tracer, static_lights, photon_options);
-  const PhotonMapResult result = write_dynamic_map(without, whole, touched, header, output.sink(), tool_.progress_sink());
+  const PhotonMapResult result =
+      write_dynamic_map(without, whole, touched, header, output.sink(), tool_.progress_sink());
   tool_.stats().phase("commit");
   finish(output, result, tracer.refused_ray_count() + static_tracer.refused_ray_count());
   tool_.stats().count("touched_paths", double(touched.size()));

@@ -33,7 +33,7 @@ void set_groups(const UpdateArguments& arguments, int frame, PhotonOptions& phot
 struct MapToUpdate {
   const SceneFrame& frame;
   const PhotonTracer& photons;
-  const formats::PhotonHeader& header;  ///< of the map, if it were traced whole
+  const formats::PhotonHeader& header;  ///< the header that the map would have if it were traced whole
   std::string output;                   ///< name of the new file
 };
 /// The previous map, kept in memory for the next frame of a range if it takes at most a quarter of the memory
@@ -44,8 +44,8 @@ struct KeptMap {
   PreviousMap map;
 };
 
-/// Writes the map of the frame through `sink`, according to --update and --refine. Adds the numbers of
-/// groups and pilots to stats. `kept`: the previous map, if it is in memory; becomes the new map, if that can be kept.
+/// Writes the map of the frame through `sink`, by --update or --refine. Adds the numbers of groups and pilots to stats.
+/// `kept`: the previous map, if it is in memory; becomes the new map if the new map is kept for the next frame.
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
                            const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept);
 

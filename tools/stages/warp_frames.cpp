@@ -93,7 +93,7 @@ class WarpRun {
   const std::vector<LoadedKey>& keys_;
   SceneInput input_;
   FramesOfScene frames_;
-  StaticTree standing_;
+  StaticTree tree_;
 };
 
 /// Adds the requested channels besides colour.
@@ -118,7 +118,7 @@ void WarpRun::warp_frame(int number) {
   const SceneFrame& frame = frames_.at(number, true);
   const KeysOfFrame placed(tool_, keys_, frames_, number);
   tool_.stats().phase("build");
-  const Tracer tracer(frame, standing_);
+  const Tracer tracer(frame, tree_);
   tool_.stats().phase("look", true);
   const SceneView seen(tracer, frames_.view(number));
   tool_.stats().phase("flow", true);
