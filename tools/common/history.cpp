@@ -57,8 +57,10 @@ std::string Tool::history_line(std::optional<int> frame) const {
       line += " " + quoted(without_folder(frame && named ? frame_name(value, *frame) : value));
     }
   };
-  const std::vector<const CLI::Option*> options = std::as_const(state_->app).get_options(
-      [&](const CLI::Option* option) { return !state_->left_out_of_history.contains(option); });
+  const std::vector<const CLI::Option*> options =
+      std::as_const(state_->app).get_options([&](const CLI::Option* option) {
+        return !state_->left_out_of_history.contains(option);
+      });
   for (const CLI::Option* option : options)
     if (is_positional(*option)) add(*option);
   for (const CLI::Option* option : options) {

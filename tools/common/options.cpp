@@ -197,14 +197,16 @@ void Tool::common_options(unsigned flags) {
                   "segment; needed for maps that are updated");
     leave_out_of_history(file_option("--state", common.state_files,
                                      "state files of scene-plan, listed by --depfile instead of the scene's files"));
-    leave_out_of_history(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
+    leave_out_of_history(
+        app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
   }
   leave_out_of_history(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")
       ->capture_default_str()
       ->envname("TEMPOLUX_THREADS")
       ->check(number_between(0, 4096));
-  leave_out_of_history(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
+  leave_out_of_history(
+      bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
   output_option(common.stats_file, "write seconds, counts and memory as JSON; -: standard output", "--stats");
   output_option(common.dep_file, "write a make rule: outputs depend on inputs", "--depfile");
   leave_out_of_history(app.add_flag("-q,--quiet", common.quiet, "print errors only"));

@@ -27,7 +27,8 @@ void declare_vision(Tool& tool, VisionWords& w) {
                    "stops, as of tempolux-info --png; auto: the first frame's, for the whole sequence")
       ->type_name("STOPS");
   tool.choice_option("--eye", w.eye, {"track", "fixed"}, "track: eyes follow moving objects; fixed: they do not");
-  tool.app().add_option("--fps", w.frames_per_second, "frames per second; default: that of the flow or of the frame, else 24")
+  tool.app()
+      .add_option("--fps", w.frames_per_second, "frames per second; default: that of the flow or of the frame, else 24")
       ->type_name("VALUE")
       ->check(number_between(1e-3, 1e4));
 }

@@ -124,9 +124,8 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     // The scene's camera has double precision; the attributes hold its rounded values.
     const FrameCamera& camera = same ? frames.camera(*key.frame) : key.key->camera();
     if (!same)
-      tool.refuse_stale(
-          key.file + ": seen by another camera than the scene has at frame " + std::to_string(*key.frame),
-          "give a key of this camera (--camera)");
+      tool.refuse_stale(key.file + ": seen by another camera than the scene has at frame " + std::to_string(*key.frame),
+                        "give a key of this camera (--camera)");
     motions_.push_back(std::make_unique<ObjectMotions>(here, there));
     add(key, camera, frames.camera(number), identity_of(here));
     keys_.back().frames_away = std::abs(double(number) - *key.frame);
