@@ -40,11 +40,6 @@ class FrameCamera {
     if (!(w > 0)) return std::nullopt;
     return RasterPoint{(dot(x_, point) + x_shift_) / w, (dot(y_, point) + y_shift_) / w};
   }
-  /// The same; NaN if the point is not in front.
-  RasterPoint project_or_nan(Vec3d point) const {
-    const double w = dot(w_, point) + w_shift_, known = w > 0 ? w : NAN;
-    return {(dot(x_, point) + x_shift_) / known, (dot(y_, point) + y_shift_) / known};
-  }
   /// Position of a point at infinity in this direction (camera space).
   std::optional<RasterPoint> project_direction(Vec3d direction) const {
     const double w = dot(w_, direction);

@@ -21,10 +21,8 @@ KeyView::KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCame
 }
 
 void WantedPoints::place(const FrameCamera& camera) {
-  infinite = false;
   for (std::size_t i = 0; i < count; ++i) {
     const bool far = !(face[i].depth < INFINITY);
-    infinite |= far;
     const Vec3d point = camera.unproject(at[i], far ? 1 : double(face[i].depth));
     x[i] = point.x;
     y[i] = point.y;
@@ -40,70 +38,40 @@ void WantedPoints::place(const FrameCamera& camera) {
   }
 }
 
-void KeyView::place(const WantedPoints& wanted, Places& places) const {
-  std::array<double, WantedPoints::kMost> z;
-  const Affine &to_key = still_, &turn = camera_.camera_from_world();
-  for (std::size_t i = 0; i < wanted.count; ++i) {
-    const Vec3d there = to_key.point({wanted.x[i], wanted.y[i], wanted.z[i]}), world(wanted.face[i].normal);
-    const bool known = dot(world, world) > 0;
-    const Vec3d turned = turn.direction(world),
-                normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
-    const RasterPoint raster = camera_.project_or_nan(there);
-    places.x[i] = raster.x;
-    places.y[i] = raster.y;
-    z[i] = there.z;
-    places.facing[i] = known ? camera_.facing(there, normal) : 1;
-    places.magnification[i] = camera_.area_of_pixel(there, normal) / wanted.area[i];
-  }
-  for (std::size_t i = 0; i < wanted.count; ++i)
-    places.face[i] = {float(z[i]), wanted.face[i].object, wanted.face[i].normal};
-}
-
-void KeyView::place_one(const WantedPoints& wanted, std::size_t i, Places& places) const {
+KeyView::Place KeyView::place(const WantedPoints& wanted, std::size_t i) const {
   const FacePoint& point = wanted.face[i];
   const bool moves = point.object < moved_.size(), infinite = !(point.depth < INFINITY);
   const Affine& to_key = moves ? moved_[point.object] : still_;
   const Vec3d at{wanted.x[i], wanted.y[i], wanted.z[i]}, there = infinite ? to_key.direction(at) : to_key.point(at);
-  const auto raster = infinite ? camera_.project_direction(there) : camera_.project(there);
-  places.x[i] = raster ? raster->x : NAN;
-  places.y[i] = raster ? raster->y : NAN;
-  places.face[i] = {infinite ? INFINITY : float(there.z), point.object, point.normal};
-  places.facing[i] = places.magnification[i] = 1;
-  if (infinite) return;
+  Place place{infinite ? camera_.project_direction(there) : camera_.project(there),
+              {infinite ? INFINITY : float(there.z), point.object, point.normal}};
+  if (infinite) return place;
   Vec3d normal{0, 0, 1};  // in the key's camera space; if unknown, towards the camera
   if (length2(point.normal) > 0) {
     if (moves && motions_.of(point.object).kind == ObjectMotion::Kind::moved)
-      places.face[i].normal = Vec3(normalize(motions_.of(point.object).other_from_here.normal(Vec3d(point.normal))));
-    normal = camera_.camera_from_world().direction(Vec3d(places.face[i].normal));
-    places.facing[i] = camera_.facing(there, normal);
+      place.face.normal = Vec3(normalize(motions_.of(point.object).other_from_here.normal(Vec3d(point.normal))));
+    normal = camera_.camera_from_world().direction(Vec3d(place.face.normal));
+    place.facing = camera_.facing(there, normal);
   }
-  places.magnification[i] = camera_.area_of_pixel(there, normal) / wanted.area[i];
+  place.magnification = camera_.area_of_pixel(there, normal) / wanted.area[i];
+  return place;
 }
 
 void KeyView::find(const WantedPoints& wanted, FoundPoints& found) const {
-  Places places;
-  const bool all_alike = !wanted.infinite && moved_.empty();
-  if (all_alike) place(wanted, places);
   const SeenSurfaces& seen = key_.seen();
   const float pixel = camera_.orthographic() ? 0 : float(camera_.pixel_width());
   for (std::size_t i = 0; i < wanted.count; ++i) {
-    if (!all_alike) {
-      const std::uint32_t object = wanted.face[i].object;
-      if (object < moved_.size()) {
-        const ObjectMotion::Kind kind = motions_.of(object).kind;
-        if (kind == ObjectMotion::Kind::deforming || kind == ObjectMotion::Kind::absent) {
-          found.result[i] = kind == ObjectMotion::Kind::deforming ? LookUp::deforming : LookUp::hidden;
-          continue;
-        }
-      }
-      place_one(wanted, i, places);
+    const ObjectMotion::Kind kind = motions_.of(wanted.face[i].object).kind;
+    if (kind == ObjectMotion::Kind::deforming || kind == ObjectMotion::Kind::absent) {
+      found.result[i] = kind == ObjectMotion::Kind::deforming ? LookUp::deforming : LookUp::hidden;
+      continue;
     }
-    found.magnification[i] = float(places.magnification[i]);
-    const double x = places.x[i], y = places.y[i];
-    if (!(x >= 0 && y >= 0 && x < seen.width && y < seen.height)) found.result[i] = LookUp::outside;
-    else
+    const Place place = this->place(wanted, i);
+    found.magnification[i] = float(place.magnification);
+    found.result[i] = LookUp::outside;
+    if (const auto& at = place.at; at && at->x >= 0 && at->y >= 0 && at->x < seen.width && at->y < seen.height)
       found.result[i] =
-          gather(x - 0.5, y - 0.5, places.face[i], depth_tolerance(pixel, float(places.facing[i])), found.taps[i]);
+          gather(at->x - 0.5, at->y - 0.5, place.face, depth_tolerance(pixel, float(place.facing)), found.taps[i]);
   }
 }
 

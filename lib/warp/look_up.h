@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lib/warp/key_frame.h"
@@ -34,9 +35,8 @@ struct WantedPoints {
   std::array<FacePoint, kMost> face;  ///< the surface there
   std::array<double, kMost> x, y, z;  ///< the point in the target camera's space; at infinity: its direction
   std::array<double, kMost> area;     ///< FrameCamera::area_of_pixel() there
-  bool infinite = false;              ///< true if any of the points is at infinity
 
-  /// Computes x, y, z, area and infinite from `at` and `face`.
+  /// Computes x, y, z and area from `at` and `face`.
   void place(const FrameCamera& camera);
 };
 
@@ -71,16 +71,13 @@ class KeyView {
   const KeyFrame& key() const { return key_; }
 
  private:
-  /// Positions of points in the key, and the surfaces expected there.
-  struct Places {
-    std::array<double, WantedPoints::kMost> x, y;  ///< raster position; NaN: not in front of the camera
-    std::array<double, WantedPoints::kMost> magnification, facing;
-    std::array<FacePoint, WantedPoints::kMost> face;  ///< in world space at the key's frame
+  /// Where a point is in the key, and the surface that the key must show there.
+  struct Place {
+    std::optional<RasterPoint> at;  ///< empty: not in front of the camera
+    FacePoint face;                 ///< in world space at the key's frame
+    double facing = 1, magnification = 1;
   };
-  /// Places all points, which must be static and not at infinity.
-  void place(const WantedPoints& wanted, Places& places) const;
-  /// Places one point of any kind.
-  void place_one(const WantedPoints& wanted, std::size_t i, Places& places) const;
+  Place place(const WantedPoints& wanted, std::size_t i) const;
   /// Finds the pixels around a position that show the face. (cx, cy) is counted in pixels from the first pixel's
   /// centre.
   LookUp gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const;
