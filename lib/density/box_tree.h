@@ -8,17 +8,17 @@
 
 namespace tempolux {
 
-/// The tree that a search descends. The caller orders the leaves: each aligned block of 8^j leaves is one subtree.
+/// A tree of boxes. The caller orders the leaves: each aligned block of 8^j leaves is one subtree.
 struct BoxTree {
   static constexpr std::size_t kChildren = 8;
-  /// Boxes of the children. Level 0 has leaves as children; child c of node j is number 8 j + c of the level below.
-  /// Boxes of missing children are NaN, for which every comparison is false.
+  /// The boxes of a node's children. The children of level 0 are leaves. Child c of node j is number 8 j + c of the
+  /// level below. Boxes of missing children are NaN, for which every comparison is false.
   struct alignas(64) Node {
     float lower[3][kChildren], upper[3][kChildren];
   };
 
   BoxTree() = default;
-  /// One box for each leaf, at least one.
+  /// `leaves`: one box for each leaf, at least one.
   explicit BoxTree(std::vector<Box3> leaves);
 
   std::size_t level_count() const { return level_start.size(); }

@@ -13,14 +13,16 @@ namespace {
 /// The grid starts an irrational part of an edge away from the origin. Surfaces often lie at round coordinates; if
 /// the border of two cubes did, too, rounding would distribute the surface's records over both cubes.
 constexpr double kShift = 0.38196601125;  // 2 - golden ratio
-/// A cell whose area comes from the hull keeps all light if it has fewer records. With eight records the estimated area
-/// is wrong by half (rms; measured in tests/lib/density/split_light_test.cpp), which is too uncertain to call a cell
-/// bright.
+/// If a cell's area comes from the hull and the cell has fewer records than this, it keeps all light. With eight
+/// records the relative error of the area is one half (rms; measured in tests/lib/density/split_light_test.cpp), which
+/// is too uncertain to call a cell bright.
 constexpr std::uint64_t kFewest = 8;
-constexpr std::size_t kPlaces = 16384;
 /// Records per cell. If areas come from hulls, fewer records underestimate the area: on S3 (frame 1, 200 000 paths, lit
 /// area 144 m^2) the cells' areas add up to 53, 86, 125 and 138 m^2 with 11, 34, 114 and 380 records on average.
-constexpr double kRecordsPerCell = 256;
+constexpr std::size_t kRecordsPerCell = 256;
+/// Records that CellEdge keeps. They fill 64 cells, so the number of cells, and with it the edge squared, has an error
+/// of about 1 / sqrt(64) = 12 %: less than a step of CellEdge::edge(), which is 41 % of the edge squared.
+constexpr std::size_t kPlaces = 64 * kRecordsPerCell;
 
 int axis_of(Vec3 normal) {
   const Vec3 size{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
@@ -61,7 +63,7 @@ void FluxCells::add(const CellPlace& place, const std::array<float, 3>& flux) {
     return at - std::floor(at);
   };
   cell.hull.add(within((axis + 1) % 3), within((axis + 2) % 3));
-  // The largest component of a unit vector is at least 1 / sqrt(3).
+  // The largest component of a unit vector is at least 1 / sqrt(3) = 0.577.
   cell.slant += std::uint64_t(65536.0 / std::max(0.577, double(std::abs(place.normal[axis]))));
 }
 
@@ -89,7 +91,7 @@ void FluxCells::close(double limit) {
   for (const Figures& f : all) {
     const double kept = limit * mean_irradiance() * f.area;
     const bool unknown = limit > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
-    // If limit or mean are infinite, inf - inf and 0 * inf give NaN: the cell then keeps all light.
+    // If limit or mean are infinite, `kept` may be NaN (0 * inf): the cell then keeps all light.
     f.cell->low_share = unknown || !(kept < f.flux) ? 1 : kept / f.flux;
     bright_ += f.cell->low_share < 1;
   }
@@ -111,7 +113,7 @@ void CellEdge::add(Vec3 position) {
   if (places_.size() >= 2 * kPlaces) trim();
 }
 
-/// Keeps the smallest hashes; later records with larger hashes are ignored.
+/// Keeps the places with the smallest hashes. Later records with larger hashes are ignored.
 void CellEdge::trim() {
   const auto middle = places_.begin() + std::ptrdiff_t(kPlaces - 1);
   std::nth_element(places_.begin(), middle, places_.end(),
@@ -131,8 +133,8 @@ double CellEdge::edge() const {
   if (kept.places_.size() < 2) return 1;
   double edge = double(max_component(bounds.upper - bounds.lower));
   if (!(edge > 0)) return 1;  // -0 and 0 are the same position
-  // Starts with all records in one cell and shrinks the edge by a quarter of an octave until a cell holds the wanted
-  // number of the kept records.
+  // Starts with all records in one cell and divides the edge by 2^(1/4) until a cell holds the wanted number of the
+  // kept records on average.
   for (int step = 0; step < 100; ++step, edge *= 0.8408964152537145) {  // 2^(-1/4)
     std::set<std::array<std::int64_t, 3>> cells;
     for (const Place& place : kept.places_) {
@@ -140,7 +142,7 @@ double CellEdge::edge() const {
       for (int a = 0; a < 3; ++a) cube[std::size_t(a)] = std::int64_t(std::floor(grid_of(place.position[a], edge)));
       cells.insert(cube);
     }
-    if (double(records) <= kRecordsPerCell * double(cells.size())) break;
+    if (records <= kRecordsPerCell * cells.size()) break;
   }
   // On surfaces the number of records in a cell grows with the square of its edge.
   return std::max(edge * std::sqrt(double(records) / double(total_)), 1e-30);

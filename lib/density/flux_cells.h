@@ -13,32 +13,35 @@
 
 namespace tempolux {
 
-/// Position, normal and object of a record, by which it belongs to a cell.
+/// Position, normal and object of a record. They decide to which cell the record belongs.
 struct CellPlace {
   Vec3 position;             ///< m
   Vec3 normal;               ///< unit, on the lit side
   std::uint16_t object = 0;  ///< id.object
 };
 
-inline constexpr double kBrightLimit = 4;  ///< a cell keeps at most this multiple of the mean irradiance
+/// A cell keeps at most this multiple of the mean irradiance. With half of the value gathering has the same variance at
+/// 1.1 times the CPU seconds, with a quarter at 1.3 times (docs/notebook/split.md).
+inline constexpr double kBrightLimit = 4;
 
-/// Cells of one edge length. Records belong to one cell if their positions are in the same cube of a grid, they lie on
-/// the same object, and their normals are closest to the same of the six axes. Each cell sums the flux of its records
-/// [W] exactly, so that no result depends on their order.
+/// Cells of one edge length, which sum the flux of records (photons or irradiance points). Two records belong to one
+/// cell if their positions are in the same cube of a grid, they lie on the same object, and their normals are closest
+/// to the same of the six axis directions. The sums [W] are exact, so that no result depends on the order of the
+/// records.
 class FluxCells {
  public:
-  /// `edge`: m, > 0. `area_of_record`: area that each record represents, m^2. 0: unknown; a cell's area is then the
-  /// area of the convex hull of its records' positions, projected along its axis (PlanarHull).
+  /// `edge`: m, > 0. `area_of_record`: area that each record represents, m^2. If it is 0 the area is unknown: a cell
+  /// then estimates its area from the convex hull of its records' positions (PlanarHull).
   FluxCells(double edge, double area_of_record);
 
-  /// First pass: adds a record with this flux [W], times its reflectance if known. The flux must be finite; its
-  /// magnitude counts.
+  /// First pass: adds a record with this flux [W], which must be finite; its magnitude counts. If the reflectance of
+  /// the surface is known, the caller multiplies the flux by it.
   void add(const CellPlace& place, const std::array<float, 3>& flux);
-  /// Ends the first pass: computes the share of its light that each cell keeps. A cell keeps at most `limit` >= 0 times
-  /// the mean irradiance.
+  /// Ends the first pass: computes the share of light that each cell keeps. A cell keeps at most `limit` >= 0 times the
+  /// mean irradiance.
   void close(double limit);
 
-  /// Second pass: the share in [0, 1] of a record's light that stays in the low part; 1 if its cell got no record.
+  /// Second pass: the share in [0, 1] of a record's light that stays in the low part; 1 if the cell has no records.
   double low_share(const CellPlace& place) const;
 
   std::size_t size() const { return cells_.size(); }
@@ -61,7 +64,7 @@ class FluxCells {
   struct Cell {
     std::array<WindowSum, 3> flux;
     std::uint64_t count = 0;
-    std::uint64_t slant = 0;  ///< sum of 1 / |cosine of the normal to the axis|, in units of 2^-16
+    std::uint64_t slant = 0;  ///< sum over records of 1 / |cosine between normal and axis|, in units of 2^-16
     PlanarHull hull;
     double low_share = 1;
   };
@@ -75,12 +78,12 @@ class FluxCells {
 };
 
 /// Finds the edge of cells that hold 256 records each on average: on surfaces, squares 16 mean distances wide. Keeps
-/// 16384 records, those whose positions have the smallest hashes, so that memory is bounded and the order of records
-/// does not matter.
+/// only the 16384 records whose positions have the smallest hashes, so that memory is bounded and the result does not
+/// depend on the order of the records.
 class CellEdge {
  public:
   void add(Vec3 position);
-  /// m, > 0. 1 if there are no records or all are at one point.
+  /// m, > 0. 1 if there are no records or all records are at one point.
   double edge() const;
 
  private:

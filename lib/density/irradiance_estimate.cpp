@@ -3,28 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 namespace tempolux {
 namespace {
-
-void require_valid(const IrradianceOptions& options) {
-  if (options.neighbours < 2 || options.neighbours > kMaxNeighbours)
-    throw std::invalid_argument("irradiance estimate: neighbours must be 2 to 512");
-  if (!(options.max_radius > 0)) throw std::invalid_argument("irradiance estimate: max_radius must be > 0");
-  if (!(options.min_radius >= 0)) throw std::invalid_argument("irradiance estimate: min_radius must be >= 0");
-  if (!(options.flattening >= 1 && std::isfinite(options.flattening)))
-    throw std::invalid_argument("irradiance estimate: flattening must be finite and >= 1");
-}
-
-PhotonQuery make_query(Vec3 point, Vec3 normal, const IrradianceOptions& options) {
-  return {.point = point,
-          .normal = normal,
-          .max_radius = options.max_radius,
-          .min_cos = options.min_cos,
-          .flattening = options.flattening,
-          .kinds = options.kinds};
-}
 
 Rgbd sum_flux(const PhotonIndex& index, std::span<const std::uint32_t> photons) {
   Rgbd sum;
@@ -36,18 +19,14 @@ IrradianceEstimate divide_by_disc(Rgbd flux, double radius2, std::size_t count) 
   return {flux / (std::numbers::pi * radius2), float(std::sqrt(radius2)), std::uint32_t(count)};
 }
 
-IrradianceEstimate estimate_within(const PhotonIndex& index, PhotonQuery query, float radius, NeighbourList& scratch) {
-  query.max_radius = radius;
-  index.find_within(query, scratch);
-  return divide_by_disc(sum_flux(index, scratch.photons()), double(radius) * radius, scratch.count());
-}
-
 }  // namespace
 
 IrradianceEstimate estimate_irradiance(const PhotonIndex& index, Vec3 point, Vec3 normal,
                                        const IrradianceOptions& options, NeighbourList& scratch) {
-  require_valid(options);
-  const PhotonQuery query = make_query(point, normal, options);
+  if (options.neighbours < 2 || options.neighbours > kMaxNeighbours)
+    throw std::invalid_argument("irradiance estimate: neighbours must be 2 to 512");
+  if (!(options.max_radius > 0)) throw std::invalid_argument("irradiance estimate: max_radius must be > 0");
+  PhotonQuery query{point, normal, options.max_radius, kMinCos, kFlattening};
   index.find_nearest(query, options.neighbours, scratch);
   const std::span<const std::uint32_t> photons = scratch.photons();
   if (photons.size() < std::size_t(options.neighbours)) {
@@ -55,15 +34,17 @@ IrradianceEstimate estimate_irradiance(const PhotonIndex& index, Vec3 point, Vec
     if (!std::isfinite(radius)) return {};
     return divide_by_disc(sum_flux(index, photons), radius * radius, photons.size());
   }
-  const float radius_floor = std::min(std::max(options.min_radius, index.resolution()), options.max_radius);
+  const float least_radius = std::min(index.resolution(), options.max_radius);
   const std::size_t kth = scratch.farthest();
   const double radius2 = scratch.distance2()[kth];
-  if (radius2 > double(radius_floor) * radius_floor) {
+  if (radius2 > double(least_radius) * least_radius) {
     const Rgbd flux = sum_flux(index, photons.first(kth)) + sum_flux(index, photons.subspan(kth + 1));
     return divide_by_disc(flux, radius2, photons.size() - 1);
   }
-  if (!(radius_floor > 0)) return {};
-  return estimate_within(index, query, radius_floor, scratch);
+  if (!(least_radius > 0)) return {};
+  query.max_radius = least_radius;
+  index.find_within(query, scratch);
+  return divide_by_disc(sum_flux(index, scratch.photons()), double(least_radius) * least_radius, scratch.count());
 }
 
 }  // namespace tempolux

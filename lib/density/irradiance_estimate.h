@@ -1,20 +1,20 @@
 // lib/density/irradiance_estimate.h -- estimates irradiance from photons by density estimation.
 #pragma once
 
-#include <span>
-
 #include "lib/density/photon_index.h"
 
 namespace tempolux {
 
+/// Ratio of the axes of the ellipsoid in which density estimates search photons. The short axis is along the normal, so
+/// that photons on a parallel surface close by are left out.
+inline constexpr float kFlattening = 10;
+/// Smallest cosine between the normals of a place and of a photon or surface that counts there (84 degrees): photons
+/// on the other side of a thin wall do not count.
+inline constexpr float kMinCos = 0.1f;
+
 struct IrradianceOptions {
   int neighbours = 50;                                        ///< k, 2 .. kMaxNeighbours
-  float max_radius = std::numeric_limits<float>::infinity();  ///< m, > 0; photons beyond it are not used
-  float min_radius = 0;  ///< m; the estimate's radius is at least this and the index's resolution
-  /// Least cosine between the photon's normal and the point's: separates the two sides of a thin wall.
-  float min_cos = 0.1f;
-  float flattening = 10;  ///< ratio of the ellipsoid's axes; it is thin along the normal (photon_index.h)
-  std::uint8_t kinds = kAllKinds;
+  float max_radius = std::numeric_limits<float>::infinity();  ///< m, > 0; photons farther away are not used
 };
 
 struct IrradianceEstimate {
@@ -23,17 +23,18 @@ struct IrradianceEstimate {
   std::uint32_t count = 0;  ///< number of photons in the sum
 };
 
-/// Irradiance at a surface point from the k nearest photons that pass the options' tests:
+/// Irradiance at a surface point from the k nearest photons whose normals pass kMinCos, at distances in the metric of
+/// the ellipsoid (PhotonQuery):
 ///
 ///     E  =  ( sum of flux over the k-1 nearest )  /  ( pi r_k^2 )      if r_min < r_k <= R
 ///     E  =  ( sum of flux over all within R )     /  ( pi R^2 )        if fewer than k are within R
 ///     E  =  ( sum of flux over all within r_min ) /  ( pi r_min^2 )    if r_k <= r_min
 ///
-/// R is max_radius; r_min is the larger of min_radius and the index's resolution, but at most R. The rule is unbiased
-/// for photons of uniform density: in a shrinking disc (photons inside) / area is a martingale, and each of the three
-/// cases stops it at a time that depends only on photons outside the disc. Without photons, E = 0. With fewer than k
-/// photons and no max_radius there is no area to divide by: E = 0, radius 0 (also if all photons are at the origin and
-/// min_radius is 0). Sums are in double, in the index's order: the same bits whatever `scratch` was used for.
+/// R is max_radius; r_min is the index's resolution, but at most R. The rule is unbiased for photons of uniform
+/// density: in a shrinking disc (photons inside) / area is a martingale, and each of the three cases stops the disc at
+/// a time that depends only on photons outside the disc. Without photons, E = 0. With fewer than k photons and no
+/// max_radius there is no area to divide by: E = 0, radius 0 (also if all photons are at the origin). Sums are in
+/// double, in the index's order: the same bits whatever `scratch` was used for.
 ///
 ///     point    m, in the photons' space
 ///     normal   unit, on the side whose irradiance is estimated

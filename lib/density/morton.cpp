@@ -14,9 +14,9 @@ constexpr std::size_t kCodeChunk = 1 << 14;
 
 /// How coordinates become cells, and how the bits of cells are interleaved in the code.
 struct CurveLayout {
-  Vec3 lower, scale;  // cell = (p - lower) * scale
+  Vec3 lower, scale;  // the cell's number along an axis is (p - lower) * scale, rounded down
   std::array<float, 3> last_cell{};
-  std::array<std::uint32_t, 3> bits{};  // positions of the axis' bits in the code
+  std::array<std::uint32_t, 3> bits{};  // by axis: mask of the code's bits that belong to the axis
 
   explicit CurveLayout(const Box3& box) : lower(box.lower) {
     const Vec3 extent = box.upper - box.lower;

@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// For each 8-bit mask the numbers of the set lanes, lowest first.
+/// For each mask of eight lanes: the numbers of the lanes whose bits are set, lowest first.
 inline constexpr auto kCompressLanes = [] {
   std::array<std::array<std::uint8_t, 8>, 256> table{};
   for (std::size_t mask = 0; mask < 256; ++mask) {
@@ -22,21 +22,23 @@ inline constexpr auto kCompressLanes = [] {
   return table;
 }();
 
-/// Places that a list needs after its last entry, so that whole vectors can be stored.
+/// Number of places that a list needs after its last entry, because append() stores whole vectors.
 inline constexpr std::size_t kListSlack = 8;
 
-/// A list of (squared distance, photon) in two arrays that the caller owns.
+/// A number that sorts photons by squared distance (>= 0, not NaN), then by index.
+inline std::uint64_t distance_key(float distance2, std::uint32_t photon) {
+  return std::uint64_t(std::bit_cast<std::uint32_t>(distance2)) << 32 | photon;
+}
+
+/// A list of photons (index and squared distance) in two arrays that the caller owns.
 struct CandidateList {
   float* distance2;
   std::uint32_t* photon;
   std::size_t count = 0;
 
-  /// Sorts by squared distance, then by photon.
-  std::uint64_t key(std::size_t i) const {
-    return std::uint64_t(std::bit_cast<std::uint32_t>(distance2[i])) << 32 | photon[i];
-  }
+  std::uint64_t key(std::size_t i) const { return distance_key(distance2[i], photon[i]); }
 
-  /// Appends the lanes set in `mask`.
+  /// Appends the lanes whose bits are set in `mask`.
   void append(__m256 d2, __m256i photons, unsigned mask) {
     const __m256i lanes =
         _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(kCompressLanes[mask].data())));
@@ -46,8 +48,8 @@ struct CandidateList {
   }
 };
 
-/// Keeps the k nearest entries (1 <= k <= count) by key(), in list order; returns the place of the farthest one.
-/// Distances must be >= 0 and not NaN. `keys`: memory.
+/// Keeps the k nearest entries (1 <= k <= count) by key(), in list order; returns the place of the farthest one. `keys`
+/// is memory for the selection.
 std::size_t keep_nearest(CandidateList& list, std::size_t k, std::vector<std::uint64_t>& keys);
 
 }  // namespace tempolux

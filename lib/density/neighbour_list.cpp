@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-/// Larger buckets are sorted by std::sort.
+/// If a bucket is larger than this, std::sort takes the place of insertion sort.
 constexpr std::uint32_t kFullBucket = 16;
 
 }  // namespace
@@ -24,8 +24,9 @@ NeighbourList::Guess& NeighbourList::guess_for(const PhotonIndex& index, int k) 
 void NeighbourList::sort_by_distance() {
   if (count_ < 2) return;
   farthest_ = count_ - 1;
-  // Squared distances on a surface are uniformly distributed, so one bucket per entry almost sorts them, and insertion
-  // sort finishes. If they are not, buckets fill up and std::sort is used.
+  // Squared distances on a surface are uniformly distributed, so sorting them into one bucket per entry almost sorts
+  // the list, and insertion sort finishes. Where the distances are not uniform a bucket fills up, and std::sort is
+  // used.
   const CandidateList list{distance2_.data(), photon_.data(), count_};
   const float largest = *std::max_element(distance2_.begin(), distance2_.begin() + std::ptrdiff_t(count_));
   const float scale = float(count_) / largest;

@@ -11,13 +11,15 @@
 
 namespace tempolux {
 
-/// A photon during the construction of the tree.
 struct PhotonIndex::Item {
   float position[3];
   std::uint32_t source;
 };
 
 namespace {
+
+using Item = PhotonIndex::Item;
+constexpr std::size_t kLeafSize = PhotonIndex::kLeafSize;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kChunk = 1 << 14;
@@ -34,35 +36,35 @@ std::unique_ptr<T[]> room_for(std::size_t count) {
   return room;
 }
 
-/// Partitions items around the n-th by coordinate, ties by source: the two halves as sets do not depend on the method.
-template <int axis, class Item>
+/// Partitions items around the n-th by coordinate. Equal coordinates are ordered by source, so the two halves do not
+/// depend on the method.
+template <int axis>
 void select(std::span<Item> items, std::size_t n) {
   std::nth_element(items.begin(), items.begin() + std::ptrdiff_t(n), items.end(), [](const Item& a, const Item& b) {
     return a.position[axis] < b.position[axis] || (a.position[axis] == b.position[axis] && a.source < b.source);
   });
 }
 
-template <class Item>
 Box3 box_of(const Item* first, const Item* last) {
   Box3 box;
   for (; first != last; ++first) box.add(Vec3{first->position[0], first->position[1], first->position[2]});
   return box;
 }
 
-/// Cuts the range's box across its longest side. The left part gets a power of two of full leaves, so that any aligned
-/// block of 2^j leaves is a subtree. False: the range is one leaf, sorted by source and finished.
-template <class Item>
-bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& left, Range& right) {
+/// Cuts a range of items across the longest side of its box. The left part gets full leaves, as many as the largest
+/// power of two below their number, so that any aligned block of 2^j leaves is a subtree. Returns false if the range is
+/// one leaf, which is then sorted by source.
+bool split(std::span<Item> items, Range range, Range& left, Range& right) {
   Item* const first = items.data() + range.first;
   Item* const last = items.data() + range.last;
-  const std::size_t leaves = (range.last - range.first + leaf_size - 1) / leaf_size;
+  const std::size_t leaves = (range.last - range.first + kLeafSize - 1) / kLeafSize;
   if (leaves <= 1) {
     std::sort(first, last, [](const Item& a, const Item& b) { return a.source < b.source; });
     return false;
   }
   const Box3 box = box_of(first, last);
   const Vec3 extent = box.upper - box.lower;
-  const std::size_t mid = range.first + std::bit_ceil(leaves) / 2 * leaf_size;
+  const std::size_t mid = range.first + std::bit_ceil(leaves) / 2 * kLeafSize;
   const std::span<Item> cut = items.subspan(range.first, range.last - range.first);
   if (extent.x >= extent.y && extent.x >= extent.z) select<0>(cut, mid - range.first);
   else if (extent.y >= extent.z) select<1>(cut, mid - range.first);
@@ -72,33 +74,30 @@ bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& lef
   return true;
 }
 
-template <class Item>
-void split_to_leaves(std::span<Item> items, std::size_t leaf_size, Range range) {
+void split_to_leaves(std::span<Item> items, Range range) {
   Range left, right;
-  if (!split(items, leaf_size, range, left, right)) return;
-  split_to_leaves(items, leaf_size, left);
-  split_to_leaves(items, leaf_size, right);
+  if (!split(items, range, left, right)) return;
+  split_to_leaves(items, left);
+  split_to_leaves(items, right);
 }
 
-/// Sorts items into tree order: the first levels range by range, then many subtrees in parallel.
-template <class Item>
-void order_as_tree(std::span<Item> items, std::size_t leaf_size) {
+/// Sorts items into tree order: splits the first levels one after another, then all subtrees in parallel.
+void order_as_tree(std::span<Item> items) {
   std::vector<Range> ranges{{0, items.size()}};
   for (int level = 0; level < 7; ++level) {
     std::vector<Range> halves(2 * ranges.size(), Range{0, 0});
-    parallel_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t) {
-      split(items, leaf_size, ranges[i], halves[2 * i], halves[2 * i + 1]);
-    });
+    parallel_chunks(ranges.size(), 1,
+                    [&](std::size_t i, std::size_t) { split(items, ranges[i], halves[2 * i], halves[2 * i + 1]); });
     std::erase_if(halves, [](const Range& r) { return r.first == r.last; });
     ranges = std::move(halves);
   }
-  parallel_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t) { split_to_leaves(items, leaf_size, ranges[i]); });
+  parallel_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t) { split_to_leaves(items, ranges[i]); });
 }
 
-/// Encodes a photon's normal with ten bits per component (signed, 511 is 1) and its kind with two.
+/// Encodes a photon's normal with ten bits per component (signed, 511 is 1).
 std::uint32_t filter_code(const formats::Photon& photon) {
   const std::array<float, 3> n = formats::decode_normal(photon.normal);
-  std::uint32_t code = std::uint32_t(photon.kind) << 30;
+  std::uint32_t code = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int step = int(std::rint(std::clamp(n[axis], -1.0f, 1.0f) * 511));
     code |= (std::uint32_t(step) & 0x3ff) << (10 * axis);
@@ -106,7 +105,7 @@ std::uint32_t filter_code(const formats::Photon& photon) {
   return code;
 }
 
-/// Decodes a component of the normal, in 1/511.
+/// Decodes a component of a normal, in units of 1/511.
 float coded(std::uint32_t code, int axis) { return float(std::int32_t(code << (22 - 10 * axis)) >> 22); }
 
 }  // namespace
@@ -137,8 +136,8 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
     }
   });
   resolution_ = *std::max_element(largest.begin(), largest.end()) * 0x1p-22f;
-  order_as_tree(std::span<Item>(items.get(), size_), kLeafSize);
-  build_leaves(photons, std::span<const Item>(items.get(), size_));
+  order_as_tree({items.get(), size_});
+  build_leaves(photons, {items.get(), size_});
   build_tree();
 }
 
@@ -148,7 +147,6 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
   filters_ = room_for<LeafFilter>(leaf_count_);
   flux_ = room_for<Rgb>(size_);
   source_ = room_for<std::uint32_t>(size_);
-  object_ = room_for<std::uint16_t>(size_);
   parallel_each(leaf_count_ * kLeafSize, kChunk, [&](std::size_t i) {
     Leaf& leaf = leaves_[i / kLeafSize];
     const std::size_t lane = i % kLeafSize;
@@ -161,7 +159,6 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
     if (!photon) return;
     flux_[i] = rgb_of(photon->flux);
     source_[i] = items[i].source;
-    object_[i] = photon->object;
   });
 }
 
@@ -176,10 +173,6 @@ void PhotonIndex::build_tree() {
   });
   tree_ = BoxTree(std::move(places));
   normals_ = BoxTree(std::move(normals));
-}
-
-formats::PathKind PhotonIndex::kind(std::size_t i) const {
-  return formats::PathKind(filters_[i / kLeafSize].code[i % kLeafSize] >> 30);
 }
 
 Vec3 PhotonIndex::normal(std::size_t i) const {

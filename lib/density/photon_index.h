@@ -18,7 +18,7 @@
 
 namespace tempolux {
 
-/// One bit per kind of photon; a mask of kinds combines them.
+/// The bit of a kind of photon; a mask of kinds is the sum of its bits.
 constexpr std::uint8_t kind_bit(formats::PathKind kind) { return std::uint8_t(1u << std::uint8_t(kind)); }
 inline constexpr std::uint8_t kAllKinds = 0x0f;
 inline constexpr float kAnyNormal = -2;  ///< value of PhotonQuery::min_cos that disables the test of normals
@@ -26,7 +26,7 @@ inline constexpr int kMaxNeighbours = 512;
 
 /// A query. A photon passes if
 ///
-///     distance <= max_radius   and   dot(n_photon, normal) > min_cos   and   kind in kinds.
+///     distance <= max_radius   and   dot(n_photon, normal) > min_cos.
 ///
 /// Squared distance is computed in float as d2 = dx*dx + dy*dy + dz*dz, and with flattening f != 1 as d2 + (f*f - 1)
 /// h*h, h = dot((dx,dy,dz), normal): photons are then searched in an ellipsoid in which a metre along the normal counts
@@ -37,14 +37,13 @@ struct PhotonQuery {
   float max_radius = std::numeric_limits<float>::infinity();  ///< m, >= 0
   float min_cos = kAnyNormal;  ///< photons' normals are stored with an error of 1e-3 per component
   float flattening = 1;        ///< >= 1
-  std::uint8_t kinds = kAllKinds;
 };
 
 class PhotonIndex;
 
-/// The photons found: parallel arrays of count() elements. Use one object per thread: it keeps its memory, and the
-/// radius of its last search as a first guess for the next one, which changes the speed only. Searches are fastest if
-/// successive points are close (morton_order).
+/// The photons that a search found: parallel arrays of count() elements. Use one object per thread. The object keeps
+/// its memory, and the radius of its last search as a first guess for the next search, which changes only the speed.
+/// Searches are fastest if successive points are close (morton_order).
 class NeighbourList {
  public:
   std::size_t count() const { return count_; }
@@ -52,7 +51,7 @@ class NeighbourList {
   std::span<const std::uint32_t> photons() const { return {photon_.data(), count_}; }
   /// Squared distances, m^2, in the query's metric.
   std::span<const float> distance2() const { return {distance2_.data(), count_}; }
-  /// Place in the list of the farthest photon; valid after a find_nearest that found any.
+  /// Place of the farthest photon in the list; valid after a find_nearest that found photons.
   std::size_t farthest() const { return farthest_; }
   /// Sorts the list by (distance2, photon).
   void sort_by_distance();
@@ -64,7 +63,7 @@ class NeighbourList {
   std::vector<std::uint32_t> photon_;
   std::vector<std::uint64_t> keys_;  ///< memory for selection and sorting
   std::size_t count_ = 0, farthest_ = 0;
-  /// An estimate of the squared radius that holds k photons of an index; the last few estimates are kept.
+  /// An estimate of the squared radius [m^2] within which k photons of an index lie.
   struct Guess {
     const PhotonIndex* index = nullptr;
     int k = 0;
@@ -75,11 +74,11 @@ class NeighbourList {
   std::size_t oldest_guess_ = 0;
 };
 
-/// An immutable set of photons made for look-ups. Every method is thread-safe.
+/// An immutable set of photons for searches. Every method is thread-safe.
 class PhotonIndex {
  public:
   PhotonIndex() = default;
-  /// Copies the photons of these kinds (kind_bit), 35 bytes per photon (16 more during construction); the originals are
+  /// Copies the photons of these kinds (kind_bit), 33 bytes per photon (16 more during construction); the originals are
   /// not needed afterwards. Positions are moved by `shift` [m]. The same index for any number of threads. O(n log n).
   /// Throws std::invalid_argument if a position or flux is not finite, std::length_error beyond 2^31 photons.
   explicit PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t kinds = kAllKinds, Vec3d shift = {});
@@ -94,24 +93,24 @@ class PhotonIndex {
   /// All photons that pass, by ascending index.
   void find_within(const PhotonQuery& query, NeighbourList& found) const;
 
-  // Position of one photon; i is an index (tree order), < size().
+  /// m: position of photon i < size(), in tree order.
   Vec3 position(std::size_t i) const {
     const Leaf& leaf = leaves_[i / kLeafSize];
     const std::size_t lane = i % kLeafSize;
     return {leaf.x[lane], leaf.y[lane], leaf.z[lane]};
   }
-  Rgb flux(std::size_t i) const { return flux_[i]; }  ///< W; negative in dynamic maps
-  std::uint16_t object(std::size_t i) const { return object_[i]; }
-  std::uint32_t source(std::size_t i) const { return source_[i]; }  ///< place in the span given to the constructor
-  formats::PathKind kind(std::size_t i) const;
-  Vec3 normal(std::size_t i) const;  ///< as in the test of normals: components are multiples of 1/511
+  Rgb flux(std::size_t i) const { return flux_[i]; }                ///< W; negative in dynamic maps
+  std::uint32_t source(std::size_t i) const { return source_[i]; }  ///< its index in the constructor's span
+  Vec3 normal(std::size_t i) const;  ///< as searches read it: components are multiples of 1/511
 
   /// The smallest length that positions resolve: 2^-22 of the largest coordinate, m (4 to 8 float steps).
   float resolution() const { return resolution_; }
 
+  static constexpr std::size_t kLeafSize = 32;  ///< photons of a leaf
+  struct Item;                                  ///< a photon during construction
+
  private:
   friend struct PhotonSearch;
-  static constexpr std::size_t kLeafSize = 32;
   struct alignas(64) Leaf {
     float x[kLeafSize], y[kLeafSize], z[kLeafSize];
   };
@@ -119,18 +118,17 @@ class PhotonIndex {
     std::uint32_t code[kLeafSize];
   };
 
-  struct Item;
   void build_leaves(std::span<const formats::Photon> photons, std::span<const Item> items);
   void build_tree();
 
   std::size_t size_ = 0, leaf_count_ = 0;
   std::unique_ptr<Leaf[]> leaves_;         // unused places hold NaN, for which every comparison is false
-  std::unique_ptr<LeafFilter[]> filters_;  // normal in 3 x 10 bits, kind in 2
+  std::unique_ptr<LeafFilter[]> filters_;  // normals in 3 x 10 bits
   std::unique_ptr<Rgb[]> flux_;
   std::unique_ptr<std::uint32_t[]> source_;
-  std::unique_ptr<std::uint16_t[]> object_;
   BoxTree tree_;
-  /// Boxes of the normals [1/511] in the same subtrees: a search skips subtrees whose normals all face another way.
+  /// Boxes of the normals, in units of 1/511, in the same subtrees. A search skips subtrees whose normals all fail the
+  /// test of normals.
   BoxTree normals_;
   float resolution_ = 0;
 };

@@ -4,16 +4,19 @@
 #include <cmath>
 #include <vector>
 
+#include "lib/density/irradiance_estimate.h"
+
 namespace tempolux {
 namespace {
 
+/// Photons to measure at. The share 1/kStray of photons beyond the reach is then known to sqrt(.05 x .95 / 1000) = .7
+/// %.
 constexpr std::size_t kAsked = 1000;
-constexpr std::size_t kStray = 20;  ///< one photon in this many may lie farther from its neighbours than the reach
+constexpr std::size_t kStray = 20;  ///< one photon in this many may have its neighbours farther away than the reach
 
 }  // namespace
 
-float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, float flattening,
-                   const std::function<bool(Vec3)>& where) {
+float photon_reach(const PhotonIndex& index, int neighbours, const std::function<bool(Vec3)>& where) {
   if (index.size() == 0) return 0;
   std::vector<std::size_t> meant;
   for (std::size_t i = 0; where && i < index.size(); ++i)
@@ -24,13 +27,9 @@ float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, floa
   std::vector<float> distance2;
   for (std::size_t j = 0; j < count; j += step) {
     const std::size_t i = meant.empty() ? j : meant[j];
-    PhotonQuery query;
-    query.point = index.position(i);
-    query.normal = index.normal(i);
-    query.min_cos = min_cos;
-    query.flattening = flattening;
     // One more, since a photon finds itself.
-    index.find_nearest(query, std::min(neighbours + 1, kMaxNeighbours), found);
+    index.find_nearest({index.position(i), index.normal(i), INFINITY, kMinCos, kFlattening},
+                       std::min(neighbours + 1, kMaxNeighbours), found);
     if (found.count() > 0) distance2.push_back(found.distance2()[found.farthest()]);
   }
   if (distance2.empty()) return index.resolution();

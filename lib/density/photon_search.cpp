@@ -10,23 +10,22 @@
 namespace tempolux {
 namespace {
 
-/// Factor from this search's squared radius to the next one's first guess. If the guess is too small the search runs
+/// Ratio of the next search's first guess to this search's squared radius. If the guess is too small the search runs
 /// twice; if it is too large the search visits many photons in vain. 1.2 and 2 are 5 to 10 % slower.
 constexpr float kGuessFactor = 1.5f;
 
 }  // namespace
 
-/// One search. Bounds are exact: a box's distance is computed with the same roundings as a photon's, and rounding is
-/// monotonic, so it is never above the distance of a photon inside.
+/// One search. A box's distance is computed with the same roundings as a photon's. Rounding is monotonic, so a box is
+/// never farther away than a photon inside it, and no photon is missed.
 struct PhotonSearch {
   static constexpr unsigned kLeafBits = 5;  // log2(kLeafSize)
   static_assert(PhotonIndex::kLeafSize == std::size_t(1) << kLeafBits);
 
-  /// A subtree: its box's squared distance (upper half, as float bits) and its first photon (lower half). All its
-  /// photons come after `last_key` if key > last_key.
+  /// A subtree. If key > last_key, all its photons sort after last_key.
   struct Entry {
-    std::uint64_t key;
-    unsigned level;  // of the node; its number follows from the first photon
+    std::uint64_t key;  ///< distance_key() of the subtree's box and its first photon
+    unsigned level;     ///< of the subtree's root node, whose number follows from the first photon
   };
   /// Subtrees still to be visited, the next one on top. A level adds at most 7, and 2^31 photons have 9 levels.
   struct Stack {
@@ -39,16 +38,12 @@ struct PhotonSearch {
       while (count-- > 0) entries[depth++] = {keys[count], level};
     }
   };
-  static std::uint64_t make_key(float d2, std::uint32_t photon) {
-    return std::uint64_t(std::bit_cast<std::uint32_t>(d2)) << 32 | photon;
-  }
 
   const PhotonIndex& index;
   NeighbourList& found;
   CandidateList list;
   __m256 px, py, pz, nx, ny, nz;
   __m256 flat_factor, min_dot;
-  __m256i kinds;
   __m256 bound;
   std::uint64_t last_key;
 
@@ -63,14 +58,13 @@ struct PhotonSearch {
         ny(_mm256_set1_ps(query.normal.y)),
         nz(_mm256_set1_ps(query.normal.z)),
         flat_factor(_mm256_set1_ps(query.flattening * query.flattening - 1)),
-        min_dot(_mm256_set1_ps(query.min_cos * 511)),
-        kinds(_mm256_set1_epi32(query.kinds)) {
+        min_dot(_mm256_set1_ps(query.min_cos * 511)) {
     set_bound(query.max_radius * query.max_radius, 0xffffffffu);
   }
 
   void set_bound(float d2, std::uint32_t photon) {
     bound = _mm256_set1_ps(d2);
-    last_key = make_key(d2, photon);
+    last_key = distance_key(d2, photon);
   }
 
   /// Reserves memory for `more` candidates after those in the list.
@@ -107,7 +101,7 @@ struct PhotonSearch {
     return _mm256_cmp_ps(cosine, min_dot, _CMP_GT_OQ);
   }
 
-  /// The lanes of eight photons that pass the tests of normal and kind.
+  /// The lanes of eight photons whose normals pass.
   __m256 filter(const std::uint32_t* codes) const {
     const __m256i code = _mm256_load_si256(reinterpret_cast<const __m256i*>(codes));
     const auto component = [code](int shift) {
@@ -116,8 +110,7 @@ struct PhotonSearch {
     const __m256 cosine =
         _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(component(22), nx), _mm256_mul_ps(component(12), ny)),
                       _mm256_mul_ps(component(2), nz));
-    const __m256i kind = _mm256_slli_epi32(_mm256_srlv_epi32(kinds, _mm256_srli_epi32(code, 30)), 31);
-    return _mm256_and_ps(_mm256_cmp_ps(cosine, min_dot, _CMP_GT_OQ), _mm256_castsi256_ps(kind));
+    return _mm256_cmp_ps(cosine, min_dot, _CMP_GT_OQ);
   }
 
   /// Appends the photons of a leaf that pass; there must be room for a whole leaf.
@@ -142,8 +135,8 @@ struct PhotonSearch {
     }
   }
 
-  /// The children of a node within the bound, nearest first (kSorted) or in tree order. Children whose normals all
-  /// face another way are left out.
+  /// Fills in the keys of a node's children within the bound, nearest first (kSorted) or in tree order, and returns
+  /// their number. Leaves out children whose normals all fail the test.
   template <bool kSorted>
   unsigned children_within(Entry entry, std::array<std::uint64_t, 8>& keys) const {
     const std::uint32_t first = std::uint32_t(entry.key);
@@ -167,6 +160,25 @@ struct PhotonSearch {
     return count;
   }
 
+  /// Visits the leaves within the bound: calls visit(first photon) for each until visit returns false.
+  template <bool kSorted, class Visit>
+  void descend(const Visit& visit) const {
+    Stack stack({0, unsigned(index.tree_.level_count()) - 1});
+    std::array<std::uint64_t, 8> keys;
+    while (!stack.empty()) {
+      const Entry entry = stack.pop();
+      if (entry.key > last_key) continue;
+      const unsigned children = children_within<kSorted>(entry, keys);
+      if (entry.level > 0) {
+        stack.push(keys, children, entry.level - 1);
+        continue;
+      }
+      for (unsigned c = 0; c < children; ++c)
+        if (keys[c] <= last_key && !visit(std::uint32_t(keys[c]))) return;
+    }
+  }
+
+  /// Drops all but the k nearest candidates and sets the bound to the farthest of them.
   void tighten(std::size_t k) {
     const std::size_t place = keep_nearest(list, k, found.keys_);
     set_bound(list.distance2[place], list.photon[place]);
@@ -176,20 +188,11 @@ struct PhotonSearch {
   /// Finds an upper bound of the k-th distance: takes the nearest subtrees until they hold k photons that pass.
   void approach(std::size_t k) {
     reserve(k + PhotonIndex::kLeafSize);
-    Stack stack(root());
-    std::array<std::uint64_t, 8> keys;
-    while (!stack.empty()) {
-      const Entry entry = stack.pop();
-      const unsigned children = children_within<true>(entry, keys);
-      if (entry.level > 0) {
-        stack.push(keys, children, entry.level - 1);
-        continue;
-      }
-      for (unsigned c = 0; c < children; ++c) {
-        scan_leaf(std::uint32_t(keys[c]));
-        if (list.count >= k) return tighten(k);
-      }
-    }
+    descend<true>([&](std::uint32_t first) {
+      scan_leaf(first);
+      return list.count < k;
+    });
+    if (list.count >= k) tighten(k);
   }
 
   /// Finds the k nearest photons within the bound, in tree order. Fast if the bound is not much too large.
@@ -197,22 +200,11 @@ struct PhotonSearch {
     const std::size_t limit = 2 * k + 32;  // number of candidates at which the bound is tightened
     reserve(limit + PhotonIndex::kLeafSize);
     list.count = 0;
-    Stack stack(root());
-    std::array<std::uint64_t, 8> keys;
-    while (!stack.empty()) {
-      const Entry entry = stack.pop();
-      if (entry.key > last_key) continue;
-      const unsigned children = children_within<false>(entry, keys);
-      if (entry.level > 0) {
-        stack.push(keys, children, entry.level - 1);
-        continue;
-      }
-      for (unsigned c = 0; c < children; ++c) {
-        if (keys[c] > last_key) continue;
-        scan_leaf(std::uint32_t(keys[c]));
-        if (list.count >= limit) tighten(k);
-      }
-    }
+    descend<false>([&](std::uint32_t first) {
+      scan_leaf(first);
+      if (list.count >= limit) tighten(k);
+      return true;
+    });
     if (list.count > 0) tighten(std::min(k, list.count));
   }
 
@@ -229,22 +221,14 @@ struct PhotonSearch {
     collect(k);
   }
 
+  /// Finds all photons within the bound, in tree order.
   void within() {
-    Stack stack(root());
-    std::array<std::uint64_t, 8> keys;
-    while (!stack.empty()) {
-      const Entry entry = stack.pop();
-      const unsigned children = children_within<false>(entry, keys);
-      if (entry.level > 0) {
-        stack.push(keys, children, entry.level - 1);
-        continue;
-      }
-      reserve(8 * PhotonIndex::kLeafSize);
-      for (unsigned c = 0; c < children; ++c) scan_leaf(std::uint32_t(keys[c]));
-    }
+    descend<false>([&](std::uint32_t first) {
+      reserve(PhotonIndex::kLeafSize);
+      scan_leaf(first);
+      return true;
+    });
   }
-
-  Entry root() const { return {0, unsigned(index.tree_.level_count()) - 1}; }
 };
 
 void PhotonIndex::find_nearest(const PhotonQuery& query, int k, NeighbourList& found) const {

@@ -13,9 +13,9 @@
 
 namespace tempolux {
 
-/// A view of photons; what it refers to must outlive it. With directions (one per photon), the flux of caustic photons
-/// excludes normal maps and coats, and the reader applies them (received_share). Without directions the flux is what a
-/// Lambert lobe receives (formats/photons/photons.md, section 5).
+/// A view of photons, which must outlive the view. If directions are stored (one per photon), the flux of caustic
+/// photons excludes normal maps and coats, and the reader applies them (received_share). Without directions the flux is
+/// the flux that the Lambert lobe receives (formats/photons/photons.md, section 5).
 struct PhotonView {
   std::span<const formats::Photon> photons;
   std::span<const std::array<std::uint16_t, 2>> directions;  ///< wi in octahedral coding; may be empty
@@ -34,7 +34,7 @@ struct PhotonView {
   }
 };
 
-/// Appends photon i of `from` as `photon`, with its direction.
+/// Appends `photon` to a block, with the direction of photon i of `from`, if directions are stored.
 inline void append(const PhotonView& from, std::size_t i, const formats::Photon& photon, formats::PhotonBlock& to) {
   to.photons.push_back(photon);
   if (from.directed()) to.directions.push_back(from.directions[i]);

@@ -7,7 +7,7 @@ namespace tempolux {
 namespace {
 
 constexpr double kSteps = 65536;
-constexpr std::size_t kKept = 64;  ///< points inside the hull that are kept before the hull is computed again
+constexpr std::size_t kKept = 64;  ///< new points after which the hull is computed again, besides the hull's number
 
 std::int32_t step(double t) { return std::int32_t(std::clamp(std::floor(t * kSteps), 0.0, kSteps - 1)); }
 

@@ -8,11 +8,11 @@
 
 namespace tempolux {
 
-/// Collects points of the unit square with 16 bits per coordinate and keeps little more than their convex hull. All
-/// arithmetic is in integers, so neither hull nor area depends on the order of the points.
+/// Collects points of the unit square with 16 bits per coordinate and keeps little more than the corners of their
+/// convex hull. All arithmetic is in integers, so neither hull nor area depends on the order of the points.
 class PlanarHull {
  public:
-  /// u and v are clamped to [0, 1).
+  /// Adds the point (u, v); both coordinates are clamped to [0, 1).
   void add(double u, double v);
   std::uint64_t count() const { return count_; }
   /// Area of the region, as a share of the unit square: the hull's area times (n + 1) / (n + 1 - corners), since the

@@ -25,13 +25,10 @@ void append(PhotonBlock& to, const PhotonBlock& from, std::size_t i, const Photo
   if (!from.albedos.empty()) to.albedos.push_back(from.albedos[i]);
 }
 
-struct DividedFlux {
-  std::array<float, 3> low, high;
-};
-DividedFlux divide_channels(const std::array<float, 3>& value, double share) {
-  DividedFlux parts{};
+Divided<std::array<float, 3>> divide_channels(const std::array<float, 3>& value, double share) {
+  Divided<std::array<float, 3>> parts;
   for (std::size_t c = 0; c < 3; ++c) {
-    const DividedValue part = divide(value[c], share);
+    const Divided<float> part = divide(value[c], share);
     parts.low[c] = part.low, parts.high[c] = part.high;
   }
   return parts;
@@ -39,10 +36,10 @@ DividedFlux divide_channels(const std::array<float, 3>& value, double share) {
 
 }  // namespace
 
-DividedValue divide(float value, double share) {
+Divided<float> divide(float value, double share) {
   if (share >= 1) return {value, 0};
   if (share <= 0) return {0, value};
-  if (!(std::abs(value) >= kLeastDivided)) return share >= 0.5 ? DividedValue{value, 0} : DividedValue{0, value};
+  if (!(std::abs(value) >= kLeastDivided)) return share >= 0.5 ? Divided<float>{value, 0} : Divided<float>{0, value};
   if (share >= 0.5) {
     const float low = float(double(value) * share);
     return {low, value - low};
@@ -79,12 +76,12 @@ void add_flux(std::span<const IrradiancePointRecord> points, double area_of_poin
   }
 }
 
-DividedPhotons divide(const PhotonBlock& block, const FluxCells& cells) {
-  DividedPhotons parts;
+Divided<PhotonBlock> divide(const PhotonBlock& block, const FluxCells& cells) {
+  Divided<PhotonBlock> parts;
   parts.low.group = parts.high.group = block.group;
   for (std::size_t i = 0; i < block.photons.size(); ++i) {
     const double share = cells.low_share(place_of(block.photons[i]));
-    const DividedFlux flux = divide_channels(block.photons[i].flux, share);
+    const auto flux = divide_channels(block.photons[i].flux, share);
     Photon part = block.photons[i];
     part.flux = flux.high;
     const bool has_high = !is_zero(flux.high);
@@ -95,15 +92,16 @@ DividedPhotons divide(const PhotonBlock& block, const FluxCells& cells) {
   return parts;
 }
 
-DividedPoints divide(std::span<const IrradiancePointRecord> points, const FluxCells& cells) {
-  DividedPoints parts;
+Divided<std::vector<IrradiancePointRecord>> divide(std::span<const IrradiancePointRecord> points,
+                                                   const FluxCells& cells) {
+  Divided<std::vector<IrradiancePointRecord>> parts;
   for (const IrradiancePointRecord& point : points) {
     const double share = cells.low_share(place_of(point));
     IrradiancePointRecord low = point, high = point;
     high.noise = {};
     for (const auto kind :
          {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect}) {
-      const DividedFlux part = divide_channels(point.*kind, share);
+      const auto part = divide_channels(point.*kind, share);
       low.*kind = part.low, high.*kind = part.high;
     }
     parts.low.push_back(low);

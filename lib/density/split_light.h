@@ -11,17 +11,19 @@
 
 namespace tempolux {
 
-struct DividedValue {
-  float low = 0, high = 0;
+/// The low and the high part of light.
+template <class T>
+struct Divided {
+  T low{}, high{};
 };
 
 /// Divides a value exactly: low + high == value without rounding; low is share * value with an error of 6e-8 of the
 /// value. share is in [0, 1]. The larger part is rounded, and the smaller part is the remainder, which a float32 holds
 /// exactly (Sterbenz). Below 2^-100 the remainder could be a denormal number, which processors flush to zero: then the
 /// larger part gets the whole value.
-DividedValue divide(float value, double share);
+Divided<float> divide(float value, double share);
 
-/// The cell position of a photon, relative to its file's origin.
+/// The place by which a photon or a point belongs to a cell; the position is relative to the file's origin.
 CellPlace place_of(const formats::Photon& photon);
 CellPlace place_of(const formats::IrradiancePointRecord& point);
 
@@ -32,27 +34,22 @@ void add_flux(std::span<const formats::IrradiancePointRecord> points, double are
 
 /// Low and high part of a block: photons in file order, without photons that have no flux in that part. A photon
 /// without any flux is always in the low part.
-struct DividedPhotons {
-  formats::PhotonBlock low, high;
-};
-DividedPhotons divide(const formats::PhotonBlock& block, const FluxCells& cells);
+Divided<formats::PhotonBlock> divide(const formats::PhotonBlock& block, const FluxCells& cells);
 
 /// The low part has all points, the high part the points with irradiance in it. All kinds of a point are divided by the
 /// same share.
-struct DividedPoints {
-  std::vector<formats::IrradiancePointRecord> low, high;
-};
-DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, const FluxCells& cells);
+Divided<std::vector<formats::IrradiancePointRecord>> divide(std::span<const formats::IrradiancePointRecord> points,
+                                                            const FluxCells& cells);
 
-/// The inverse: adds the high part to the low part, which becomes the whole to the last bit. Returns for each point the
-/// high part's share of its light, summed over kinds and channels. Empty if a point of `high` is not in `low`, or in
-/// another order.
+/// The inverse of divide(): adds the high part to the low part, which becomes the whole to the last bit. Returns for
+/// each point the high part's share of the point's light, summed over kinds and channels. The result is empty if a
+/// point of `high` is not in `low`, or if the order of the points differs.
 std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low,
                               std::span<const formats::IrradiancePointRecord> high);
 
-/// The same for photons: adds the high part's flux to the low part, which becomes the whole. Photons keep the order of
-/// the low part; those that are only in the high part come last. `low` and `high` must be the two parts of one map; the
-/// caller checks this.
+/// The inverse of divide() for photons: adds the high part's flux to the low part, which becomes the whole. Photons
+/// keep the order of the low part; photons without a low part come last. `low` and `high` must be the two parts of one
+/// map; the caller checks this.
 void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high);
 
 }  // namespace tempolux

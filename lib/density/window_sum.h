@@ -9,8 +9,9 @@
 namespace tempolux {
 
 /// Adds |x| of float32 values exactly, so that the sum does not depend on their order. All finite float32 values are
-/// multiples of 2^-149 below 2^128, so nine windows of 32 bits hold them. Holds 2^31 values. formats::ExactSum keeps
-/// signs and rounds to nearest, but takes 4 KiB, which is too much for every cell of a grid.
+/// multiples of 2^-149 below 2^128, so nine windows of 32 bits hold any value, and their 64-bit counters hold the sum
+/// of 2^31 values. formats::ExactSum keeps signs and rounds to nearest, but takes 4 KiB, too much for each cell of a
+/// grid.
 class WindowSum {
  public:
   /// `value` must be finite. Works on bits, so denormal numbers count although the processor flushes them to zero.

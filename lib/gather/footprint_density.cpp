@@ -44,7 +44,7 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
   signs_ = path_signs(photons.photons, index_);
   directed_ = photons.directed();
   if (directed_) arriving_from_.resize(index_.size());
-  if (!(options_.max_radius > 0)) options_.max_radius = photon_reach(index_, options.neighbours, kMinCos, kFlattening);
+  if (!(options_.max_radius > 0)) options_.max_radius = photon_reach(index_, options.neighbours);
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   leaves_ = std::make_unique<Leaf[]>(leaves);
   extents_ = std::make_unique<std::atomic<Extent>[]>(index_.size());
@@ -74,8 +74,7 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
 /// Distance to the k-th neighbour.
 float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const {
   const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);  // the photon finds itself, too
-  index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening, kAllKinds}, wanted,
-                      found);
+  index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening}, wanted, found);
   const float radius =
       int(found.count()) < wanted ? options_.max_radius : std::sqrt(found.distance2()[found.farthest()]);
   return std::max(std::min(radius, options_.max_radius), area_.offset());

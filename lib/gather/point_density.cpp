@@ -14,12 +14,12 @@ PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon
                            const DensityOptions& options, std::uint8_t kinds, Vec3d shift)
     : options_(options), area_(tracer), index_(photons, kinds, shift), signs_(path_signs(photons, index_)) {
   if (!(options_.max_radius > 0))
-    options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening, options_.where);
+    options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, options_.where);
 }
 
 /// The k nearest photons, or all within max_radius.
 PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList& found) const {
-  const PhotonQuery query{position, normal, options_.max_radius, kMinCos, kFlattening, kAllKinds};
+  const PhotonQuery query{position, normal, options_.max_radius, kMinCos, kFlattening};
   index_.find_nearest(query, options_.neighbours, found);
   if (found.count() == 0) return {};
   if (int(found.count()) < options_.neighbours) return {options_.max_radius, found.count()};
@@ -29,11 +29,8 @@ PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList&
 
 /// The estimate for radii that float coordinates do not resolve.
 Rgb PointDensity::plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const {
-  const IrradianceOptions options{.neighbours = options_.neighbours,
-                                  .max_radius = options_.max_radius,
-                                  .min_cos = kMinCos,
-                                  .flattening = kFlattening};
-  const IrradianceEstimate estimate = estimate_irradiance(index_, position, normal, options, found);
+  const IrradianceEstimate estimate =
+      estimate_irradiance(index_, position, normal, {options_.neighbours, options_.max_radius}, found);
   radius = estimate.radius;
   return Rgb(estimate.irradiance);
 }

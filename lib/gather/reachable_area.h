@@ -11,11 +11,7 @@
 
 namespace tempolux {
 
-inline constexpr float kFlattening =
-    IrradianceOptions{}.flattening;     ///< of the ellipsoid around a place, along its normal
 inline constexpr float kFlat = 0.005f;  ///< share of the radius: largest distance of a flat disc's rim from the plane
-inline constexpr float kMinCos =
-    IrradianceOptions{}.min_cos;  ///< smallest cosine between its normal and those of surfaces that count
 
 /// Decides whether light that falls on one place of a surface may count as light at another place.
 class Reach {

@@ -17,12 +17,12 @@ SignedDensity::SignedDensity(const Tracer& static_tracer, std::span<const format
                              const DensityOptions& options, Vec3d shift)
     : options_(options), area_(static_tracer), index_(photons, kind_bit(formats::PathKind::indirect), shift) {
   if (!(options_.max_radius > 0) && index_.size() > 0)
-    options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
+    options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours);
 }
 
 void SignedDensity::find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area,
                          NeighbourList& found) const {
-  index_.find_within({position, normal, radius, kMinCos, kFlattening, kAllKinds}, found);
+  index_.find_within({position, normal, radius, kMinCos, kFlattening}, found);
   if (found.count() == 0 || area.known) return;
   area.known = true;
   area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));

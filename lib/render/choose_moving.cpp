@@ -91,7 +91,7 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
       const SeenPlace& place = seen.places[i];
       if (!place.exists()) continue;
       gathered[i] = place.surface.surface >= frame.static_count;  // surfaces of movers come last
-      PhotonQuery query{place.surface.position, place.normal, INFINITY, 0.1f, 10, kAllKinds};
+      PhotonQuery query{place.surface.position, place.normal, INFINITY, kMinCos, kFlattening};
       fixed.find_nearest(query, kNeighbours, found);
       if (gathered[i] || found.count() == 0) continue;
       query.max_radius = std::sqrt(found.distance2()[found.farthest()]);

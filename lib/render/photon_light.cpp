@@ -59,8 +59,7 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   has_indirect_ = !options.caustic_only;
   if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
   if (!(options_.max_radius > 0) && indirect_.size() > 0)
-    options_.max_radius =
-        PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
+    options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours);
   const FootprintOptions density{
       .neighbours = options.caustic_neighbours, .max_radius = options.caustic_radius, .asked = kAsked};
   caustic_ =

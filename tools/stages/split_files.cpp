@@ -107,7 +107,7 @@ void split_photons(Tool& tool, const std::string& path, const SplitOptions& opti
   formats::PhotonWriter low(outputs.low.sink(), part_header(tool, file.header(), "low"));
   formats::PhotonWriter high(outputs.high.sink(), part_header(tool, file.header(), "high"));
   file.read("divide", [&](const formats::PhotonBlock& block) {
-    const DividedPhotons parts = divide(block, cells);
+    const auto parts = divide(block, cells);
     low.write(parts.low);
     high.write(parts.high);
   });
@@ -130,7 +130,7 @@ void split_points(Tool& tool, const std::string& path, const SplitOptions& optio
   add_flux(file.records, spacing * spacing, cells);
   cells.close(options.limit);
   tool.stats().phase("divide");
-  const DividedPoints parts = divide(file.records, cells);
+  const auto parts = divide(file.records, cells);
   const auto write = [&](Output& output, const char* part, const std::vector<formats::IrradiancePointRecord>& points) {
     formats::IrradpointsHeader header = file.header;
     header.history += tool.history_line();

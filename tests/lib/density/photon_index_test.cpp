@@ -25,7 +25,6 @@ Vec2 random2(std::uint64_t i, std::uint32_t use) { return PathRandom(7, i).get2(
 Photon photon_at(Vec3 p, std::uint64_t i) {
   const Vec3 n = test::sample_sphere(random2(i, 90));
   Photon photon{.position = {p.x, p.y, p.z}, .flux = {float(i % 17), 1, -2}};
-  photon.object = std::uint16_t(i % 1000);
   photon.normal = formats::encode_normal({n.x, n.y, n.z});
   photon.kind = PathKind(i % 4);
   return photon;
@@ -76,7 +75,6 @@ bool passes(const PhotonIndex& index, const PhotonQuery& query, std::uint32_t i,
     distance2 += (query.flattening * query.flattening - 1) * (h * h);
   }
   if (!(distance2 <= query.max_radius * query.max_radius)) return false;
-  if (!(query.kinds & kind_bit(index.kind(i)))) return false;
   const Vec3 n = index.normal(i);
   const Vec3 steps{std::round(n.x * 511), std::round(n.y * 511), std::round(n.z * 511)};
   return query.min_cos <= kAnyNormal || dot(steps, query.normal) > query.min_cos * 511;
@@ -126,7 +124,6 @@ PhotonQuery query_of(Shape shape, std::uint64_t q, int variant) {
   if (variant & 1) query.max_radius = std::pow(10.0f, 1.5f - 3 * random2(q, 92).x);
   if (variant & 2) query.min_cos = random2(q, 93).x - 0.3f;
   if (variant & 4) query.flattening = 10;
-  if (variant & 8) query.kinds = std::uint8_t(1 + q % 15);
   return query;
 }
 
@@ -136,7 +133,7 @@ TEST(PhotonIndex, FindsExactlyWhatBruteForceFindsInEveryShapeAndWithEveryOption)
     for (std::size_t count : {1u, 7u, 31u, 32u, 33u, 257u, 3000u}) {
       const PhotonIndex index(photons_of(shape, count));
       const int queries = count == 3000 ? 12 : 3;
-      for (int variant = 0; variant < 16; ++variant)
+      for (int variant = 0; variant < 8; ++variant)
         for (int q = 0; q < queries; ++q) {
           SCOPED_TRACE(name + ", " + std::to_string(count) + " photons, variant " + std::to_string(variant) +
                        ", query " + std::to_string(q));
@@ -205,8 +202,6 @@ TEST(PhotonIndex, KeepsEveryPhotonOnceWithItsData) {
     seen[index.source(i)] = true;
     EXPECT_EQ(index.position(i), (Vec3{p.position[0], p.position[1], p.position[2]}));
     EXPECT_EQ(index.flux(i), Rgb(p.flux[0], p.flux[1], p.flux[2]));
-    EXPECT_EQ(index.object(i), p.object);
-    EXPECT_EQ(index.kind(i), p.kind);
     const auto n = formats::decode_normal(p.normal);
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(index.normal(i)[axis], n[std::size_t(axis)], 0.5001 / 511);
   }
@@ -235,8 +230,6 @@ TEST(PhotonIndex, OfSomeKindsMovedIsThatOfThesePhotonsAlone) {
     ASSERT_EQ(index.source(i), sources[expected.source(i)]);
     ASSERT_EQ(index.flux(i), expected.flux(i));
     ASSERT_EQ(index.normal(i), expected.normal(i));
-    ASSERT_EQ(index.kind(i), expected.kind(i));
-    ASSERT_EQ(index.object(i), expected.object(i));
   }
 }
 

@@ -131,7 +131,7 @@ TEST(Divide, PartsAddUpToTheLastBit) {
     const float value = std::bit_cast<float>(std::uint32_t(bits));
     if (!std::isfinite(value)) continue;
     const double share = random.get1(i, Purpose::test, 1);
-    const DividedValue part = divide(value, share);
+    const auto part = divide(value, share);
     ASSERT_EQ(double(part.low) + double(part.high), double(value)) << value << " " << share;
     ASSERT_TRUE(part.low * value >= 0 && part.high * value >= 0);
     if (std::abs(value) > 1e-30f) {
@@ -140,7 +140,7 @@ TEST(Divide, PartsAddUpToTheLastBit) {
   }
   for (const float value : {1e-45f, -1e-45f, 1e-38f, 3e38f, 0.0f})
     for (const double share : {0.0, 0.3, 0.5, 0.7, 1.0}) {
-      const DividedValue part = divide(value, share);
+      const auto part = divide(value, share);
       EXPECT_EQ(double(part.low) + double(part.high), double(value));
     }
 }
@@ -172,10 +172,10 @@ TEST(FluxCells, OrderAndBlocksDoNotMatter) {
 TEST(FluxCells, LimitsZeroAndInfinityAreAllAndNothing) {
   const PhotonBlock block = floor_with_spot(2000, 2000, 3);
   constexpr double inf = std::numeric_limits<double>::infinity();
-  const DividedPhotons all = divide(block, cells_of(block, 0.5, 0));
+  const auto all = divide(block, cells_of(block, 0.5, 0));
   EXPECT_EQ(all.high.photons, block.photons);
   EXPECT_TRUE(all.low.photons.empty());
-  const DividedPhotons nothing = divide(block, cells_of(block, 0.5, inf));
+  const auto nothing = divide(block, cells_of(block, 0.5, inf));
   EXPECT_EQ(nothing.low.photons, block.photons);
   EXPECT_TRUE(nothing.high.photons.empty());
 }
@@ -216,7 +216,7 @@ TEST(FluxCells, AllInOnePointAndNothingAreNoError) {
   FluxCells hundredth(1, 0.01);                          // with a known area the only cell has the mean irradiance
   add_flux(block, hundredth);
   hundredth.close(0.01);
-  const DividedPhotons parts = divide(block, hundredth);
+  const auto parts = divide(block, hundredth);
   EXPECT_EQ(parts.high.photons.size(), 1000u);
   EXPECT_NEAR(parts.low.photons[0].flux[0], -0.01f, 0x1p-24f);  // the larger part's rounding
 }
@@ -234,7 +234,7 @@ TEST(FluxCells, ReflectedShareMakesDarkSurfacesLessBright) {
 TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
   PhotonBlock block = floor_with_spot(3000, 6000, 6);
   for (std::size_t i = 0; i < block.photons.size(); ++i) block.directions.push_back({std::uint16_t(i), 7});
-  const DividedPhotons parts = divide(block, cells_of(block, 0.5, {2}));
+  const auto parts = divide(block, cells_of(block, 0.5, {2}));
   formats::ExactRgbSum whole, divided;
   for (const Photon& p : block.photons) whole.add(p.flux);
   for (const PhotonBlock* part : {&parts.low, &parts.high}) {
@@ -254,7 +254,7 @@ TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   block.photons[7] = block.photons[6];  // two photons that differ in nothing
   block.directions[7] = block.directions[6];
   for (const double limit : {2.0, 0.0, 1e9}) {
-    const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
+    const auto parts = divide(block, cells_of(block, 0.5, limit));
     formats::PhotonMap low, high;
     low.photons = parts.low.photons, low.directions = parts.low.directions;
     high.photons = parts.high.photons, high.directions = parts.high.directions;
@@ -288,7 +288,7 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
   cells.close({4});
   const double mean = (100 + 16 * 100) / 116.0;
   EXPECT_NEAR(cells.mean_irradiance(), mean, 1e-5 * mean);  // floats of the products
-  const DividedPoints parts = divide(points, cells);
+  const auto parts = divide(points, cells);
   EXPECT_EQ(parts.low.size(), 116u);
   ASSERT_EQ(parts.high.size(), 16u);
   std::vector<IrradiancePointRecord> joined = parts.low;
