@@ -121,7 +121,7 @@ void IncomingRadiance::follow(std::span<const Ray> rays, GatherCounts& counts, c
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
   std::array<PointLookup::Question, kAtOnce> questions;
-  std::array<PointLookup::Answer, kAtOnce> answers;
+  std::array<std::uint32_t, kAtOnce> answers;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
     tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count));

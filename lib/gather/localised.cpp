@@ -65,7 +65,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
 
 InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const RecordChange> changes,
                                const InfluenceThresholds& thresholds)
-    : store_({.least_cosine = 0}), influenced_({.least_cosine = 0}), thresholds_(thresholds) {
+    : store_(0), influenced_(0), thresholds_(thresholds) {
   std::vector<IrradianceRecord> pairs;
   double sum = 0;
   for (std::size_t i = 0; i < records.size(); ++i) {

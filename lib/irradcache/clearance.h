@@ -13,20 +13,21 @@
 namespace tempolux {
 
 /// How far the surface around a place is unobstructed, along sixteen spokes. Light measured at the place may be used
-/// inside the polygon of the spokes' ends, and nowhere else. A straight wall between two spokes is found exactly.
+/// only inside the polygon of the spokes' ends. The polygon follows a straight wall exactly.
 struct Clearance {
   static constexpr std::uint32_t kSpokes = 16;
-  static constexpr std::uint64_t kFull = 255;  ///< a spoke that met no obstacle
+  static constexpr std::uint64_t kFull = 255;  ///< share of a spoke that met no obstacle
   using Shares = std::array<std::uint64_t, 2>;
   static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};  ///< no spoke met an obstacle
-  /// Least cosine between the normals of two places of one surface: a larger angle is a wall, not a bend.
+  /// Smallest cosine between the normals of two places of one surface. A surface that rises by more than 45 degrees is
+  /// a wall: light on both sides of the edge differs, because the sides face different halves of the scene.
   static constexpr float kBend = 0.7f;
-  /// tangent of the angle at which spokes rise: lower obstacles do not separate light.
+  /// Tangent of the angle at which spokes rise above the surface: lower obstacles do not end them.
   static constexpr float kRise = 0.05f;
 
   float reach = INFINITY;  ///< m: length of an unobstructed spoke
-  Shares shares =
-      kOpen;  ///< length of spoke k in 1/255 of reach, rounded down: byte k mod 8 of word k / 8, the lowest first
+  /// Length of spoke k in 1/255 of reach, rounded down: byte k mod 8 of word k / 8, where byte 0 is the lowest.
+  Shares shares = kOpen;
 
   /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)| with f = (k mod 4) / 4, turned by k / 4
   /// quadrants.
@@ -39,27 +40,28 @@ struct Clearance {
       default: return {y, -x};
     }
   }
+  /// Sets the length of spoke k [m]; `reach` must be set.
   void set(std::uint32_t k, float length) {
     const auto share = std::uint64_t(std::clamp(length / reach * float(kFull), 0.0f, float(kFull)));
     std::uint64_t& word = shares[k / 8];
     word = (word & ~(kFull << 8 * (k % 8))) | share << 8 * (k % 8);
   }
-  /// Reach in radii, so that the polygon of unobstructed spokes holds the disc of one radius.
+  /// A reach of this many radii makes the polygon of unobstructed spokes hold the disc of one radius.
   static constexpr float kPerRadius = 1.0277402f;  // 1 / cos of half of 26.6 degrees, the widest angle between spokes
 
-  /// True if a place at offset `d` [m] is inside the polygon. `normal` is the centre's normal. Height above its plane
-  /// is ignored.
+  /// True if the place at offset `d` [m] from the centre is inside the polygon. `normal`: unit, the normal about which
+  /// the spokes were measured. The height of the place above their plane is ignored.
   bool contains(Vec3 d, Vec3 normal) const {
     if (shares == kOpen) return length2(d) < reach * reach;
     const Frame frame(normal);
     float x = dot(d, frame.tangent), y = dot(d, frame.bitangent);
     std::uint32_t first = 0;
-    // turns back by a quadrant each time
+    // Turns (x, y) back by quadrants until it is in the first one.
     for (; first < 12 && !(x > 0 && y >= 0); first += 4) x = std::exchange(y, -x);
     const float sum = std::abs(x) + std::abs(y);
     if (!(sum > 0)) return true;
-    // d = sum ((1 - t) v_k + t v_k+1) with v the spokes on |x| + |y| = 1; d is inside if sum ((1 - t) / r_k + t /
-    // r_k+1) < 1.
+    // d = sum ((1 - t) v_k + t v_k+1), where v_k is the point of spoke k with |x| + |y| = 1 and r_k the spoke's length
+    // in multiples of v_k. So d is inside if sum ((1 - t) / r_k + t / r_k+1) < 1.
     const float along = std::min(std::abs(y) / sum * 4, 3.9999998f), t = along - std::floor(along);
     const std::uint32_t k = std::uint32_t(along);
     return sum * ((1 - t) * inverse(first + k, k) + t * inverse((first + k + 1) % kSpokes, (k + 1) % 4)) < reach;
@@ -67,8 +69,9 @@ struct Clearance {
   bool operator==(const Clearance&) const = default;
 
  private:
+  /// |v_k|, where v_k = (1 - f, f) is the point of spoke k with |x| + |y| = 1
   static constexpr std::array<float, 4> kLength{1, 0.79056942f, 0.70710678f, 0.79056942f};
-  /// reach / length of spoke k, in multiples of v_k.
+  /// reach / r_k. `of_quadrant`: k mod 4.
   float inverse(std::uint32_t k, std::uint32_t of_quadrant) const {
     return kLength[of_quadrant] * float(kFull) / std::max(float(shares[k / 8] >> 8 * (k % 8) & kFull), 1e-6f);
   }

@@ -13,17 +13,19 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kNormalBins = 8;  ///< bins per octahedral coordinate
-constexpr float kFacesCell =
-    0.5f;  ///< least cosine between a cell's direction and a point's normal: a bin is 50 degrees wide
+/// Smallest cosine between a cell's direction and a point's normal. A bin is up to 50 degrees wide, so 60 degrees from
+/// its middle leave out no normal of the bin.
+constexpr float kFacesCell = 0.5f;
 constexpr int kCandidates = 8;  ///< points around a hit that are tried
-constexpr int kMaxProbes = 16;
+constexpr int kMaxProbes = 16;  ///< entries of the table that are tried for a cell
 constexpr float kCellsPerSpacing = 1.4f;
 constexpr int kCellBits = 19;          ///< bits of a cell's number along an axis
 constexpr float kRounding = 0x1p-20f;  ///< relative rounding of coordinates
 
 constexpr float kBeside = 1.5f;  ///< spacings: distance within which points count as neighbours
 constexpr double kPhotons = IrradianceOptions{}.neighbours;  ///< photons of an estimate
-constexpr std::size_t kProof = 2;  ///< neighbours that a point needs; on a wide surface it has 7
+constexpr std::size_t kProof =
+    2;  ///< neighbours without which direct light is not uniform; on a wide surface a point has 7
 
 /// Bin of a normal: 3 bits of each octahedral coordinate.
 std::uint32_t normal_bin(Vec3 n) {
@@ -50,14 +52,6 @@ Vec3 bin_direction(std::uint32_t bin) {
   return normalize(n);
 }
 
-PhotonQuery facing(Vec3 position, Vec3 normal, float min_cos) {
-  PhotonQuery query;
-  query.point = position;
-  query.normal = normal;
-  query.min_cos = min_cos;
-  return query;
-}
-
 }  // namespace
 
 PointLookup::PointLookup(std::span<const IrradiancePoint> points, float spacing, ClearanceTest look)
@@ -68,7 +62,7 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, float spacing,
       lights_(points.size()),
       mask_(std::bit_ceil(std::max<std::size_t>(1 << 12, 4 * points.size())) - 1),
       entries_(std::make_unique<Entry[]>(mask_ + 1)) {
-  std::vector<formats::Photon> as_photons(points.size());
+  std::vector<formats::Photon> as_photons(points.size());  // PhotonIndex finds photons
   for (std::size_t i = 0; i < points.size(); ++i) {
     const IrradiancePoint& p = points[i];
     widest_ = std::max(widest_, p.radius);
@@ -103,7 +97,7 @@ bool PointLookup::represents(const Light& light, const Question& q) const {
   if (!(length2(d) < reach * reach) || !(dot(light.normal, q.normal) > Clearance::kBend) ||
       std::abs(dot(d, light.normal + q.normal)) >
           2 * (Clearance::kRise * length(d) + kRounding * max_component(abs(q.position))))
-    return false;  // above or below the spokes: there may be another surface between
+    return false;  // the hit is above or below the spokes, so another surface may lie between
   Clearance::Shares shares{light.clearance[0].load(std::memory_order_relaxed),
                            light.clearance[1].load(std::memory_order_relaxed)};
   if (shares[0] == kNotLooked || shares[1] == kNotLooked) {
@@ -114,7 +108,7 @@ bool PointLookup::represents(const Light& light, const Question& q) const {
   return Clearance{reach, shares}.contains(d, light.normal);
 }
 
-/// Finds the point nearest to the middle of a cell, among those with a normal in the cell's bin: point + 1, or 0.
+/// The point closest to the middle of a cell, among the points that face the cell's direction, + 1; 0: there is none.
 std::uint32_t PointLookup::search_cell(std::uint64_t cell) const {
   thread_local NeighbourList found;
   Vec3 middle;
@@ -122,15 +116,15 @@ std::uint32_t PointLookup::search_cell(std::uint64_t cell) const {
     const std::uint64_t along = cell >> (6 + (2 - a) * kCellBits) & ((1 << kCellBits) - 1);
     middle[a] = (float(std::int64_t(along) - (1 << (kCellBits - 1))) + 0.5f) / inverse_cell_;
   }
-  index_.find_nearest(facing(middle, bin_direction(std::uint32_t(cell & 63)), kFacesCell), 1, found);
+  index_.find_nearest({middle, bin_direction(std::uint32_t(cell & 63)), INFINITY, kFacesCell}, 1, found);
   return found.count() == 0 ? 0 : index_.source(found.photons()[0]) + 1;
 }
 
-/// Finds the nearest point that represents the hit.
+/// The closest point that represents the hit, or nullptr.
 const PointLookup::Light* PointLookup::search(const Question& q) const {
   thread_local NeighbourList found;
-  PhotonQuery query = facing(q.position, q.normal, look_ ? Clearance::kBend : 0);
-  if (look_) query.max_radius = kReach * spacing_;
+  PhotonQuery query{q.position, q.normal, INFINITY, 0};
+  if (look_) query.max_radius = kReach * spacing_, query.min_cos = Clearance::kBend;
   index_.find_nearest(query, kCandidates, found);
   found.sort_by_distance();
   for (const std::uint32_t i : found.photons())
@@ -140,7 +134,7 @@ const PointLookup::Light* PointLookup::search(const Question& q) const {
 
 const PointLookup::Light* PointLookup::nearest(Vec3 position, Vec3 normal) const {
   thread_local NeighbourList found;
-  index_.find_nearest(facing(position, normal, 0), 1, found);
+  index_.find_nearest({position, normal, INFINITY, 0}, 1, found);
   return found.count() == 0 ? nullptr : &lights_[index_.source(found.photons()[0])];
 }
 
@@ -156,9 +150,7 @@ bool PointLookup::apart(const IrradiancePoint& bright, const IrradiancePoint& da
 
 std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   thread_local NeighbourList found;
-  PhotonQuery query = facing(light.position, light.normal, Clearance::kBend);
-  query.max_radius = kBeside * spacing_;
-  index_.find_within(query, found);
+  index_.find_within({light.position, light.normal, kBeside * spacing_, Clearance::kBend}, found);
   struct Range {
     float least = INFINITY, most = 0;
     void add(Rgb light) {
@@ -176,7 +168,7 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
     indirect.add(points_[i].indirect);
   }
   const bool proven = beside.size() >= kProof;
-  // Points hidden behind the surface, as on the other face of a double wall, are no neighbours; usually they belong to
+  // A point hidden behind the surface, as on the other face of a double wall, is not a neighbour. Usually it belongs to
   // another object.
   std::erase_if(beside, [&](std::uint32_t i) { return points_[i].object != points_[light.point].object; });
   const bool torn = !indirect.even() && std::any_of(beside.begin(), beside.end(), [&](std::uint32_t bright) {
@@ -188,12 +180,12 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   return uneven;
 }
 
-/// Called if the first entry of the table belongs to another cell. Reads a later entry, or searches the cell and
-/// stores the result.
-PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
+/// The answer if the first entry of the table does not hold it: reads a later entry, or searches the cell and stores
+/// the result.
+std::uint32_t PointLookup::find_answer(const Question& q) const {
   if (q.cell == 0) {
     const Light* light = search(q);
-    return {light ? light->point + 1 : 0};
+    return light ? light->point + 1 : 0;
   }
   std::size_t slot = mix64(q.cell) & mask_;
   for (int probe = 0; probe < kMaxProbes; ++probe, slot = (slot + 1) & mask_) {
@@ -202,12 +194,12 @@ PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
     if (there == 0 && entry.cell.compare_exchange_strong(there, q.cell, std::memory_order_relaxed)) there = q.cell;
     if (there != q.cell) continue;
     // Another thread may search the same cell at the same time; both find the same point.
-    if (const std::uint32_t known = entry.answer.load(std::memory_order_relaxed)) return {known - 1};
+    if (const std::uint32_t known = entry.answer.load(std::memory_order_relaxed)) return known - 1;
     const std::uint32_t found = search_cell(q.cell);
     entry.answer.store(found + 1, std::memory_order_relaxed);
-    return {found};
+    return found;
   }
-  return {search_cell(q.cell)};
+  return search_cell(q.cell);
 }
 
 }  // namespace tempolux

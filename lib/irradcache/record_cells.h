@@ -10,18 +10,18 @@
 
 namespace tempolux {
 
-inline constexpr std::size_t kFirstBuckets = 256;
-/// Largest distance of a point from the plane between the normals, over the radius.
+inline constexpr std::size_t kFirstBuckets = 256;  ///< of a level; their number grows with the entries
+/// |(x - x_i) . (n + n_i) / 2| of a point at which a record is valid is at most this share of the radius [Ward 1988].
 inline constexpr float kOffPlane = 0.05f;
-/// relative rounding of float distances: a sphere may reach this much farther
+/// Relative rounding error of distances in float: spheres are enlarged by this share.
 inline constexpr double kSphereRounding = 1e-6;
 
-/// One cell of a level.
+/// Numbers of a cell along the axes.
 struct Cell {
   std::int64_t x, y, z;
 };
 
-/// The cell that holds a place. `local` [m]: the place seen from the grid's origin; `inverse` [1/m]: 1 / edge of a
+/// The cell that holds a place. `local` [m]: the place relative to the grid's origin; `inverse` [1/m]: 1 / edge of a
 /// cell.
 inline Cell cell_at(Vec3d local, double inverse) {
   // Cell numbers are clamped to 2^60, so records far outside the scene share one cell.
@@ -29,7 +29,8 @@ inline Cell cell_at(Vec3d local, double inverse) {
   return {index(local.x), index(local.y), index(local.z)};
 }
 
-/// Calls body for each cell that a validity sphere meets.
+/// Calls body(cell) for each cell that a validity sphere around `local` [m] meets; `radius` in m, `inverse_cell` as for
+/// cell_at().
 template <class Body>
 void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& body) {
   const double reach = double(radius) * (1 + kSphereRounding);
@@ -50,7 +51,7 @@ void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& b
     }
 }
 
-/// Bucket of a cell among `count` buckets, a power of two.
+/// The bucket of a cell, below `count`, which is a power of two.
 inline std::size_t bucket_of(Cell c, std::size_t count) {
   const std::uint64_t h = std::uint64_t(c.x) * 0x9e3779b97f4a7c15ull + std::uint64_t(c.y) * 0xc2b2ae3d27d4eb4full +
                           std::uint64_t(c.z) * 0x165667b19e3779f9ull;

@@ -7,25 +7,18 @@
 namespace tempolux {
 namespace {
 
-constexpr double kOffPlaneSlack = 1e-4;
+constexpr double kOffPlaneSlack = 1e-4;  ///< in radii: above the rounding errors of the test of kOffPlane
 
 }  // namespace
-
-void RecordStore::Eight::set(std::size_t lane, const Entry& entry) {
-  x[lane] = entry.position.x;
-  y[lane] = entry.position.y;
-  z[lane] = entry.position.z;
-  radius[lane] = entry.radius;
-  normal_x[lane] = entry.normal.x;
-  normal_y[lane] = entry.normal.y;
-  normal_z[lane] = entry.normal.z;
-  record[lane] = entry.record;
-}
 
 void RecordStore::Bucket::add(const Entry& entry) {
   const std::size_t lane = count_++ % kLanes;
   if (lane == 0) eights_.emplace_back();
-  eights_.back().set(lane, entry);
+  Eight& e = eights_.back();
+  e.x[lane] = entry.position.x, e.y[lane] = entry.position.y, e.z[lane] = entry.position.z;
+  e.normal_x[lane] = entry.normal.x, e.normal_y[lane] = entry.normal.y, e.normal_z[lane] = entry.normal.z;
+  e.radius[lane] = entry.radius;
+  e.record[lane] = entry.record;
   last_ = entry.record;
 }
 
@@ -34,15 +27,15 @@ void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
     if (Eight& eight = eights_[i / kLanes]; eight.record[i % kLanes] == record) eight.radius[i % kLanes] = radius;
 }
 
-/// Lists a record in the cells in which it may be valid, which lie next to the plane between the normals. With t
-/// perpendicular to n_i and n = n_i cos a + t sin a,
+/// Lists a record in the cells in which it may be valid. They lie close to the record's tangent plane: let d be the
+/// offset of a point with normal n = n_i cos a + t sin a, where t is a unit vector perpendicular to n_i. Then
 ///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r give
-///     |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)),
-/// which grows with the angle. Cells farther off need not list the record.
+///     |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)).
+/// This bound grows with the angle a, so it is taken at least_cosine. Cells farther off do not list the record.
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
   const Vec3d local(r.position), normal(r.normal);
-  const double c = double(options_.least_cosine), width = 1 / level.inverse_cell;
+  const double c = double(least_cosine_), width = 1 / level.inverse_cell;
   const double off =
       double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));

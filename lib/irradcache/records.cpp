@@ -22,9 +22,9 @@ bool is_usable(const IrradianceRecord& r) {
 
 template <class Found>
 inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, const Found& found) const {
-  constexpr float kSlack = 1e-5f;  // rounding may differ between vector lanes and scalars; the exact test follows
+  constexpr float kSlack = 1e-5f;  // above the rounding errors of this test and of weight_of()
   const auto all = [](float x) { return _mm256_set1_ps(x); };
-  const __m256 least = all(options_.least_cosine - kSlack), reach = all(1 + kSlack);
+  const __m256 least = all(least_cosine_ - kSlack), reach = all(1 + kSlack);
   for (const Eight& e : eights) {
     const auto of = [](const float* lanes) { return _mm256_load_ps(lanes); };
     const __m256 dx = all(position.x) - of(e.x), dy = all(position.y) - of(e.y), dz = all(position.z) - of(e.z),
@@ -79,7 +79,7 @@ bool RecordStore::add(const IrradianceRecord& record) {
   return true;
 }
 
-/// Sets a smaller radius; the record stays on its level and in its cells.
+/// The record stays on its level and in its cells.
 void RecordStore::shrink(std::uint32_t record, float radius) {
   for (Level& level : levels_) {
     if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
@@ -103,9 +103,9 @@ inline float RecordStore::weight_of(const Entry& entry, Vec3 position, Vec3 norm
   const float d2 = length2(d);
   if (d2 >= entry.radius * entry.radius) return 0;
   const float cosine = dot(normal, entry.normal);
-  if (cosine <= options_.least_cosine) return 0;
+  if (cosine <= least_cosine_) return 0;
   if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
-  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.least_cosine));
+  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - least_cosine_));
   const float weight = std::max(0.0f, (1 - std::sqrt(d2) / entry.radius) * (1 - angle));
   if (!(weight > 0)) return 0;
   const Clearance& seen = records_[entry.record].clearance;

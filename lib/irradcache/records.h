@@ -23,36 +23,32 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: radius of validity
   float radius_unclamped = 0;           ///< m: before the limits by pixel size
-  Clearance clearance;                  ///< the record does not count outside of it; measured about `normal`
-  std::uint32_t object = 0;             ///< the object it lies on
-  /// W/m^2: number with a random sign whose mean square is the variance of `irradiance` (lib/gather/hemisphere.h); 0:
+  Clearance clearance;                  ///< the record is not valid outside; spokes lie in the plane of `normal`
+  std::uint32_t object = 0;             ///< id.object of the surface
+  /// W/m^2: a number with a random sign whose mean square is the variance of `irradiance` (lib/gather/hemisphere.h); 0:
   /// unknown
   Rgb noise{0.0f};
-  Rgb points_noise{0.0f};  ///< W/m^2: the part of `noise` from the points that were read; not in files
+  Rgb points_noise{0.0f};  ///< W/m^2: the part of `noise` that comes from the irradiance points; not in files
 };
 
-struct InterpolationOptions {
-  /// A record counts if the cosine between its normal and the surface's is above least_cosine, in [0, 1): within 20
-  /// degrees.
-  float least_cosine = 0.94f;
-};
-
-/// Finds records by place. A record is listed in the cells that its validity sphere meets near its tangent plane. The
-/// cells belong to hashed grids, one per level; cell sizes are powers of two, from one to two radii. The cost of a
-/// look-up grows with the number of overlapping records only. Look-ups are thread-safe while nothing is added.
+/// Finds records by place. Each level of the store has a hashed grid of cells, whose width is a power of two. A record
+/// belongs to the level whose cells are one to two radii wide, and is listed in the cells in which it may be valid. So
+/// the cost of a look-up depends only on the number of overlapping records. Look-ups are thread-safe while nothing is
+/// added.
 class RecordStore {
  public:
-  explicit RecordStore(const InterpolationOptions& options = {}) : options_(options) {}
+  /// A record counts only if the cosine between its normal and the surface's is above `least_cosine`, in [0, 1). By
+  /// default the normals are within 20 degrees.
+  explicit RecordStore(float least_cosine = 0.94f) : least_cosine_(least_cosine) {}
 
-  /// Records count above this cosine between normals.
-  float least_cosine() const { return options_.least_cosine; }
+  float least_cosine() const { return least_cosine_; }
 
-  /// False, and the record is refused and counted, if one of its numbers is not finite or its radius not above 0.
+  /// Refuses and counts a record, and returns false, if one of its numbers is not finite or its radius is not above 0.
   bool add(const IrradianceRecord& record);
   void add(std::span<const IrradianceRecord> records) {
     for (const IrradianceRecord& record : records) add(record);
   }
-  /// Gives a record a smaller radius.
+  /// Gives a record a smaller radius [m].
   void shrink(std::uint32_t record, float radius);
   std::span<const IrradianceRecord> records() const { return records_; }
   std::uint64_t refused() const { return refused_; }
@@ -68,37 +64,36 @@ class RecordStore {
   ///     E = sum w_i (E_i + (n_i x n) . g_r,i + (x - x_i) . g_t,i) / sum w_i
   ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - least_cosine)))      where both are positive
   ///
-  /// with the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which are zero at the border of validity, so
-  /// that records have no visible borders. Every extrapolation is clamped at 0. A record is not valid if the point
-  /// does not lie on the record's surface: |(x - x_i) . (n + n_i)/2| > 0.05 r_i (0 along circles). Ward 1988 tests
-  /// only points behind the record. Points in front matter, too: the bright ground below a plate's rim would light
-  /// the top of the plate. A record is not valid either if an obstacle lies between (clearance).
+  /// The weights are the hats of Tabellion & Lamorlette 2004 and Krivanek. They are zero at the border of validity, so
+  /// records have no visible borders. Each extrapolation is clamped at 0. A record is not valid if the point does not
+  /// lie on the record's surface: if |(x - x_i) . (n + n_i)/2| > 0.05 r_i. (The left side is 0 along a circle.) Ward
+  /// 1988 excludes only points behind the record. But points in front must be excluded, too: otherwise the bright
+  /// ground below a plate's rim would light the top of the plate. A record is also not valid outside its clearance.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
-  /// Sum of the weights, at a record's own place, of the records added before it, except the marked ones (`marked` may
-  /// be empty).
+  /// Sum of the weights that earlier records have at the place of record number `record`. Leaves out records whose
+  /// element of `marked` is not 0; `marked` may be empty.
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
-  /// True if the sum of the weights is at least `weight`; stops as soon as it is.
+  /// True if the sum of the weights at the place is at least `weight`.
   bool covers(Vec3 position, Vec3 normal, float weight) const;
-  /// Multiplies IrradianceRecord::noise of the records from `first` on, which is that of their rays, and adds
-  /// points_noise.
+  /// Completes IrradianceRecord::noise of the records from `first` on, which so far is the noise of their gather rays:
+  /// multiplies it by `factor` and adds points_noise.
   void complete_noise(std::size_t first, float factor);
   /// Irradiance by interpolate(); nothing where no record counts.
   std::optional<Rgb> irradiance(Vec3 position, Vec3 normal) const;
 
  private:
-  /// The data that decides whether a record counts at a point.
+  /// The part of a record that decides whether the record may be valid at a point.
   struct Entry {
     Vec3 position;
     float radius;
     Vec3 normal;
     std::uint32_t record;
   };
-  /// Entries in groups of eight, which a look-up compares at once: one in twenty listed entries is valid.
+  /// Eight entries, which a look-up tests at once. (One listed entry in twenty is valid.)
   static constexpr std::size_t kLanes = 8;
   struct alignas(32) Eight {
     float x[kLanes], y[kLanes], z[kLanes], radius[kLanes] = {}, normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];
     std::uint32_t record[kLanes];
-    void set(std::size_t lane, const Entry& entry);
   };
   class Bucket {
    public:
@@ -116,24 +111,24 @@ class RecordStore {
     double inverse_cell = 0;
     std::size_t listed = 0;  ///< number of entries in all buckets
     std::vector<std::uint32_t> members;
-    /// records that may be valid in a cell, by the hash of the cell; the number of buckets is a power of two
+    /// By the hash of a cell: the records that may be valid in the cell. The number of buckets is a power of two.
     std::vector<Bucket> buckets;
   };
   Level& level_of(float radius);
   void list(Level& level, std::uint32_t record) const;
-  /// Calls found(entry), in order, for the entries that a slightly widened test of place and normal accepts, until
-  /// found returns true.
+  /// Calls found(entry), in order, for the entries that may be valid at the point, until found returns true. The test
+  /// is slightly wider than that of weight_of(), because the rounding of vector lanes may differ.
   template <class Found>
   bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, const Found& found) const;
-  /// True if found(entry) is true for a record that may be valid at the point. Each record is tried once, until one is
-  /// found.
+  /// Calls found(entry) for records that may be valid at the point, each once, until found returns true. Returns
+  /// whether it did.
   template <class Found>
   bool any_near(Vec3 position, Vec3 normal, const Found& found) const;
   /// Weight of a record at a point; 0 where it is not valid.
   float weight_of(const Entry& entry, Vec3 position, Vec3 normal) const;
   void accumulate(const Entry& entry, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
 
-  InterpolationOptions options_;
+  float least_cosine_;
   std::vector<IrradianceRecord> records_;
   std::vector<Level> levels_;  ///< levels with members, in the order of their first members
   std::uint64_t refused_ = 0;

@@ -8,6 +8,11 @@ namespace tempolux {
 
 /// A shading normal faces a direction if their cosine is above this.
 inline constexpr float kLooksAway = 1e-4f;
+/// Shading normals whose cosine to the geometric normal is below this (half a degree) need shading of their own.
+inline constexpr float kBent = 0.99996f;
+
+/// The normal n, turned to the side of `towards`.
+inline Vec3 face_forward(Vec3 n, Vec3 towards) { return dot(n, towards) < 0 ? -n : n; }
 
 /// The normals of a point, turned to the side of wo (unit, away from the surface), and wo in the local frame of the
 /// Bsdf. If the shading normal does not face wo, the geometric normal replaces it.
@@ -17,13 +22,13 @@ struct SeenSide {
   Vec3 wo_local;
 
   SeenSide(const SurfacePoint& point, Vec3 wo)
-      : normal_geometric(dot(point.normal_geometric, wo) < 0 ? -point.normal_geometric : point.normal_geometric),
+      : normal_geometric(face_forward(point.normal_geometric, wo)),
         normal(viewed_normal(point, wo, normal_geometric)),
         frame(normal),
         wo_local(frame.to_local(wo)) {}
 
   /// A normal n of the surface, turned to the side of wo.
-  Vec3 facing(Vec3 n) const { return dot(n, normal_geometric) < 0 ? -n : n; }
+  Vec3 facing(Vec3 n) const { return face_forward(n, normal_geometric); }
 
   /// True if wi is on wo's side of the surface, by both normals. Only light from there can be reflected.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
@@ -32,7 +37,7 @@ struct SeenSide {
 
  private:
   static Vec3 viewed_normal(const SurfacePoint& point, Vec3 wo, Vec3 geometric) {
-    const Vec3 n = dot(point.normal, geometric) < 0 ? -point.normal : point.normal;
+    const Vec3 n = face_forward(point.normal, geometric);
     return dot(n, wo) > kLooksAway ? n : geometric;
   }
 };

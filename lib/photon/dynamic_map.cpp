@@ -7,9 +7,10 @@
 namespace tempolux {
 namespace {
 
-/// The photons of a batch sorted by path: path i has the photons first[i] to first[i + 1] - 1, in order of bounce.
+/// The photons of a batch sorted by path, those of a path by bounce.
 struct ByPath {
-  std::vector<std::uint32_t> first, photons;
+  std::vector<std::uint32_t> first;    ///< by path: index of its first photon in `photons`
+  std::vector<std::uint32_t> photons;  ///< indices into the batch
 
   ByPath(const PhotonBatch& batch, std::size_t path_count) : first(path_count + 1), photons(batch.path_of.size()) {
     for (const std::uint32_t path : batch.path_of) ++first[path + 1];
@@ -22,7 +23,7 @@ struct ByPath {
   }
 };
 
-/// The photon with negative flux. 0 - x is computed instead of -x, so that a flux of 0 stays +0.
+/// The photon with negative flux. The function computes 0 - x, because -x would turn a flux of 0 into -0.
 formats::Photon negative(formats::Photon photon) {
   for (float& flux : photon.flux) flux = 0 - flux;
   return photon;
@@ -55,9 +56,8 @@ PhotonBatch difference_of(const PhotonTracer& static_scene, const PhotonTracer& 
     for (const std::uint32_t p : b.subspan(common)) take(after, p, after.block.photons[p]);
     result += after.balance_of[number_of[path]] - before.balance_of[path];
   }
-  result.path_count = before.path_count + after.path_count;
-  result.ray_count = before.ray_count + after.ray_count;
-  result.specular_ray_count = before.specular_ray_count + after.specular_ray_count;
+  result.add(before);
+  result.add(after);
   return result;
 }
 
@@ -65,7 +65,7 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& static_scene, const Photon
                                   std::span<const std::uint64_t> paths, formats::PhotonHeader header,
                                   const std::function<void(const void*, std::size_t)>& sink,
                                   const std::function<void(double)>& progress) {
-  // Borders of pieces: each piece has paths of one group, at most a batch.
+  // Cuts the paths into pieces of one group each, of at most kBatch paths.
   std::vector<std::size_t> borders{0};
   for (std::size_t i = 1; i < paths.size(); ++i)
     if (paths[i] % whole.group_count() != paths[i - 1] % whole.group_count() ||

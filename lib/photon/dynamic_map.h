@@ -9,7 +9,7 @@
 
 namespace tempolux {
 
-/// The part of write_dynamic_map for these paths, which must be of one group; at least one.
+/// The photons and counts that write_dynamic_map makes of these paths: at least one path, all of one group.
 PhotonBatch difference_of(const PhotonTracer& static_scene, const PhotonTracer& whole,
                           std::span<const std::uint64_t> paths);
 

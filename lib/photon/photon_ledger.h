@@ -17,7 +17,7 @@
 
 namespace tempolux {
 
-/// Adds a batch to its group's entry.
+/// Adds a batch of the frame to its group's entry of the ledger.
 inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats::GroupFlux& group) {
   group.group = batch.block.group;
   group.frame = frame;
@@ -31,20 +31,13 @@ inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats:
   if (!batch.pilots.empty()) group.pilots = batch.pilots;
 }
 
-/// Sets a slightly negative absorbed flux, which Russian roulette may leave, to 0.
-inline void close_ledger(formats::GroupFlux& group) {
-  for (double& flux : group.absorbed) flux = std::max(flux, 0.0);
+/// Sets negative sums of absorbed flux to 0. Lossless walls absorb 0 on average, and Russian roulette may make the sum
+/// negative.
+inline void clamp_absorbed(std::array<double, 3>& absorbed) {
+  for (double& flux : absorbed) flux = std::max(flux, 0.0);
 }
 
-inline void add_counts(const PhotonBatch& batch, PhotonMapResult& result) {
-  result.path_count += batch.path_count;
-  result.ray_count += batch.ray_count;
-  result.specular_ray_count += batch.specular_ray_count;
-  result.medium_steps += batch.medium_steps;
-  result.seen_count += batch.seen_count;
-}
-
-/// Fills in counts, kinds, columns and majorants of the tracer's map.
+/// Fills in counts, kinds, columns, pilots and majorants of the tracer's map.
 inline void describe_map(const PhotonTracer& tracer, formats::PhotonHeader& header) {
   const PhotonOptions& options = tracer.options();
   header.group_count = tracer.group_count();
@@ -57,6 +50,26 @@ inline void describe_map(const PhotonTracer& tracer, formats::PhotonHeader& head
   if (tracer.stores_directions()) header.columns |= formats::column_direction;
 }
 
+/// Calls make(i) for each i < count in parallel, and take(i, result) for each result in order.
+template <class Make, class Take>
+void make_in_order(std::size_t count, const Make& make, const Take& take) {
+  using Result = decltype(make(count));
+  constexpr int kOfThread = 2;  // results that exist at once: one is made, one waits to be taken
+  parallel_ordered(
+      count, std::size_t(kOfThread * parallel_thread_count()),
+      [&](std::size_t i) -> std::shared_ptr<void> { return std::make_shared<Result>(make(i)); },
+      [&](std::size_t i, void* result) { take(i, *static_cast<Result*>(result)); });
+}
+
+/// Traces paths first .. last - 1 of a group in batches.
+inline std::vector<PhotonBatch> trace_group(const PhotonTracer& tracer, std::uint32_t group, std::uint64_t first,
+                                            std::uint64_t last) {
+  std::vector<PhotonBatch> batches;
+  for (std::uint64_t q = first; q < last; q += PhotonTracer::kBatch)
+    batches.push_back(tracer.trace_members(group, q, std::min(last, q + PhotonTracer::kBatch)));
+  return batches;
+}
+
 /// Writes a photon map from batches.
 class BatchWriter {
  public:
@@ -65,29 +78,27 @@ class BatchWriter {
               const std::function<void(double)>& progress)
       : writer_(sink, header), columns_(header.columns), progress_(progress) {}
 
-  /// Calls trace(i) for each i < count in parallel, writes the batches in order, and calls take(batch) for each written
-  /// one. Returns the counts and the sums of flux.
+  /// Calls trace(i) for each i < count in parallel, writes the batches in order, and calls take(batch) for each.
+  /// Returns the counts and the sums of flux.
   template <class Trace, class Take>
   PhotonMapResult write(std::size_t count, const Trace& trace, const Take& take) {
     struct Encoded {
       PhotonBatch batch;
       std::string bytes;
     };
-    constexpr int kOfThread = 2;  // in flight, 100 kB each: one is traced, one waits to be written
     PhotonMapResult result;
     FluxBalance sum;
-    parallel_ordered(
-        count, std::size_t(kOfThread * parallel_thread_count()),
-        [&](std::size_t i) -> std::shared_ptr<void> {
-          auto item = std::make_shared<Encoded>();
-          item->batch = trace(i);
-          if (!item->batch.block.photons.empty()) item->bytes = formats::encode_block(item->batch.block, columns_);
+    make_in_order(
+        count,
+        [&](std::size_t i) {
+          Encoded item{trace(i), {}};
+          if (!item.batch.block.photons.empty()) item.bytes = formats::encode_block(item.batch.block, columns_);
           return item;
         },
-        [&](std::size_t i, void* pointer) {
-          const auto& [batch, bytes] = *static_cast<const Encoded*>(pointer);
+        [&](std::size_t i, const Encoded& item) {
+          const auto& [batch, bytes] = item;
           if (!bytes.empty()) writer_.write_encoded(bytes, batch.block);
-          add_counts(batch, result);
+          result.add(batch);
           sum += batch;
           result.touched.insert(result.touched.end(), batch.touched.begin(), batch.touched.end());
           take(batch);
@@ -98,7 +109,7 @@ class BatchWriter {
     result.totals.absorbed_flux = array_of(sum.absorbed);
     return result;
   }
-  /// PhotonWriter::finish.
+  /// Completes the file (PhotonWriter::finish) and the totals.
   void finish(formats::PhotonTotals& totals, std::span<const formats::GroupFlux> ledger = {}) {
     totals = writer_.finish(totals, ledger);
   }
@@ -109,13 +120,13 @@ class BatchWriter {
   const std::function<void(double)>& progress_;
 };
 
-/// A tentative photon stores in place of a normal the probability that its collision was real: extinction / majorant in
-/// 65534ths.
+/// A tentative photon stores, in place of a normal, the probability that its collision was real: extinction / majorant,
+/// in units of 1/65534.
 inline std::array<std::uint16_t, 2> encode_likelihood(float extinction, float majorant) {
   const float share = majorant > 0 ? std::clamp(extinction / majorant, 0.0f, 1.0f) : 0;
   return {std::uint16_t(share * 65534 + 0.5f), 0};
 }
-/// Extinction at the photon when it was recorded, for this majorant.
+/// The extinction [1/m] at a tentative photon when it was recorded. `majorant` [1/m]: the majorant there.
 inline float extinction_when_recorded(const formats::Photon& photon, float majorant) {
   return float(photon.normal[0]) / 65534 * majorant;
 }

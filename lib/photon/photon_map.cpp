@@ -1,7 +1,5 @@
 #include "lib/photon/photon_map.h"
 
-#include <algorithm>
-
 #include "lib/photon/photon_ledger.h"
 
 namespace tempolux {
@@ -18,9 +16,8 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, formats::PhotonHead
       [&](const PhotonBatch& batch) {
         if (!ledger.empty()) add_to_ledger(batch, header.identity.first_frame, ledger[batch.block.group]);
       });
-  // Lossless walls absorb 0 on average; Russian roulette may make the sum negative.
-  for (double& flux : result.totals.absorbed_flux) flux = std::max(flux, 0.0);
-  for (formats::GroupFlux& group : ledger) close_ledger(group);
+  clamp_absorbed(result.totals.absorbed_flux);
+  for (formats::GroupFlux& group : ledger) clamp_absorbed(group.absorbed);
   writer.finish(result.totals, ledger);
   return result;
 }

@@ -10,15 +10,13 @@
 
 namespace tempolux {
 
-struct PhotonMapResult {
-  formats::PhotonTotals totals;  ///< photon_count and stored_flux are the writer's
-  std::uint64_t path_count = 0, ray_count = 0, specular_ray_count = 0, medium_steps = 0;
-  std::uint64_t seen_count = 0;               ///< photons stored inside the spheres of Lights::aim()
+struct PhotonMapResult : PhotonCounts {
+  formats::PhotonTotals totals;               ///< as written to the file
   std::vector<formats::TouchedPath> touched;  ///< if the tracer watches movers: touched paths, in the order of the map
 };
 
 /// Traces all photons and writes them in file order through `sink`. Batches are traced and encoded in parallel and
-/// written by one thread; a fixed number is in flight, so memory does not grow with the number of photons. `header`
+/// written one after another. Few of them exist at once, so memory does not grow with the number of photons. `header`
 /// identifies the scene; this function fills in counts and kinds. The same bytes for any number of threads. `progress`
 /// is called with values in [0, 1]; it may be empty.
 PhotonMapResult write_photon_map(const PhotonTracer& tracer, formats::PhotonHeader header,

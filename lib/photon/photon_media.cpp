@@ -15,8 +15,9 @@ const MajorantGrid& PhotonTracer::majorants() const {
   return media_ ? media_->majorants() : none;
 }
 
-/// Follows photons to the next surface, as the loop of follow() does without media. Photons that a medium scatters
-/// before they reach a surface are listed in wave.scattered. Returns the number of photons that arrive.
+/// Follows the photons of a wave to the next surface through media, as the loop of follow() does without media. Lists
+/// photons that a medium scatters before they reach a surface in wave.scattered. Returns the number of photons that
+/// arrive.
 std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Wave& wave, std::size_t& scattered_count,
                               PhotonBatch& batch) const {
   std::size_t arrived = 0;
@@ -48,9 +49,8 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     Rgb flux = path.flux;
     if (path.inside.any()) flux *= path.inside.transmittance_over(tracer_.frame().materials, t.distance);
     const float extinction = media_->extinction(position);
-    if (path.pilot) [[unlikely]]
-      pilot_signature::look(*path.pilot, bits & 1, flux, extinction,
-                            t.majorant);  // the last bit of the word, which FlightNumbers does not use
+    if (path.pilot) [[unlikely]]  // FlightNumbers does not use the last bit
+      pilot_signature::look(*path.pilot, bits & 1, flux, extinction, t.majorant);
     if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share) {
       const Rgb stored = flux * (1 / (t.majorant * options_.volume_share));
       batch.block.photons.push_back({.position = array_of(position),

@@ -20,7 +20,7 @@ void scale(std::vector<formats::Photon>& photons, double factor) {
     for (float& flux : photon.flux) flux = float(double(flux) * factor);
 }
 
-/// Scales all sums and photons of a batch by a factor.
+/// Scales all photons and sums of flux of a batch.
 void scale(PhotonBatch& batch, double factor) {
   scale(batch.block.photons, factor);
   for (Rgbd* flux : {&batch.emitted, &batch.escaped, &batch.absorbed}) *flux = *flux * factor;
@@ -36,8 +36,8 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
   std::vector<double> wanted(n);
   const bool dark = std::ranges::all_of(moments, [](double m) { return !(m > 0); });
   for (std::size_t g = 0; g < n; ++g) wanted[g] = dark ? 1 : std::sqrt(std::max(0.0, moments[g]));
-  // A level of paths / sqrt(moment) rises, and a group gets further paths once the level is above its own. Sorts the
-  // groups by their own levels, and finds the level at which `extra` paths are used up.
+  // The level of a group is paths / sqrt(moment). All groups that get further paths end at one common level, as vessels
+  // that are filled. Sorts the groups by their levels and finds the common level at which `extra` paths are used up.
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t(0));
   const auto begins = [&](std::size_t g) { return wanted[g] > 0 ? double(paths[g]) / wanted[g] : INFINITY; };
@@ -51,7 +51,7 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
     had += double(paths[order[count]]);
     level = (had + double(extra)) / weight;
   }
-  // Rounds to whole numbers: each is rounded down, and the largest remainders get one more.
+  // Rounds each number down; the groups with the largest remainders get one path more.
   std::vector<std::pair<double, std::size_t>> rests;
   std::uint64_t spent = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -129,8 +129,8 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   for (const formats::GroupFlux& entry : groups.ledger) {
     const auto n = double(std::max<std::uint64_t>(1, entry.paths));
     groups.paths.push_back(entry.paths);
-    // The moment belongs to a path that is the only one of its group. Stored flux is divided by n, so each square
-    // becomes n^2 times as large; the mean over n paths divides by n.
+    // Stored flux is divided by n, and the moment is that of undivided flux, so the squares get the factor n^2. The
+    // mean over n paths divides by n.
     groups.moments.push_back(squares[entry.group] * n);
   }
   groups.moments = neighbour_means(groups.moments, tracer.seed());
@@ -149,19 +149,16 @@ PhotonMapResult write_refined_map(const PhotonTracer& tracer, formats::PhotonHea
   formats::PhotonBlock block;
   bool more = reader.read_block(block);
   std::vector<formats::GroupFlux> ledger = groups.ledger;
-  parallel_ordered(
-      paths.size(), std::size_t(2 * parallel_thread_count()),
-      [&](std::size_t g) -> std::shared_ptr<void> {
-        auto fresh = std::make_shared<std::vector<PhotonBatch>>();
-        // The tracer divides flux by `members`.
-        const double factor = double(tracer.members()) / double(std::max<std::uint64_t>(1, paths[g]));
-        for (std::uint64_t q = groups.paths[g]; q < paths[g]; q += PhotonTracer::kBatch) {
-          fresh->push_back(tracer.trace_members(std::uint32_t(g), q, std::min(paths[g], q + PhotonTracer::kBatch)));
-          scale(fresh->back(), factor);
-        }
+  make_in_order(
+      paths.size(),
+      [&](std::size_t g) {
+        std::vector<PhotonBatch> fresh = trace_group(tracer, std::uint32_t(g), groups.paths[g], paths[g]);
+        // The tracer divides flux by members(), and the new map by paths[g].
+        for (PhotonBatch& batch : fresh)
+          scale(batch, double(tracer.members()) / double(std::max<std::uint64_t>(1, paths[g])));
         return fresh;
       },
-      [&](std::size_t g, void* pointer) {
+      [&](std::size_t g, const std::vector<PhotonBatch>& fresh) {
         const double factor = double(groups.paths[g]) / double(std::max<std::uint64_t>(1, paths[g]));
         for (; more && block.group == g; more = reader.read_block(block)) {
           if (factor != 1) scale(block.photons, factor);
@@ -170,13 +167,13 @@ PhotonMapResult write_refined_map(const PhotonTracer& tracer, formats::PhotonHea
         formats::GroupFlux& entry = ledger[g];
         for (auto* flux : {&entry.emitted, &entry.escaped, &entry.absorbed})
           for (double& f : *flux) f *= factor;
-        for (const PhotonBatch& batch : *static_cast<const std::vector<PhotonBatch>*>(pointer)) {
+        for (const PhotonBatch& batch : fresh) {
           if (!batch.block.photons.empty()) writer.write(batch.block);
           const std::int32_t frame = entry.frame;
           add_to_ledger(batch, frame, entry);
-          add_counts(batch, result);
+          result.add(batch);
         }
-        close_ledger(entry);
+        clamp_absorbed(entry.absorbed);
       });
   result.totals = writer.finish({}, ledger);
   return result;

@@ -21,11 +21,11 @@ namespace {
 
 using formats::PathKind;
 
-/// Largest distance of a light from a surface's plane at which the light counts as in the plane, as a multiple of the
-/// offset of rays that leave the surface (a few float steps).
+/// A light lies in a surface's plane if its distance from the plane is at most this multiple of the offset of rays that
+/// leave the surface (a few float steps).
 constexpr float kInPlane = 0.25f;
-constexpr int kMostPlanes = 8;           ///< number of coincident planes in which a light may lie
-constexpr float kStepsPerCrossing = 10;  ///< least number of tentative collisions in a mean crossing of the media's box
+constexpr int kMostPlanes = 8;           ///< largest number of coincident surfaces that contain a point light
+constexpr float kStepsPerCrossing = 10;  ///< least mean number of tentative collisions in a crossing of the media's box
 
 /// Kind of a photon by the events so far (formats/conventions.md).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
@@ -34,7 +34,7 @@ PathKind kind_after(bool diffuse_seen, bool specular_seen) {
 
 }  // namespace
 
-/// A photon that arrives at a surface; normals point to the side it comes from.
+/// A photon that arrives at a surface. Normals are turned to the side from which the photon comes.
 struct Arrival {
   Vec3 wi, normal_geometric, normal;
   Frame frame;
@@ -53,17 +53,17 @@ struct Arrival {
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
   }
 
-  /// Event D towards `travel`: f_D cos / pdf. The pdf is that of the cosine to the geometric normal, times the
-  /// probability of the event. f_D is evaluated as for an eye that looks against `travel` (ShadingPoint in
-  /// lib/render/shading.h): by the shading normal, or by the geometric normal where the shading normal faces away from
-  /// `travel`. Black behind the surface.
+  /// Weight of an event D towards `travel`: f_D cos / pdf. The pdf is that of cosine-distributed directions around the
+  /// geometric normal, times the probability of the event. f_D is evaluated as for a camera that looks against
+  /// `travel`: with the shading normal, or with the geometric normal if the shading normal faces away from `travel`
+  /// (SeenSide). Black behind the surface.
   Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec3 travel) const {
     const Frame geometric(normal_geometric);
     const Vec3 out = geometric.to_local(travel), in = geometric.to_local(wi);
     if (!(out.z > 0)) return Rgb(0.0f);
     const Vec3 shaded = frame.to_local(travel);
     const bool by_shading = shaded.z > kLooksAway;
-    // Light from behind the shading normal is visible only from behind it, and is scattered by D only.
+    // Light from behind the shading normal is visible only where the geometric normal is used, and only D scatters it.
     if (!(wi_local.z > 0)) return by_shading ? Rgb(0.0f) : bsdf.eval_diffuse(out, in) * kPi;
     const float p = bsdf.pdf_diffuse(chosen.wi, wi_local) / pdf_hemisphere_cos(chosen.wi.z);
     return by_shading ? bsdf.eval_diffuse(shaded, wi_local) * (kPi * shading_correction / p)
@@ -78,10 +78,11 @@ struct Arrival {
   }
 
   /// True if the normals differ by half a degree or more.
-  bool bent() const { return !flat && dot(normal, normal_geometric) < 0.99996f; }
+  bool bent() const { return !flat && dot(normal, normal_geometric) < kBent; }
 
-  /// Event S into directions in which the eye uses the geometric normal, since the shading normal faces away from them
-  /// (SeenSide). Black for other directions, and if D was drawn. Comes in addition to the events by the shading normal.
+  /// An event S by the geometric normal. It counts only for directions from which a camera uses the geometric normal,
+  /// because the shading normal faces away from them (SeenSide). Black for other directions, and if D was drawn. Such
+  /// events are added to those by the shading normal.
   Bsdf::Sample scatter_by_geometric_normal(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
     const Frame geometric(normal_geometric);
     Bsdf::Sample next = bsdf.sample(geometric.to_local(wi), u_lobe, u);
@@ -95,12 +96,12 @@ struct Arrival {
 
 namespace {
 
-/// Data that only materials with textures or alpha need; the constructor bends the point's normal.
+/// A surface whose material has textures or alpha. The constructor applies the normal map to the point.
 struct Textured {
   Vec3 smooth;  ///< the point's shading normal without a normal map
   SurfaceMaterial material;
   Bsdf bsdf;
-  float coverage;  ///< share of photons that hit the surface there
+  float coverage;  ///< share of photons that hit the surface there (alpha)
 
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
       : smooth(point.normal),
@@ -212,9 +213,7 @@ PhotonBatch PhotonTracer::trace_paths(std::span<const std::uint64_t> paths) cons
   return batch;
 }
 
-void PhotonTracer::watch(const MoverWatch* watch) { watch_ = watch; }
-
-/// Random numbers of a scattering event.
+/// Random numbers of an event.
 struct PhotonTracer::Draw {
   std::uint32_t bounce;
   Vec2 u;
@@ -223,14 +222,15 @@ struct PhotonTracer::Draw {
 
 namespace {
 
-/// Sorts the photons from number `first` on by their paths; those of a path stay in their order. of: path of each.
-void sort_by_path(std::span<const std::uint8_t> of, std::size_t first, PhotonBatch& batch) {
+/// Sorts the photons from number `first` on by their paths (`paths`: the path of each); photons of one path keep their
+/// order.
+void sort_by_path(std::span<const std::uint8_t> paths, std::size_t first, PhotonBatch& batch) {
   std::array<std::uint32_t, 257> next{};
-  for (const std::uint8_t path : of) ++next[path + 1u];
+  for (const std::uint8_t path : paths) ++next[path + 1u];
   for (std::size_t path = 1; path < next.size(); ++path) next[path] += next[path - 1];
   thread_local std::vector<std::uint32_t> place;
   place.clear();
-  for (const std::uint8_t path : of) place.push_back(next[path]++);
+  for (const std::uint8_t path : paths) place.push_back(next[path]++);
   const auto sort = [&](auto& column) {
     if (column.empty()) return;
     thread_local std::remove_reference_t<decltype(column)> before;
@@ -244,7 +244,7 @@ void sort_by_path(std::span<const std::uint8_t> of, std::size_t first, PhotonBat
 
 }  // namespace
 
-/// Starts the paths of a wave. Returns the number of paths alive: lights that are off emit nothing.
+/// Starts the paths of a wave. Returns the number of paths with flux: lights that are off emit nothing.
 std::size_t PhotonTracer::start(std::span<const std::uint64_t> numbers, std::uint32_t first_path, Wave& wave,
                                 PhotonBatch& batch) const {
   std::array<double, 4> emission_numbers[kWave];
@@ -275,13 +275,13 @@ std::size_t PhotonTracer::start(std::span<const std::uint64_t> numbers, std::uin
   return count;
 }
 
-/// Processes the photons of a wave step by step: the steps of different photons are independent, so the processor
-/// overlaps them.
+/// Processes all photons of a wave in each step. The work for different photons is independent, so the processor
+/// overlaps it.
 void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path,
                           PhotonBatch& batch) const {
   Wave wave;
   std::size_t count = start(path_numbers, first_path, wave, batch);
-  thread_local std::vector<std::uint8_t> owners;  // of the photons of this wave; not in media
+  thread_local std::vector<std::uint8_t> owners;  // paths of the photons of this wave; unused with media
   owners.clear();
   const std::size_t first_photon = batch.block.photons.size();
   Vec2 numbers[kWave];
@@ -329,9 +329,9 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
       if (wave.touched[i]) batch.touched.push_back({path_numbers[i], wave.touched[i]});
 }
 
-/// A surface receives nothing from a point light in its plane, since the cosine is 0; light samples give 0, too.
-/// Rounding starts half of the photons behind the plane, and they would put half of the light's flux into one place.
-/// Such photons pass the surface. Returns the number that still arrives.
+/// Lets photons pass surfaces whose plane contains their point light. Such a surface receives nothing, because the
+/// cosine is 0 (light samples give 0, too). Without this function rounding would start half of the photons behind the
+/// plane, and they would bring half of the light's flux to one place. Returns the number of photons that still arrive.
 std::size_t PhotonTracer::leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < arrived; ++i) {
@@ -361,16 +361,16 @@ std::size_t PhotonTracer::leave_planes_of_lights(std::size_t arrived, Wave& wave
   return kept;
 }
 
-/// A photon's arrival, and the surface there.
+/// A photon's arrival and the surface where it arrives.
 struct PhotonTracer::Meeting : Arrival {
   const SurfacePoint& point;
   float distance;  ///< m: length of the ray
   const Bsdf& bsdf;
-  float coverage;  ///< share of photons that hit the surface there
+  float coverage;  ///< share of photons that hit the surface there (alpha)
   Vec3 smooth;     ///< the shading normal without a normal map
 };
 
-/// Lets a photon arrive at a surface; false if it ends there.
+/// Processes the arrival of a photon at a surface. Returns false if its path ends there.
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw,
                            PhotonBatch& batch) const {
   const Vec3 travel = path.ray.direction;
@@ -384,10 +384,10 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
                     batch);
 }
 
-/// Aims half of the first bounces (events D) outside the spheres that cameras see at the spheres, with less flux. Where
-/// light from a distant ground enters a room, only one photon in thousands would otherwise find the way, with thousands
-/// of times the flux of others. Replaces `travel`, or leaves it; returns the density of the cosine over the density of
-/// both strategies together, at most 1 / (1 - kTowards).
+/// Aims the share Aim::kTowards of the first events D that happen outside the spheres around what cameras see at the
+/// spheres. If light from a distant ground enters a room, only one photon in thousands would otherwise enter, with
+/// thousands of times the flux of others. Replaces `travel` or keeps it. Returns the pdf of cosine-distributed
+/// directions over the pdf of both strategies together, by which the flux is multiplied; at most 1 / (1 - kTowards).
 float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce,
                         Vec3& travel) const {
   const Aim& aim = lights_.aim();
@@ -403,7 +403,7 @@ float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, st
   return float(cosine / (double(1 - Aim::kTowards) * cosine + double(Aim::kTowards) * towards));
 }
 
-/// Records a photon with this flux where it arrives, if the surface has a Lambert lobe and the map stores its kind.
+/// Records a photon of this flux [W] where it arrives, if the surface has a Lambert lobe and the map stores its kind.
 void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uint32_t bounce,
                          PhotonBatch& batch) const {
   const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
@@ -426,7 +426,7 @@ void PhotonTracer::store(const Path& path, const Meeting& at, Rgb flux, std::uin
     record_direction(at.wi, batch);
 }
 
-/// Records a photon, then scatters or absorbs it; false if it ends there.
+/// Records a photon, then scatters or absorbs it. Returns false if its path ends there.
 bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, PhotonBatch& batch) const {
   const SurfacePoint& point = at.point;
   const Bsdf& bsdf = at.bsdf;
@@ -444,11 +444,12 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;
   Bsdf::Sample next;
   Vec3 travel;
-  // Only once per path: the product of many such factors would leave the expectation to very rare paths.
+  // A path is aimed only once: a product of several factors of aim() would be very large for very rare paths.
   const bool aims =
       !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
   float aimed = 1;
-  bool both = false;  // if both sides are possible, one is chosen with probability 1/2, so each counts twice
+  bool both =
+      false;  // true if events by both normals are possible: one is chosen with probability 1/2 and counts twice
   if (bsdf.has_specular() && at.bent()) {
     next = at.scatter_by_geometric_normal(bsdf, u_lobe, draw.u, travel);
     both = !is_black(next.weight);
@@ -473,8 +474,8 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
-  path.flux = reflected *
-              (survives ? aimed / survival : 0);  // roulette depends on the surface only: aimed photons carry less flux
+  // `survival` leaves out the factor `aimed`: it depends on the surface alone, so aimed photons have less flux.
+  path.flux = reflected * (survives ? aimed / survival : 0);
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   if (!next.straight) (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;

@@ -21,18 +21,18 @@ std::uint64_t draw(int frame, std::uint32_t group) {
   return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group);
 }
 
-/// The photons of groups that an update keeps.
+/// Reads the photons of the groups that an update keeps.
 class KeptPhotons {
  public:
-  /// own_only: reads only the groups that the map, an overlay, holds itself. none: reads nothing, because the base of
-  /// the new map holds these groups.
+  /// own_only: reads only the groups that the earlier map, an overlay, holds itself. none: reads nothing, because the
+  /// base of the new map holds all kept groups.
   KeptPhotons(const MapUpdate& update, bool own_only, bool none) : previous_(update.previous), none_(none) {
     if (previous_.is_kept() || none) return;
     if (own_only) file_ = std::make_unique<formats::photons::FileReader>(update.path);
     else whole_ = std::make_unique<formats::PhotonReader>(update.path, formats::PhotonReadOptions{.digest = false});
     read();
   }
-  /// Calls take(block) for each block of the group; blocks of earlier groups are skipped.
+  /// Calls take(block) for each block of the group. Skips blocks of earlier groups, so `group` must ascend.
   template <class Take>
   void of(std::uint32_t group, const Take& take) {
     if (previous_.is_kept() && !none_)
@@ -62,13 +62,6 @@ std::set<std::uint32_t> groups_beside_base(const MapUpdate& update) {
   if (!previous.header.base_name.empty()) groups = previous.is_kept() ? previous.own : own_groups(update.path);
   groups.insert(update.groups.begin(), update.groups.end());
   return groups;
-}
-
-std::vector<PhotonBatch> trace_group(const PhotonTracer& tracer, std::uint32_t group) {
-  std::vector<PhotonBatch> batches;
-  const auto [first, last] = tracer.batches_of(group);
-  for (std::size_t b = first; b < last; ++b) batches.push_back(tracer.trace(b));
-  return batches;
 }
 
 }  // namespace
@@ -140,32 +133,29 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, formats::PhotonHea
       ledger.push_back(previous.ledger[next]);
     }
   };
-  parallel_ordered(
-      groups.size(), std::size_t(2 * parallel_thread_count()),
-      [&](std::size_t i) -> std::shared_ptr<void> {
-        return std::make_shared<std::vector<PhotonBatch>>(trace_group(tracer, groups[i]));
-      },
-      [&](std::size_t i, void* pointer) {
+  make_in_order(
+      groups.size(), [&](std::size_t i) { return trace_group(tracer, groups[i], 0, tracer.members()); },
+      [&](std::size_t i, std::vector<PhotonBatch>& batches) {
         keep_until(groups[i]);
         formats::GroupFlux entry;
         bool any = false;
         if (previous.is_kept()) previous.photons[groups[i]].clear();
-        for (PhotonBatch& batch : *static_cast<std::vector<PhotonBatch>*>(pointer)) {
+        for (PhotonBatch& batch : batches) {
           add_to_ledger(batch, header.identity.first_frame, entry);
-          add_counts(batch, result);
+          result.add(batch);
           if (batch.block.photons.empty()) continue;
           writer.write(batch.block), any = true;
           if (previous.is_kept()) previous.photons[groups[i]].push_back(std::move(batch.block));
         }
         if (overlay && !any) writer.write({groups[i], {}, {}, {}});
-        close_ledger(entry);
+        clamp_absorbed(entry.absorbed);
         ledger.push_back(entry);
         next = groups[i] + 1;
       });
   keep_until(header.group_count);
   kept.finish();
   result.totals = writer.finish({}, ledger);
-  if (!overlay) previous.photons.clear();  // kept in memory only for overlays, whose reader needs the base
+  if (!overlay) previous.photons.clear();  // a map is kept in memory only if its file is an overlay
   if (previous.is_kept()) previous.become(header, ledger, std::move(differing));
   return result;
 }

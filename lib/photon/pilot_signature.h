@@ -1,4 +1,4 @@
-// lib/photon/pilot_signature.h -- hashes of what a pilot path met. Equal paths have equal hashes; different paths
+// lib/photon/pilot_signature.h -- hashes what a pilot path meets. Equal paths have equal hashes; different paths
 // have different hashes with probability 1 - 2^-64.
 #pragma once
 
@@ -9,9 +9,7 @@
 #include "lib/core/random.h"
 #include "lib/trace/trace.h"
 
-namespace tempolux {
-
-namespace pilot_signature {
+namespace tempolux::pilot_signature {
 
 inline void add(std::uint64_t& hash, std::uint64_t word) { hash = mix64(hash ^ word) + 0x9e3779b97f4a7c15ull; }
 inline std::uint64_t bits(float a, float b) {
@@ -26,15 +24,15 @@ inline void start(formats::PhotonPilot& pilot, const Ray& ray, Rgb flux) {
     add(pilot.vertices, bits(a, b));
 }
 
-/// Adds a tentative collision in a medium: flux [W], extinction and majorant [1/m]; `positive` is a random bit for the
-/// place.
+/// Adds a tentative collision in a medium: flux [W], extinction and majorant [1/m]. `positive`: a random bit of the
+/// place, the sign with which the collision counts in the sketch.
 inline void look(formats::PhotonPilot& pilot, bool positive, Rgb flux, float extinction, float majorant) {
   add(pilot.extinctions, std::bit_cast<std::uint32_t>(extinction));
   const double share = double((flux.r + flux.g + flux.b) / 3) * double(extinction) / double(majorant);
   pilot.sketch += positive ? share : -share;
 }
 
-/// Adds a real collision at the last place.
+/// Adds a real collision: bounce of the path, and number of the tentative collision since the last bounce.
 inline void collide(formats::PhotonPilot& pilot, std::uint32_t bounce, std::uint32_t step) {
   add(pilot.collisions, std::uint64_t(bounce) << 32 | step);
 }
@@ -45,5 +43,4 @@ inline void meet(formats::PhotonPilot& pilot, std::uint32_t bounce, const Hit& h
   add(pilot.vertices, std::uint64_t(hit.surface) << 32 | hit.triangle);
 }
 
-}  // namespace pilot_signature
-}  // namespace tempolux
+}  // namespace tempolux::pilot_signature

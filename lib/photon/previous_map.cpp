@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kGroupsTogether = 16;  ///< groups whose pilots one task traces
 
-/// Difference between two sets of a group's pilots, as the strategy defines it.
+/// PreviousMap::change of a group with these pilots.
 double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot> then,
                   std::span<const formats::PhotonPilot> now) {
   double sum = 0;
@@ -31,7 +31,7 @@ double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot>
   return strategy == UpdateStrategy::hybrid ? sum : sum / double(std::max<std::size_t>(1, then.size()));
 }
 
-/// Traces the pilots of all groups through the tracer's scene.
+/// Traces the pilots of all groups through the tracer's scene and sets PreviousMap::change.
 void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMap& previous) {
   const std::uint32_t pilots = previous.header.pilots;
   previous.change.assign(previous.ledger.size(), 0.0);
@@ -42,8 +42,8 @@ void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMa
   previous.pilot_paths = std::uint64_t(pilots) * previous.ledger.size();
 }
 
-/// Measures the change of extinction at the stored photons. Cells of the majorants without smoke in this frame need no
-/// look-up.
+/// Measures the change of extinction at the stored photons. Media are not evaluated in cells of the majorants that are
+/// empty in this frame.
 class Census {
  public:
   Census(const PhotonTracer& tracer, Vec3 offset) : tracer_(tracer), offset_(offset) {
@@ -84,7 +84,6 @@ void need_pilots(const std::string& path, const PreviousMap& previous, UpdateStr
 
 }  // namespace
 
-/// Groups whose photons the overlay file at `path` stores; the photons of other groups are in its base file.
 std::set<std::uint32_t> own_groups(const std::string& path) {
   formats::photons::FileReader reader(path);
   std::set<std::uint32_t> groups;

@@ -10,8 +10,8 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> static_records,
                                std::span<const IrradianceRecord> gathered, float least_cosine,
                                const InfluenceThresholds& thresholds, MovingObjects moving)
     : influence_(static_records, changes, thresholds),
-      updated_({.least_cosine = least_cosine}),
-      gathered_({.least_cosine = least_cosine}),
+      updated_(least_cosine),
+      gathered_(least_cosine),
       moving_(std::move(moving)) {
   std::vector<IrradianceRecord> updated(static_records.begin(), static_records.end());
   for (std::size_t i = 0; i < updated.size(); ++i)

@@ -49,7 +49,7 @@ IDEAS = (
     Idea("shadow borders", "where points side by side have direct light that differs eightfold it is sampled instead", "points",
          (("lib/irradcache/points.cpp", "bool even() const { return !(least * kContrast < most); }", "bool even() const { return true; }"),)),
     Idea("answers by cell", "which point answers in a cell of half a spacing is found once", "points",
-         (("lib/irradcache/points.cpp", "  std::size_t slot = mix64(q.cell) & mask_;\n  for (", "  std::size_t slot = mix64(q.cell) & mask_;\n  if (mask_ > 0) return {search_cell(q.cell)};\n  for ("),)),
+         (("lib/irradcache/points.cpp", "  std::size_t slot = mix64(q.cell) & mask_;\n  for (", "  std::size_t slot = mix64(q.cell) & mask_;\n  if (mask_ > 0) return search_cell(q.cell);\n  for ("),)),
     # ---- records
     Idea("gradients", "records are extrapolated by their gradients", "cache",
          (("lib/gather/place_records.cpp", "  for (Vec3& g : record.translational) g *= float(kept);\n", "  record.translational = record.rotational = {};\n"),)),

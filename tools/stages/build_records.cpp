@@ -148,7 +148,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   if (file.header.lamps_apart > 0)
     throw InputError(name +
                      ": its records leave out light of lamps close to surfaces; give a file made with --map static");
-  RecordStore fixed({.least_cosine = float(file.header.least_cosine)});
+  RecordStore fixed(float(file.header.least_cosine));
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, static_frame, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());

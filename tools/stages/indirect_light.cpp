@@ -113,7 +113,7 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const Render
     known_.localised = localised_.get();
     return;
   }
-  records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = float(file.header.least_cosine)});
+  records_ = std::make_unique<RecordStore>(float(file.header.least_cosine));
   history_ = add_records(tool, name, file, frame, *records_);
   known_.records = records_.get();
   if (!(file.header.lamps_apart > 0)) return;

@@ -176,7 +176,7 @@ TEST(RecordStore, WeightIsAHat) {
 
 /// Records count only where the cosine between normals is above least_cosine.
 TEST(RecordStore, CountsWithinItsAngle) {
-  RecordStore store({.least_cosine = 0.9f});
+  RecordStore store(0.9f);
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
   const auto count_at = [&](float cosine) {
     return store.interpolate({}, {std::sqrt(1 - cosine * cosine), cosine, 0}).count;

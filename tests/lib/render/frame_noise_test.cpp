@@ -139,7 +139,7 @@ TEST(FrameNoise, SeenErrorIsReachedOrNot) {
 /// read the record. Samples stop when their own noise is half of what is requested, long before the limit.
 TEST(FrameNoise, SamplesStopWhereRecordsHaveTheNoise) {
   const Cornell c;
-  RecordStore store({.least_cosine = 0});
+  RecordStore store(0);
   ASSERT_TRUE(store.add(c.record_at({32, 30}, 2, Rgb(1.0f))));
   KnownLight known;
   known.records = &store;

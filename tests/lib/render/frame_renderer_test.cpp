@@ -168,7 +168,7 @@ TEST(FrameRenderer, ABaseWithoutNoiseIsKnown) {
 TEST(FrameRenderer, NoiseOfLocalisedRecordsIsThatOfPlainOnes) {
   const Cornell c;
   const IrradianceRecord record = c.record_at({32, 18}, 0.2f, {0.5f, -1, 0.25f});
-  RecordStore store({.least_cosine = 0});
+  RecordStore store(0);
   ASSERT_TRUE(store.add(record));
   const std::vector<RecordChange> changes{{record.irradiance, 0}};
   const LocalisedLight localised({&record, 1}, changes, {}, 0, {}, MovingObjects(c.frame));
