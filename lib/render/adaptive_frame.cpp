@@ -11,6 +11,10 @@
 namespace tempolux {
 namespace {
 
+/// Largest number of samples of the part lit, and of the part onward, per camera ray. Samples at one place miss the
+/// differences between the places of a pixel, such as edges of shadows and folds.
+constexpr int kMostPerRay = 2;
+
 /// Joins sums over `count` new samples of each part to `means`, the means over the `first` samples before them.
 void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& count, PathParts& means) {
   join(sum.own, first.own, count.own, means.own);
@@ -19,12 +23,12 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
   join(sum.stored_noise, first.own, count.own, means.stored_noise);
 }
 
-/// How many samples of each part a pixel that has `have` needs to reach `wanted`. Samples of the parts lit and onward
-/// start from camera rays, so these need further camera rays, too.
+/// Numbers of further samples that a pixel with `have` samples needs to reach `wanted`. Samples of the parts lit and
+/// onward start from camera rays, so they need further camera rays, too.
 PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
   const auto further = [](int has, int wants) { return std::max(0, wants - has); };
   PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
-  more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
+  more.own = std::max(more.own, (std::max(more.lit, more.onward) + kMostPerRay - 1) / kMostPerRay);
   return more;
 }
 
@@ -34,19 +38,15 @@ class AdaptiveFrame {
   AdaptiveFrame(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame)
       : view_(view),
         options_(options),
-        camera_{scene, view, options},
+        camera_{scene, view, options.known, options.seed},
         frame_(frame),
         noise_(view, options),
         check_(view, options.seed, options.mask),
-        of_check_(options),
-        around_(options),
+        camera_again_{scene, view, options.known, check_.seed()},
+        again_rays_(check_.size()),
         counts_(frame.mean.pixels.size(), noise_.first()),
         parts_(frame.mean.pixels.size()),
-        brightest_(options.spread_outliers ? frame.mean.pixels.size() : 0) {
-    around_.mask = noise_.looked_at();
-    of_check_.seed = check_.seed();
-    again_rays_.resize(check_.size());
-  }
+        brightest_(options.spread_outliers ? frame.mean.pixels.size() : 0) {}
   void render() {
     take_first();
     if (options_.seen_error > 0) reach_seen_error();
@@ -73,31 +73,32 @@ class AdaptiveFrame {
   RenderedFrame& frame_;
   PixelNoise noise_;
   NoiseCheck check_;
-  FrameOptions of_check_;
-  std::vector<RayCounts> again_rays_;  ///< rays of the second rendering, by slot (NoiseCheck::slot)
-  FrameOptions around_;                ///< options with the mask of all pixels whose first samples are needed
-  std::vector<PartCounts> counts_;     ///< samples of each pixel, by part
-  ParallelArray<PathParts> parts_;     ///< means over these samples
-  ParallelArray<BrightestSamples> brightest_;
+  const CameraSampler camera_again_;           ///< of the second rendering
+  std::vector<RayCounts> again_rays_;          ///< rays of the second rendering, by slot (NoiseCheck::slot)
+  std::vector<PartCounts> counts_;             ///< numbers of samples of each pixel, by part
+  ParallelArray<PathParts> parts_;             ///< means over these samples
+  ParallelArray<BrightestSamples> brightest_;  ///< empty unless outliers are spread
 };
 
+/// Repeats a pass with other random numbers if the pixel is one of those that are rendered twice.
 void AdaptiveFrame::take_again(const PixelPass& pass) {
   const std::uint32_t slot = check_.slot(pass.x, pass.y);
   if (slot == kNone || !shown(pass.pixel)) return;
-  join_parts(sample_pixel({camera_.scene, view_, of_check_}, pass, &check_.again_halves(slot), again_rays_[slot]),
-             pass.first, pass.count, check_.again(slot));
+  join_parts(sample_pixel(camera_again_, pass, &check_.again_halves(slot), again_rays_[slot]), pass.first, pass.count,
+             check_.again(slot));
 }
 
+/// Takes the first samples of all pixels whose noise is looked at.
 void AdaptiveFrame::take_first() {
   LayerImage& image = frame_.mean;
   const PartCounts first = noise_.first();
   const bool spreads = options_.spread_outliers;
-  for_each_pixel(view_, around_, frame_.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  for_each_pixel(view_, noise_.looked_at(), frame_.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PixelSum half[2];
     const std::uint64_t before = counts.onward;
     const PixelPass pass{pixel, x, y, {}, first};
     for_each_sample(camera_, pass, image.halves_of(pixel), counts, [&](int s, const PathParts& sample) {
-      half[noise_.half(s)].add(sample);
+      half[pass.half(s)].add(sample);
       if (spreads) brightest_[pixel].note(sample);
     });
     noise_.note(pixel, half[0], half[1], counts.onward - before);
@@ -111,7 +112,7 @@ void AdaptiveFrame::take_first() {
 /// rays.
 std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void(double)>& progress) {
   const std::uint64_t before = frame_.rays.camera;
-  for_each_pixel(view_, options_, frame_.rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  for_each_pixel(view_, options_.mask, frame_.rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PartCounts& have = counts_[pixel];
     const PartCounts more = missing(have, noise_.wanted_at(x, y, times));
     if (more.own == 0) return;
@@ -140,7 +141,7 @@ void AdaptiveFrame::put_together() {
       pixels, [&](std::size_t pixel) { return parts_[pixel].sum(); }, frame_.mean.stored_noise);
 }
 
-/// Spreads outliers: first takes further samples where too few have judged a bright one, then calls spread_outliers.
+/// Spreads outliers. Where fewer than kJudges samples of a part exist beside an outlier, takes further samples first.
 void AdaptiveFrame::spread() {
   std::vector<Layers>& pixels = frame_.mean.pixels;
   SampledPixels samples{
@@ -169,8 +170,9 @@ void AdaptiveFrame::spread() {
   for (std::size_t i = 0; i < judged.size() && !confirmed.empty(); ++i) note_confirmed(judged[i], before[i]);
 }
 
-/// Notes the layer where kJudges samples have confirmed an outlier. The light may lie in one half only, and a filter
-/// that takes the difference of the halves for noise would remove it.
+/// Marks the layer of the pixel's brightest sample as confirmed if spread_outliers took no light from this layer;
+/// `before`: the pixel before it. All light of the sample may lie in one half, and without the mark a filter that takes
+/// the difference of the halves for noise would remove the light.
 void AdaptiveFrame::note_confirmed(std::size_t pixel, const Layers& before) {
   const BrightestSamples& claims = brightest_[pixel];
   const BrightestSample& claim = std::max({claims.own, claims.lit, claims.onward},
@@ -183,15 +185,16 @@ void AdaptiveFrame::note_confirmed(std::size_t pixel, const Layers& before) {
 /// make the measured noise 0 +- 10.
 double AdaptiveFrame::noise_left() const { return std::max(frame_.noise.image.codes, frame_.noise.image.codes_error); }
 
-/// Noise in codes at which samples stop: seen_error, or more if further samples hardly reduce the noise because records
-/// and photons have most of it. Samples whose own noise is half of seen_error raise the total by at most 15 % then.
+/// Noise in codes at which sampling stops: seen_error, or, if this is larger, the noise of records and photons with
+/// half of seen_error added in quadrature. Further samples cannot reduce the noise of records and photons, and the
+/// added half raises the total by at most 15 %.
 double AdaptiveFrame::noise_goal() const {
   return std::max(options_.seen_error, std::hypot(frame_.noise.stored_codes, options_.seen_error / 2));
 }
 
-/// Adds passes of samples until noise_left() is below noise_goal(). After each pass the noise is measured, and the
-/// noise that remains decides the size of the next pass, by error_exponent(). How much a pass gains is only known after
-/// the pass, so no pass takes more than four times the samples taken so far.
+/// Adds passes of samples until noise_left() is at most noise_goal(). The noise measured after a pass decides the size
+/// of the next one, by error_exponent(). The measurement may be wrong, so a pass aims at no more than four times the
+/// samples of the pass before.
 void AdaptiveFrame::reach_seen_error() {
   constexpr double kMostTimes = 4, kLeastTimes = 1.1;
   constexpr int kMostIdle = 8;  // passes without a sample: all pixels are at their limit, or show no noise
@@ -218,15 +221,12 @@ void AdaptiveFrame::finish() {
         check_.shares(frame_.mean.sample_halves, [&](std::size_t pixel) { return parts_[pixel].sum(); });
   for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
   frame_.mean.samples = noise_.first().own;
-  double samples = 0;
-  std::size_t pixels = 0;
   for (std::size_t p = 0; p < counts_.size(); ++p) {
-    samples += counts_[p].own;
-    ++pixels;
-    if (shown(p) && counts_[p].own >= options_.adaptive_limit) frame_.at_limit += 1;
+    frame_.samples_per_pixel += counts_[p].own;
+    frame_.at_limit += shown(p) && counts_[p].own >= options_.adaptive_limit;
   }
-  frame_.samples_per_pixel = samples / double(std::max<std::size_t>(1, pixels));
-  frame_.at_limit /= double(std::max<std::size_t>(1, pixels));
+  frame_.samples_per_pixel /= double(counts_.size());
+  frame_.at_limit /= double(counts_.size());
 }
 
 }  // namespace

@@ -14,35 +14,28 @@
 namespace tempolux {
 namespace {
 
-/// Adds samples [first, first + count) of every pixel of one half to `image`.
-void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
-                 int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
-  const int first = image.samples;
-  FrameOptions of_pass = options;
-  of_pass.seed = seed;
-  for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    const PixelPass pass{pixel, x, y, {first, first, first}, {count, count, count}};
-    const PixelSum sum = sample_pixel({scene, view, of_pass}, pass, image.halves_of(pixel), counts);
-    join(sum, first, count, image.pixels[pixel]);
-    if (!image.stored_noise.empty()) join(sum.stored_noise, first, count, image.stored_noise[pixel]);
+/// Takes `count` samples of every pixel of the mask; `image` has none.
+void take_samples(const CameraSampler& camera, std::span<const std::uint8_t> mask, int count, LayerImage& image,
+                  RayCounts& rays, const std::function<void(double)>& progress) {
+  for_each_pixel(camera.view, mask, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    const PixelSum sum = sample_pixel(camera, {pixel, x, y, {}, {count, count, count}}, image.halves_of(pixel), counts);
+    join(sum, 0, count, image.pixels[pixel]);
+    if (!image.stored_noise.empty()) join(sum.stored_noise, 0, count, image.stored_noise[pixel]);
   });
-  image.samples += count;
+  image.samples = count;
 }
 
 /// Takes all samples at once, and renders some pixels a second time to measure noise.
 void render_fixed(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
-  render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
+  take_samples({scene, view, options.known, options.seed}, options.mask, options.samples, frame.mean, frame.rays,
+               options.progress);
   NoiseCheck check(view, options.seed, options.mask);
-  FrameOptions again = options;
-  again.seed = check.seed();
+  const CameraSampler again{scene, view, options.known, check.seed()};
   const PartCounts all{options.samples, options.samples, options.samples};
-  for_each_pixel(view, again, frame.noise_rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    const std::uint32_t slot = check.slot(x, y);
-    if (slot == kNone) return;
-    Layers mean;
-    join(sample_pixel({scene, view, again}, {pixel, x, y, {}, all}, &check.again_halves(slot), counts), 0,
-         options.samples, mean);
-    check.again(slot).own = mean;
+  for_each_pixel(view, options.mask, frame.noise_rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    if (const std::uint32_t slot = check.slot(x, y); slot != kNone)
+      join(sample_pixel(again, {pixel, x, y, {}, all}, &check.again_halves(slot), counts), 0, options.samples,
+           check.again(slot).own);
   });
   const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };
   frame.noise = check.measure(frame.mean.pixels, as_sampled, frame.mean.stored_noise);
@@ -89,31 +82,26 @@ void join_halves(RenderedFrame& frame) {
   frame.noise = noise_of_halves(frame.mean.pixels, a.pixels, b.pixels);
 }
 
-/// Seeds of the two halves of a reference, different from any frame's seed. If one half used a frame's random numbers,
-/// a frame with the same seed and number of samples would look better than it is.
-std::array<std::uint64_t, 2> seeds_of_halves(const FrameOptions& options) {
-  return {options.seed ^ 0x68616c665f6f6e65ull, options.seed ^ 0x68616c665f74776full};
-}
+/// Bits by which the seeds of a reference's halves differ from the frame's seed. If a half used the random numbers of a
+/// frame, a frame with the same seed and number of samples would look better than it is.
+constexpr std::array<std::uint64_t, 2> kSeedsOfHalves{0x68616c665f6f6e65ull, 0x68616c665f74776full};
 
 }  // namespace
 
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
   RenderedFrame frame;
-  const bool halves = options.halves;
-  if (!halves && options.pixel_error > 0) {
-    frame.mean = empty_layers(view, options);
-    render_adaptive(scene, view, options, frame);
-  } else if (!halves) {
-    frame.mean = empty_layers(view, options);
-    render_fixed(scene, view, options, frame);
-  } else {
-    const std::array<std::uint64_t, 2> seeds = seeds_of_halves(options);
-    frame.half[0] = empty_layers(view, options);
-    frame.half[1] = empty_layers(view, options);
-    for (std::size_t h = 0; h < 2; ++h)
-      render_pass(scene, view, seeds[h], options, std::max(1, options.samples / 2), frame.half[h], frame.rays,
-                  options.progress ? [&, h](double f) { options.progress((f + double(h)) / 2); } : options.progress);
+  if (options.halves) {
+    for (std::size_t h = 0; h < 2; ++h) {
+      frame.half[h] = empty_layers(view, options);
+      take_samples({scene, view, options.known, options.seed ^ kSeedsOfHalves[h]}, options.mask,
+                   std::max(1, options.samples / 2), frame.half[h], frame.rays,
+                   options.progress ? [&, h](double f) { options.progress((f + double(h)) / 2); } : options.progress);
+    }
     join_halves(frame);
+  } else {
+    frame.mean = empty_layers(view, options);
+    if (options.pixel_error > 0) render_adaptive(scene, view, options, frame);
+    else render_fixed(scene, view, options, frame);
   }
   for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
   frame.mean_radiance = mean_radiance(frame.mean);

@@ -17,8 +17,8 @@ constexpr double kAtError = 2.5;
 constexpr double kOwn = 1.2;  ///< cost of a camera ray with its surface, in shadow rays
 
 /// In a frame that will be filtered, pixels at edges get this many times the samples of an unfiltered frame, and pixels
-/// inside surfaces half as many times: the filter leaves about half as much of the squared error there. The median scene
-/// takes 6 % more samples than with 1 and 1, and errs by 7 % less (docs/notebook/st-filter.md).
+/// inside surfaces half as many times: the filter leaves about half as much of the squared error there. The median
+/// scene takes 6 % more samples than with 1 and 1, and errs by 7 % less (docs/notebook/st-filter.md).
 constexpr double kAtEdges = 1.8;
 
 /// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.
@@ -153,14 +153,12 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
     return first_.onward > 1 ? of.within / of.n : sample_variance(of.n, of.onward, of.onward_square);
   });
   const double error = error_at(near.level / near.n);
-  const auto further = [&](double squared, double cost, int first) {
-    const double wanted = times * wanted_samples(std::sqrt(squared), cost, error);
-    return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
+  const auto wanted = [&](double variance_of_part, double cost, int first) {
+    const double samples = times * wanted_samples(std::sqrt(variance_of_part), cost, error);
+    return std::max(first, int(std::min(double(options_.adaptive_limit), samples)));
   };
-  PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, 1, first_.lit),
-                  further(onward_variance, std::max(1.0, near.rays / near.n), first_.onward)};
-  more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
-  return {first_.own + more.own, first_.lit + more.lit, first_.onward + more.onward};
+  return {wanted(own_variance(x, y), kOwn, first_.own), wanted(lit_variance, 1, first_.lit),
+          wanted(onward_variance, std::max(1.0, near.rays / near.n), first_.onward)};
 }
 
 void PixelNoise::all_noted() {

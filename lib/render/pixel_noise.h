@@ -24,10 +24,6 @@ double error_exponent();
 /// variance / samples ~ variance^(1 - k/2) error^k.
 double error_for_variance(double times);
 
-/// Largest numbers of samples of the parts lit and onward per camera ray. Samples at one place miss the differences
-/// between the places of a pixel, such as edges of shadows and folds.
-inline constexpr int kMostLit = 2, kMostOnward = 2;
-
 /// Noise of a picture whose pixels have their first samples, and the further samples that they need. docs/pixels.md
 /// derives both.
 class PixelNoise {
@@ -40,8 +36,6 @@ class PixelNoise {
   /// Numbers of first samples. Rays onward are the most expensive part and often need the fewest samples: half as many
   /// are enough to measure their noise. A frame that will be filtered gets all of them, because it may get no others.
   const PartCounts& first() const { return first_; }
-  /// The half (0 or 1) to which first sample s belongs.
-  int half(int s) const { return s >= first_half_; }
   /// Stores the sums over the two halves of a pixel's first samples, and the number of rays that their part `onward`
   /// took. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);

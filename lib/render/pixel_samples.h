@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <mutex>
+#include <span>
 
 #include "lib/core/parallel.h"
 #include "lib/render/frame_renderer.h"
@@ -73,9 +74,10 @@ inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   join(sum.own + (sum.lit + sum.onward), first, count, mean);
 }
 
-/// Calls body(pixel, x, y, counts) for every pixel, row by row within a tile, with tiles in parallel.
+/// Calls body(pixel, x, y, counts) for each pixel of the mask (empty: for every pixel), row by row within a tile, with
+/// tiles in parallel. `rays` receives the sum of the counts. progress(share of the tiles done) may be empty.
 template <class Body>
-void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays,
+void for_each_pixel(const CameraView& view, std::span<const std::uint8_t> mask, RayCounts& rays,
                     const std::function<void(double)>& progress, const Body& body) {
   constexpr int kTile = 16;
   const int tiles_x = (view.width() + kTile - 1) / kTile, tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
@@ -87,7 +89,7 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
     for (int y = y0; y < std::min(y0 + kTile, view.height()); ++y)
       for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x) {
         const std::size_t pixel = std::size_t(y) * std::size_t(view.width()) + std::size_t(x);
-        if (options.mask.empty() || options.mask[pixel]) body(pixel, x, y, counts);
+        if (mask.empty() || mask[pixel]) body(pixel, x, y, counts);
       }
     const std::lock_guard lock(mutex);
     rays += counts;
@@ -117,11 +119,12 @@ class Dealt {
   Vec2 offset_;
 };
 
-/// The camera, scene and options from which samples of pixels are taken.
+/// From where samples of pixels are taken. All members must outlive it.
 struct CameraSampler {
   const RenderScene& scene;
   const CameraView& view;
-  const FrameOptions& options;
+  const KnownLight* known;  ///< light at which camera paths may end; or null
+  std::uint64_t seed;
 };
 
 /// A pixel and the samples that one pass takes of it: `count` samples, which continue the pixel's sequences after
@@ -141,9 +144,9 @@ struct PixelPass {
 template <class Add>
 void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleHalves* halves, RayCounts& counts,
                      const Add& add) {
-  const auto& [scene, view, options] = camera;
-  const PixelRandom of_pixel(options.seed, pass.pixel, 0);
-  const Dealt dealt(options.seed, pass.pixel, pass.first, pass.count);
+  const auto& [scene, view, known, seed] = camera;
+  const PixelRandom of_pixel(seed, pass.pixel, 0);
+  const Dealt dealt(seed, pass.pixel, pass.first, pass.count);
   CausticMemory caustics;
   for (int i = 0; i < pass.count.own; ++i) {
     const PixelRandom random = of_pixel.of_sample(std::uint32_t(pass.first.own + i));
@@ -153,7 +156,7 @@ void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleH
     Hit hit;
     scene.tracer.intersect(ray, hit);
     caustics.use_half(pass.half(i));
-    const PathParts parts = trace_eye_path(scene, ray, hit, random, options.known, counts, view.cone(), effort);
+    const PathParts parts = trace_eye_path(scene, ray, hit, random, known, counts, view.cone(), effort);
     if (halves) {
       const bool single = pass.count.own == 1;
       halves->add(single ? halves->half[1].own.count < halves->half[0].own.count : pass.half(i), parts, effort);

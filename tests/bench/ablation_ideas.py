@@ -27,11 +27,11 @@ IDEAS = (
          (("lib/render/path_tracer.cpp", "(state.spread > 0 && !known.bright)", "(state.spread > 1000 && !known.bright)"),)),
     # ---- numbers of samples
     Idea("parts apart", "light samples, rays onward and camera rays have numbers of their own", "frames",
-         (("lib/render/pixel_noise.cpp",
-           "more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});",
-           "const int most = std::max({first_.own + more.own, first_.lit + more.lit, first_.onward + more.onward});\n"
-           "  more = {most - first_.own, most - first_.lit, most - first_.onward};\n"
-           "  static_assert(kMostLit == kMostOnward);"),)),
+         (("lib/render/adaptive_frame.cpp",
+           "const PartCounts more = missing(have, noise_.wanted_at(x, y, times));",
+           "PartCounts all = noise_.wanted_at(x, y, times);\n"
+           "    all.own = all.lit = all.onward = std::max({all.own, all.lit, all.onward});\n"
+           "    const PartCounts more = missing(have, all);"),)),
     Idea("edges between pixels", "what is seen counts as uneven where neighbours differ", "frames",
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
     # Stays whatever codes say: without it filtered frames have blotches (docs/notebook/outliers.md).

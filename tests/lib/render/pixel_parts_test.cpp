@@ -50,12 +50,10 @@ Told tell(const RenderScene& scene, const CameraView& view, Layer layer, const P
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     double all = 0;
     RayCounts rays;
-    FrameOptions options;
-    options.seed = seed;
     for (int y = 0; y < view.height(); ++y)
       for (int x = 0; x < view.width(); ++x) {
         const PixelPass pass{std::size_t(y * view.width() + x), x, y, {}, count};
-        const PixelSum of = sample_pixel({scene, view, options}, pass, nullptr, rays);
+        const PixelSum of = sample_pixel({scene, view, nullptr, seed}, pass, nullptr, rays);
         all += of.own[layer].g / count.own + of.lit[layer].g / count.lit + of.onward[layer].g / count.onward;
       }
     sum += all;
