@@ -8,23 +8,21 @@ CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int 
       origin_(origin),
       width_(width),
       height_(height) {
-  half_height_ =
-      camera.camera.kind == Camera::Kind::perspective ? std::tan(camera.camera.yfov_rad / 2) : camera.camera.ymag_m;
+  half_height_ = orthographic() ? camera.camera.ymag_m : std::tan(camera.camera.yfov_rad / 2);
   half_width_ = half_height_ * width / height;
 }
 
 Ray CameraView::ray(float x, float y) const {
   const double px = (2.0 * double(x) / width_ - 1) * half_width_, py = (1 - 2.0 * double(y) / height_) * half_height_;
   const Affine& from = camera_.scene_from_camera;
-  if (camera_.camera.kind == Camera::Kind::orthographic)
-    return {Vec3(from.point({px, py, 0})), Vec3(normalize(from.direction({0, 0, -1}))), 0, INFINITY};
+  if (orthographic()) return {Vec3(from.point({px, py, 0})), Vec3(normalize(from.direction({0, 0, -1}))), 0, INFINITY};
   return {Vec3(from.translation), Vec3(normalize(from.direction({px, py, -1}))), 0, INFINITY};
 }
 
 std::optional<std::array<double, 2>> CameraView::project(Vec3 point) const {
   const Vec3d p = camera_from_scene_.point(Vec3d(point));
   double x = p.x, y = p.y;
-  if (camera_.camera.kind == Camera::Kind::perspective) {
+  if (!orthographic()) {
     if (!(p.z < 0)) return std::nullopt;
     x /= -p.z;
     y /= -p.z;
@@ -43,16 +41,21 @@ std::array<double, 16> CameraView::world_to_camera() const {
 std::array<double, 16> CameraView::world_to_ndc() const {
   const std::array<double, 16> c = world_to_camera();
   std::array<double, 16> ndc{};
-  const bool perspective = camera_.camera.kind == Camera::Kind::perspective;
-  // Perspective: w = z, so NDC depth is 1 (there are no clipping planes); orthographic: w = 1, NDC depth is z.
+  // Perspective: w = z, so NDC depth is 1 (there are no clipping planes). Orthographic: w = 1, so NDC depth is z.
   for (std::size_t row = 0; row < 4; ++row) {
-    const double x = c[row * 4], y = c[row * 4 + 1], z = c[row * 4 + 2], w = perspective ? z : c[row * 4 + 3];
+    const double x = c[row * 4], y = c[row * 4 + 1], z = c[row * 4 + 2], w = orthographic() ? c[row * 4 + 3] : z;
     ndc[row * 4] = (x / half_width_ + w) / 2;
     ndc[row * 4 + 1] = (w - y / half_height_) / 2;
     ndc[row * 4 + 2] = z;
     ndc[row * 4 + 3] = w;
   }
   return ndc;
+}
+
+CameraRays::CameraRays(const Tracer& tracer, const CameraView& view, std::span<const Vec2> raster)
+    : hits(raster.size()) {
+  for (const Vec2 at : raster) rays.push_back(view.ray(at.x, at.y));
+  tracer.intersect(rays, hits);
 }
 
 }  // namespace tempolux

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "lib/material/surface_material.h"
 #include "lib/scene/at_frame.h"
@@ -10,38 +12,39 @@
 
 namespace tempolux {
 
-/// A camera with a picture size. Pixel (0, 0) is the top left one; raster coordinates grow right and down,
-/// pixel centres at +0.5. The vertical field of view is the camera's; the width follows the picture's aspect.
+/// A camera with a picture size in pixels, at least 1 x 1. Pixel (0, 0) is the top left one. Raster coordinates grow
+/// right and down; the centre of pixel (x, y) is at (x + .5, y + .5). The vertical field of view is the camera's; the
+/// horizontal one follows from the picture's aspect.
 class CameraView {
  public:
+  /// `origin`: world-space position of the scene space's origin [m] (SceneFrame::origin).
   CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height);
 
   int width() const { return width_; }
   int height() const { return height_; }
   const PlacedCamera& camera() const { return camera_; }
 
-  /// The ray through raster position (x, y), scene space; perspective rays start at the eye, orthographic ones
-  /// on the plane through it. Direction is unit.
+  /// The ray through raster position (x, y) in scene space, with a unit direction. Perspective rays start at the eye,
+  /// orthographic rays on the plane through the eye.
   Ray ray(float x, float y) const;
-  /// Raster position of a scene-space point; nothing if it is not in front of the camera.
+  /// Raster position of a scene-space point, which may lie outside the picture. Empty if a perspective camera does not
+  /// have the point in front; an orthographic camera projects every point.
   std::optional<std::array<double, 2>> project(Vec3 point) const;
-  /// Distance along the view axis, m: the Z channel.
+  /// Distance [m] of a scene-space point along the view axis; negative behind the camera. The channel Z.
   double depth(Vec3 point) const;
 
-  /// Size of a pixel at this distance from the camera, m.
+  /// Width [m] of a pixel at this distance [m] from the camera.
   float pixel_size(float distance) const {
     const double at_one = 2 * half_height_ / height_;
-    return float(camera_.camera.kind == Camera::Kind::perspective ? at_one * double(distance) : at_one);
+    return float(orthographic() ? at_one : at_one * double(distance));
   }
 
   bool orthographic() const { return camera_.camera.kind == Camera::Kind::orthographic; }
-  /// Where the camera is, scene space.
+  /// Position of the camera in scene space.
   Vec3 eye() const { return Vec3(camera_.scene_from_camera.translation); }
 
   /// The cone around a pixel's ray, which decides the level of textures.
-  RayCone cone() const {
-    return camera_.camera.kind == Camera::Kind::perspective ? RayCone{0, pixel_size(1)} : RayCone{pixel_size(0), 0};
-  }
+  RayCone cone() const { return orthographic() ? RayCone{pixel_size(0), 0} : RayCone{0, pixel_size(1)}; }
 
   /// OpenEXR's standard attributes: row-vector matrices, row-major. Camera space is left-handed, +x right, +y up,
   /// +z into the picture; NDC is (0, 0) at the top left and (1, 1) at the bottom right of the picture.
@@ -53,7 +56,15 @@ class CameraView {
   Affine camera_from_scene_;
   Vec3d origin_;
   int width_, height_;
-  double half_width_, half_height_;  ///< of the view plane at distance 1 (perspective) or anywhere, m (orthographic)
+  double half_width_, half_height_;  ///< of the picture: at distance 1 (perspective), or in m (orthographic)
+};
+
+/// Rays of a camera and what they meet first.
+struct CameraRays {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;  ///< by ray; surface kNone: nothing
+
+  CameraRays(const Tracer& tracer, const CameraView& view, std::span<const Vec2> raster);
 };
 
 }  // namespace tempolux

@@ -33,7 +33,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
   if (map || method != IndirectMethod::paths)
-    fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
+    fixed += double(order.photons) * Work::kRay * (1 + rough.photons_per_path);
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
   if (rough.wanted_of > 0 && variance > rough.wanted_of)

@@ -17,18 +17,17 @@
 namespace tempolux {
 namespace {
 
-/// Static photons in a disc in which influence is measured: at the lower threshold the disc holds .06 x 200 = 12
-/// dynamic photons.
+/// Number of static photons in a disc in which influence is measured. At the lower threshold, .06, the disc holds
+/// .06 x 200 = 12 dynamic photons.
 constexpr int kNeighbours = 200;
 
-/// Cost of the photons and points of a state of light, as a share of their cost without reuse: the constant part, and
-/// the part per touched path.
-constexpr double kLeastLight = 0.2, kLightByTouched = 3;
-constexpr double kLeastRecords = 0.1;  ///< cost of the records of a state of light, likewise: the constant part
+/// Costs of a state of light over its cost without reuse (docs/methods/dynamic.md). Photons and points: a constant
+/// part, and a part that grows with the share of touched paths. Records: a constant part.
+constexpr double kLeastLight = 0.2, kLightByTouched = 3, kLeastRecords = 0.1;
 
 float largest(Rgb flux) { return std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)}); }
 
-/// Sum of the largest channel of |flux|, W.
+/// Sum over the photons of the largest channel of |flux| [W].
 double sum(const PhotonIndex& index, const NeighbourList& found) {
   double flux = 0;
   for (const std::uint32_t photon : found.photons()) flux += double(largest(index.flux(photon)));
@@ -36,16 +35,14 @@ double sum(const PhotonIndex& index, const NeighbourList& found) {
 }
 
 struct PilotMaps {
-  std::vector<formats::Photon> fixed, dynamic;
-  std::size_t touched = 0;
+  std::vector<formats::Photon> fixed;    ///< of the static scene
+  std::vector<formats::Photon> dynamic;  ///< the signed change by movers
+  std::size_t touched = 0;               ///< number of touched paths
 };
 
 PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, const EmissionTable& emission,
                      std::uint64_t seed) {
-  PhotonOptions options;
-  options.seed = seed;
-  options.photon_count = kPilotPaths;
-  options.group_count = 1;
+  PhotonOptions options{.seed = seed, .photon_count = kPilotPaths, .group_count = 1};
   options.set_kinds("indirect");
   const Tracer whole_tracer(frame), fixed_tracer(static_scene);
   const Lights whole_lights(frame, emission), fixed_lights(static_scene, emission);
@@ -53,22 +50,18 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, co
   PhotonTracer fixed(fixed_tracer, fixed_lights, options);
   const MoverWatch watch({moving_boxes(frame)});
   fixed.watch(&watch);
-  struct Piece {
-    PhotonBatch batch, change;
-  };
-  std::vector<Piece> pieces(fixed.batch_count());
-  parallel_each(pieces.size(), 1, [&](std::size_t b) {
-    Piece& piece = pieces[b];
-    piece.batch = fixed.trace(b);
+  std::vector<PhotonBatch> batches(fixed.batch_count()), changes(batches.size());
+  parallel_each(batches.size(), 1, [&](std::size_t b) {
+    batches[b] = fixed.trace(b);
     std::vector<std::uint64_t> paths;
-    for (const formats::TouchedPath& path : piece.batch.touched) paths.push_back(path.path);
-    if (!paths.empty()) piece.change = difference_of(fixed, whole, paths);
+    for (const formats::TouchedPath& path : batches[b].touched) paths.push_back(path.path);
+    if (!paths.empty()) changes[b] = difference_of(fixed, whole, paths);
   });
   PilotMaps maps;
-  for (const Piece& piece : pieces) {
-    maps.touched += piece.batch.touched.size();
-    maps.fixed.insert(maps.fixed.end(), piece.batch.block.photons.begin(), piece.batch.block.photons.end());
-    maps.dynamic.insert(maps.dynamic.end(), piece.change.block.photons.begin(), piece.change.block.photons.end());
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    maps.touched += batches[b].touched.size();
+    for (const formats::Photon& photon : batches[b].block.photons) maps.fixed.push_back(photon);
+    for (const formats::Photon& photon : changes[b].block.photons) maps.dynamic.push_back(photon);
   }
   return maps;
 }
@@ -100,12 +93,9 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
       gathered[i] = sum(dynamic, found) > double(InfluenceThresholds{}.low) * light;
     }
   });
-  std::size_t places = 0, near = 0;
-  for (std::size_t i = 0; i < kPilotPlaces; ++i) {
-    places += seen.places[i].exists();
-    near += gathered[i];
-  }
-  return {double(maps.touched) / double(kPilotPaths), places > 0 ? double(near) / double(places) : 0};
+  const auto places = std::ranges::count_if(seen.places, &SeenPlace::exists),
+             all_gathered = std::ranges::count(gathered, 1);
+  return {double(maps.touched) / double(kPilotPaths), places > 0 ? double(all_gathered) / double(places) : 0};
 }
 
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double static_records) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "lib/gather/mesh_elements.h"
-#include "lib/render/choose_photons.h"
 #include "lib/render/pilot_photons.h"
 
 namespace tempolux {

@@ -10,22 +10,13 @@
 #include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
 #include "lib/render/pilot_photons.h"
+#include "lib/render/pixel_noise.h"
 #include "lib/render/places_seen.h"
 
 namespace tempolux {
 namespace {
 
 constexpr double kPays = 2;  ///< a split pays above this variance_ratio
-
-/// Mean and variance of a sequence of numbers.
-struct Moments {
-  double sum = 0, squares = 0;
-  std::size_t count = 0;
-  void add(double x) { sum += x, squares += x * x, ++count; }
-  double variance() const {
-    return count ? squares / double(count) - (sum / double(count)) * (sum / double(count)) : 0;
-  }
-};
 
 }  // namespace
 
@@ -44,7 +35,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
   if (cells.bright_count() == 0) return {};
   const PhotonIndex index(photons);
   const SeenPlaces seen = places_seen(scene, view, kPilotPlaces, seed ^ 0x73706c6974ull);
-  std::vector<double> all(kPilotPlaces, -1), low(kPilotPlaces, 0);
+  std::vector<double> all(kPilotPlaces, -1), low(kPilotPlaces, 0);  // by place; -1: there is none
   parallel_chunks(kPilotPlaces, 64, [&](std::size_t first, std::size_t last) {
     NeighbourList found;
     for (std::size_t i = first; i < last; ++i) {
@@ -60,11 +51,16 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
       low[i] = all[i] * cells.low_share({met.surface.position, met.geometric, std::uint16_t(met.surface.object)});
     }
   });
-  Moments whole, rest;
-  for (std::size_t i = 0; i < kPilotPlaces; ++i)
-    if (all[i] >= 0) whole.add(all[i]), rest.add(low[i]);
-  if (!(whole.variance() > 0)) return {};
-  return {rest.variance() > 0 ? whole.variance() / rest.variance() : 1e6, 1 - rest.sum / whole.sum};
+  double count = 0, sum = 0, square = 0, low_sum = 0, low_square = 0;
+  for (std::size_t i = 0; i < kPilotPlaces; ++i) {
+    if (all[i] < 0) continue;
+    ++count;
+    sum += all[i], square += all[i] * all[i];
+    low_sum += low[i], low_square += low[i] * low[i];
+  }
+  const double variance = sample_variance(count, sum, square), rest = sample_variance(count, low_sum, low_square);
+  if (!(variance > 0)) return {};
+  return {rest > 0 ? variance / rest : 1e6, 1 - low_sum / sum};
 }
 
 SplitChoice choose_split(const SplitPilot& pilot) {

@@ -10,16 +10,17 @@
 
 namespace tempolux {
 
-/// What a pilot measures of the light that gather rays from visible places meet.
+/// Measurements of a pilot: the light that gather rays from visible places meet.
 struct SplitPilot {
-  /// Variance of the radiance that gather rays meet, divided by the variance without the light that photonmap-split
-  /// takes out of bright cells. 1 if photonmap-split takes out nothing.
+  /// Variance of the radiance that gather rays meet, over the variance of its low part (photonmap-split). 1 without a
+  /// high part; 1e6 if the low part has no variance.
   double variance_ratio = 1;
-  double high_share = 0;  ///< the share of the radiance that is taken out
+  double high_share = 0;  ///< the high part over the whole radiance
 };
 
-/// Traces kPilotPaths light paths, sums their photons of all kinds in cells (FluxCells, the default limit), and sends
-/// one gather ray from each of 2048 visible places. Takes a tenth of a second. Same result for any number of threads.
+/// Traces kPilotPaths light paths, divides the light of their photons of all kinds into a low and a high part
+/// (FluxCells with the limit kBrightLimit), and sends one gather ray from each of kPilotPlaces visible places. Takes a
+/// tenth of a second. Same result for any number of threads.
 SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
                        std::uint64_t seed);
 
@@ -28,8 +29,8 @@ struct SplitChoice {
   std::string because;
 };
 
-/// Decides for a split if the variance falls below half: explicit samples cost up to half as much as the rays
-/// (docs/methods/split.md has the measurements).
+/// Decides for a split if the variance of the low part is less than half of the whole variance, and reports the reason
+/// as text. Explicit samples cost up to half as much as the rays (docs/methods/split.md has the measurements).
 SplitChoice choose_split(const SplitPilot& pilot);
 
 }  // namespace tempolux

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
-#include "lib/core/parallel.h"
 #include "lib/core/parallel_each.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/pixel_surfaces.h"
@@ -13,17 +11,20 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4, kOther = 9;
-constexpr std::size_t kSearch = 8;  // rays per pixel that search for surfaces which no pixel centre sees
-constexpr std::uint64_t kPattern = 0x636f766572616765ull;  // one pattern of rays for all pixels and frames
+constexpr std::size_t kRays = 16;                          ///< per pixel that sees several surfaces
+constexpr std::size_t kAround = 9, kCentre = 4;            ///< a pixel among the 3 x 3 pixels around it, in rows
+constexpr std::size_t kOther = 9;                          ///< index of surfaces that none of the nine centres sees
+constexpr std::size_t kSearch = 8;                         ///< rays per pixel that search for such surfaces
+constexpr std::uint64_t kPattern = 0x636f766572616765ull;  ///< key of the rays' places, equal for all pixels and frames
 
-/// What a ray meets first.
+/// The surface that a ray meets first.
 struct Seen {
   std::uint32_t object = kNone, material = kNone;
   Vec3 position, normal;
   float footprint = 0;  ///< m: width of a pixel at the hit
 
-  /// True if `other` lies on the same smooth surface: its plane passes this place within a pixel's width.
+  /// True if `other` may lie on the same smooth surface: it has the same object, material and nearly the same normal,
+  /// and it lies within a pixel's width of the plane through this place.
   bool same_as(const Seen& other) const {
     if (object == kNone || other.object == kNone) return object == other.object;
     return object == other.object && material == other.material &&
@@ -42,23 +43,20 @@ class PixelCoverage {
         mixed_(centres_.size()) {
     for (std::size_t r = 0; r < kRays; ++r) spread_[r] = sobol_owen_2d(std::uint32_t(r), kPattern);
     parallel_chunks(centres_.size(), 1024, [&](std::size_t first, std::size_t last) {
-      std::array<Vec2, kTogether> places;
-      for (std::size_t p = first; p < last; p += kTogether) {
-        const std::size_t count = std::min(kTogether, last - p);
-        const auto follow_at = [&](Vec2 place) {
-          for (std::size_t i = 0; i < count; ++i)
-            places[i] = {float((p + i) % width_) + place.x, float((p + i) / width_) + place.y};
-          return follow(std::span(places).first(count));
-        };
-        const Packet middle = follow_at({0.5f, 0.5f});
-        for (std::size_t i = 0; i < count; ++i) centres_[p + i] = seen(middle, i);
-        for (std::size_t r = 0; r < kSearch; ++r) {
-          const Packet beside = follow_at(spread_[r]);
-          for (std::size_t i = 0; i < count; ++i)
-            mixed_[p + i] |= !(beside.hits[i].surface == middle.hits[i].surface &&
-                               beside.hits[i].triangle == middle.hits[i].triangle) &&
-                             !centres_[p + i].same_as(seen(beside, i));
-        }
+      const auto rays_at = [&](Vec2 place) {
+        std::vector<Vec2> places;
+        for (std::size_t p = first; p < last; ++p)
+          places.push_back({float(p % width_) + place.x, float(p / width_) + place.y});
+        return CameraRays(scene_.tracer, view_, places);
+      };
+      const CameraRays middle = rays_at({0.5f, 0.5f});
+      for (std::size_t p = first; p < last; ++p) centres_[p] = seen(middle, p - first);
+      for (std::size_t r = 0; r < kSearch; ++r) {
+        const CameraRays beside = rays_at(spread_[r]);
+        for (std::size_t p = first, i = 0; p < last; ++p, ++i)
+          mixed_[p] |= !(beside.hits[i].surface == middle.hits[i].surface &&
+                         beside.hits[i].triangle == middle.hits[i].triangle) &&
+                       !centres_[p].same_as(seen(beside, i));
       }
     });
   }
@@ -70,11 +68,9 @@ class PixelCoverage {
     if (!is_edge(x, y)) return {};
     std::array<Vec2, kRays> places;
     for (std::size_t r = 0; r < kRays; ++r) places[r] = {float(x) + spread_[r].x, float(y) + spread_[r].y};
+    const CameraRays rays(scene_.tracer, view_, places);
     std::array<std::uint32_t, kAround + 1> count{};
-    for (std::size_t r = 0; r < kRays; r += kTogether) {
-      const Packet packet = follow(std::span(places).subspan(r, kTogether));
-      for (std::size_t i = 0; i < kTogether; ++i) ++count[nearest(x, y, spread_[r + i], seen(packet, i))];
-    }
+    for (std::size_t r = 0; r < kRays; ++r) ++count[nearest(x, y, spread_[r], seen(rays, r))];
     std::uint32_t packed = 0, bit = 0;
     for (std::size_t n = 0; n < kAround; ++n) {
       if (n == kCentre) continue;
@@ -85,31 +81,15 @@ class PixelCoverage {
   }
 
  private:
-  static constexpr std::size_t kTogether = 8;  // a packet
-  static_assert(kRays % kTogether == 0);
-
-  struct Packet {
-    std::array<Ray, kTogether> rays;
-    std::array<Hit, kTogether> hits;
-  };
-
-  /// Follows rays through raster positions `places`, at most kTogether.
-  Packet follow(std::span<const Vec2> places) const {
-    Packet packet;
-    for (std::size_t i = 0; i < places.size(); ++i) packet.rays[i] = view_.ray(places[i].x, places[i].y);
-    scene_.tracer.intersect(std::span(packet.rays).first(places.size()), std::span(packet.hits).first(places.size()));
-    return packet;
-  }
-
-  Seen seen(const Packet& packet, std::size_t i) const {
-    const Hit& hit = packet.hits[i];
+  Seen seen(const CameraRays& rays, std::size_t i) const {
+    const Hit& hit = rays.hits[i];
     if (hit.surface == kNone) return {};
     const SurfacePoint point = scene_.tracer.surface_point(hit);
     return {point.object, point.material, point.position,
-            dot(point.normal, packet.rays[i].direction) > 0 ? -point.normal : point.normal, view_.pixel_size(hit.t)};
+            dot(point.normal, rays.rays[i].direction) > 0 ? -point.normal : point.normal, view_.pixel_size(hit.t)};
   }
 
-  /// What the centre of pixel number `around` of the nine about (x, y) sees; nullptr outside the picture.
+  /// The surface at the centre of pixel `around` of the 3 x 3 pixels around (x, y); nullptr outside the picture.
   const Seen* centre(int x, int y, std::size_t around) const {
     x += int(around % 3) - 1;
     y += int(around / 3) - 1;
@@ -126,8 +106,8 @@ class PixelCoverage {
     return false;
   }
 
-  /// Index of the pixel whose surface a ray through `place` meets: the pixel itself, else the closest of the eight
-  /// around it, else kOther.
+  /// The pixel whose surface `ray` meets: kCentre, or else the neighbour whose centre is closest to the ray's `place`
+  /// in the pixel, in [0, 1)^2; kOther if it is the surface of none of the nine.
   std::size_t nearest(int x, int y, Vec2 place, const Seen& ray) const {
     if (centre(x, y, kCentre)->same_as(ray)) return kCentre;
     std::size_t best = kOther;
@@ -150,7 +130,7 @@ class PixelCoverage {
   std::size_t width_;
   std::array<Vec2, kRays> spread_;
   std::vector<Seen> centres_;
-  std::vector<std::uint8_t> mixed_;  ///< by pixel; 1: a ray beside the centre meets another surface than the centre
+  std::vector<std::uint8_t> mixed_;  ///< by pixel; 1: another ray meets another surface than the centre's ray
 };
 
 }  // namespace
@@ -163,9 +143,8 @@ std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const C
   std::uint32_t* const around = image.add_ids("coverage").ids.data();
   std::uint32_t* const other = image.add_ids("coverage.other").ids.data();
   const PixelCoverage pixels(scene, view);
-  parallel_each(image.pixel_count(), 1024, [&](std::size_t p) {
-    const PixelCoverage::Counts counts =
-        pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
+  parallel_pixels(view.width(), view.height(), [&](int x, int y, std::size_t p) {
+    const PixelCoverage::Counts counts = pixels.at(x, y);
     around[p] = counts.around;
     other[p] = counts.other;
     edges[p] = counts.around != 0 || counts.other != 0;

@@ -20,10 +20,11 @@ namespace tempolux {
 /// own centre nor a neighbour's centre sees. All other rays see the surface of the pixel's own centre. If both channels
 /// are 0, the pixel sees one surface.
 ///
-/// Two hits are on one surface if they have the same object and material, their normals agree within
-/// PixelSurfaces::kSameNormal, and each one's plane passes within a pixel of the other point. Costs one ray per pixel
-/// and eight more that search for what no centre sees, such as wires; and 16 where these rays and the neighbours'
-/// centres see two surfaces. Nothing is shaded. The rays do not depend on seed or frame.
+/// Two hits are on one surface if they have the same object and material, the cosine between their normals is above
+/// PixelSurfaces::kSameNormal, and each hit lies within a pixel's width of the other's plane. Costs nine rays per
+/// pixel: one through the centre, and eight that search for surfaces which no centre sees, such as wires. Where these
+/// rays and the centres of the neighbours see two surfaces, a pixel costs 16 further rays. Nothing is shaded. The rays
+/// do not depend on seed or frame.
 ///
 /// Returns by pixel 1 where one of the channels is not 0; empty without "coverage".
 std::vector<std::uint8_t> add_coverage_channel(const RenderScene& scene, const CameraView& view,

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <span>
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
@@ -17,15 +16,15 @@ const std::vector<std::string> kGroups{"RGBA",     "layers", "emission", "specul
                                        "albedo",   "motion", "coverage", "influence", "variance", "diffuse.variance",
                                        "samples",  "halves", "seen"};
 
-/// Finds the same point of the same surface in another frame, where movers have moved or deformed it (same_surfaces).
-/// The same point has the same barycentric coordinates.
+/// Finds a surface point again in another frame, where its surface may have moved or been deformed (same_surfaces). The
+/// point has the same triangle and barycentric coordinates there.
 class OtherFrame {
  public:
   OtherFrame(const NeighbourFrame& other, const SceneFrame& here) : view_(other.view) {
     if (other.frame) there_ = same_surfaces(here, *other.frame);
   }
   /// Motion in pixels, right and up, from raster position `here` to the point's position in the other frame. Zero if
-  /// the point is not in front of that frame's camera.
+  /// there is no other frame, or if the point is not in front of that frame's camera.
   Vec2 motion(const SurfacePoint& point, std::array<double, 2> here) const {
     const Surface* surface = there_.empty() ? nullptr : there_[point.surface];
     if (!surface) return {};
@@ -41,7 +40,7 @@ class OtherFrame {
   std::vector<const Surface*> there_;  ///< by surface of this frame; empty without another frame
 };
 
-/// Stores one number in each plane at pixel i.
+/// Stores numbers[c] in planes[c] at pixel i.
 template <std::size_t kCount>
 void set(const std::array<float*, kCount>& planes, std::size_t i, const std::array<float, kCount>& numbers) {
   for (std::size_t c = 0; c < kCount; ++c) planes[c][i] = numbers[c];
@@ -67,12 +66,13 @@ struct DataPlanes {
     if (asked(channels, "id")) id = image.add_ids("id.object").ids.data();
   }
   bool none() const { return !(z || normal[0] || position[0] || albedo[0] || motion[0] || id); }
-  /// Pixel i shows no surface: the other planes keep 0.
+  /// Stores that pixel i shows no surface: depth infinity, object kNone. The other planes keep 0.
   void set_empty(std::size_t i) const {
     if (z) z[i] = INFINITY;
     if (id) id[i] = kNone;
   }
-  /// Stores object, normal and world position of pixel i. direction: of the ray; origin: of the scene's space.
+  /// Stores object, normal and world-space position of pixel i. direction: of the camera ray; origin: world-space
+  /// position of the scene space's origin [m].
   void set_surface(std::size_t i, const SurfacePoint& point, Vec3 direction, Vec3d origin) const {
     if (id) id[i] = point.object;
     if (normal[0]) {
@@ -106,34 +106,26 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
   const OtherFrame earlier(motion ? previous : NeighbourFrame{}, scene.frame());
   const RayCone cone = view.cone();
   const auto width = std::size_t(view.width());
-  const auto centre = [&](std::size_t i) { return Vec2{float(int(i % width)) + 0.5f, float(int(i / width)) + 0.5f}; };
-
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
-    constexpr std::size_t kTogether = 8;  // a packet
-    std::array<Ray, kTogether> rays;
-    std::array<Hit, kTogether> hits;
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t k = (i - first) % kTogether;
-      if (k == 0) {
-        const std::size_t count = std::min(kTogether, last - i);
-        for (std::size_t j = 0; j < count; ++j) rays[j] = view.ray(centre(i + j).x, centre(i + j).y);
-        scene.tracer.intersect(std::span(rays).first(count), std::span(hits).first(count));
-      }
-      const Hit& hit = hits[k];
+    std::vector<Vec2> centres;
+    for (std::size_t i = first; i < last; ++i) centres.push_back({float(i % width) + 0.5f, float(i / width) + 0.5f});
+    const CameraRays rays(scene.tracer, view, centres);
+    for (std::size_t i = first, k = 0; i < last; ++i, ++k) {
+      const Hit& hit = rays.hits[k];
       if (hit.surface == kNone) {
         planes.set_empty(i);
         continue;
       }
       SurfacePoint point = scene.tracer.surface_point(hit);
       const SurfaceMaterial material(scene.frame(), point, cone.width + cone.spread * hit.t);
-      planes.set_surface(i, point, rays[k].direction, scene.frame().origin);
+      planes.set_surface(i, point, rays.rays[k].direction, scene.frame().origin);
       if (planes.z) planes.z[i] = float(view.depth(point.position));
       if (planes.albedo[0]) {
         const Rgb rho = Bsdf(material).diffuse_albedo();
         set(planes.albedo, i, {rho.r, rho.g, rho.b});
       }
       if (motion) {
-        const auto [x, y] = centre(i);
+        const auto [x, y] = centres[k];
         const std::array<double, 2> here = view.project(point.position).value_or(std::array{double(x), double(y)});
         const Vec2 f = later.motion(point, here), b = earlier.motion(point, here);
         set(planes.motion, i, {f.x, f.y, b.x, b.y});

@@ -19,10 +19,8 @@ void add_influence_channels(const RenderScene& scene, const CameraView& view, co
         "--channels influence: only a cache of localised gathering knows it (irradcache-build records --update)");
   float* const influence = image.add("influence").values.data();
   float* const share = image.add("blend").values.data();
-  const auto width = std::size_t(view.width());
-  parallel_each(image.pixel_count(), 512, [&](std::size_t p) {
-    const std::optional<SeenPoint> seen =
-        seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});
+  parallel_pixels(view.width(), view.height(), [&](int x, int y, std::size_t p) {
+    const std::optional<SeenPoint> seen = seen_through(scene.tracer, view, {float(x) + 0.5f, float(y) + 0.5f, {}});
     if (!seen) return;
     const float here = light->influence(seen->surface, seen->normal);
     influence[p] = std::isfinite(here) ? here : light->thresholds().high;

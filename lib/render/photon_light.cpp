@@ -9,15 +9,14 @@
 namespace tempolux {
 namespace {
 
-constexpr int kAsked = 8;               ///< FootprintOptions::asked
 constexpr std::size_t kRemembered = 4;  ///< places per pixel: a pixel may see several surfaces
-constexpr float kAlike = 0.999f;        ///< cosine between normals of a smooth surface within a pixel
+constexpr float kAlike = 0.999f;        ///< least cosine between normals at places that share caustic light
 
-/// Caustic irradiance that was looked up at a place.
+/// Caustic irradiance that was estimated at a place.
 struct Remembered {
   const PhotonLight* of = nullptr;
   Vec3 position, geometric, shading;
-  float let_in = 1;      ///< the coat's transmittance for light along the normal
+  float let_in = 1;      ///< Bsdf::arrival_weight of light along the normal
   FootprintLight light;  ///< reused within light.alike_within
 
   static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
@@ -28,40 +27,29 @@ struct Remembered {
   }
 };
 
-/// What a thread remembers, for each half of a pixel's samples.
+/// Places that a thread remembers, for each half of a pixel's samples.
 struct Memory {
   bool used = false;
   std::size_t half = 0;
-  std::array<std::array<Remembered, kRemembered>, 2> places;
+  std::array<std::array<Remembered, kRemembered>, 2> places{};
   std::array<std::size_t, 2> next{};
-
-  void clear() {
-    places = {};
-    next = {};
-    half = 0;
-  }
 };
 thread_local Memory memory;
 
 }  // namespace
 
-CausticMemory::CausticMemory() {
-  memory.clear();
-  memory.used = true;
-}
+CausticMemory::CausticMemory() { memory = {.used = true}; }
 CausticMemory::~CausticMemory() { memory.used = false; }
 void CausticMemory::use_half(int half) { memory.half = std::size_t(half); }
 
 PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift,
                          const PhotonLightOptions& options) {
   options_.neighbours = options.neighbours;
-  options_.max_radius = options.max_radius;
   has_indirect_ = !options.caustic_only;
   if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
-  if (!(options_.max_radius > 0) && indirect_.size() > 0)
+  if (indirect_.size() > 0)
     options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours);
-  const FootprintOptions density{
-      .neighbours = options.caustic_neighbours, .max_radius = options.caustic_radius, .asked = kAsked};
+  const FootprintOptions density{.neighbours = options.caustic_neighbours, .asked = kAskedPhotons};
   caustic_ =
       std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   if (caustic_->empty()) caustic_.reset();

@@ -1,5 +1,8 @@
 #include "lib/render/pilot_photons.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "lib/core/parallel_each.h"
 #include "lib/photon/photon_trace.h"
 
@@ -7,10 +10,7 @@ namespace tempolux {
 
 formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds,
                                    std::uint64_t paths, std::uint64_t seed) {
-  PhotonOptions options;
-  options.seed = seed;
-  options.photon_count = paths;
-  options.group_count = 1;
+  PhotonOptions options{.seed = seed, .photon_count = paths, .group_count = 1};
   options.set_kinds(kinds);
   const PhotonTracer photons_of(tracer, lights, options);
   std::vector<PhotonBatch> batches(photons_of.batch_count());
@@ -21,6 +21,12 @@ formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, c
     all.directions.insert(all.directions.end(), batch.block.directions.begin(), batch.block.directions.end());
   }
   return all;
+}
+
+std::uint64_t photon_paths(double photons_per_path, std::uint64_t usual) {
+  constexpr double kPathsAPhoton = 70;
+  const double times = photons_per_path > 0 ? 1 / (kPathsAPhoton * photons_per_path) : kMostTimesPhotons;
+  return usual << int(std::ceil(std::log2(std::clamp(times, 1.0, kMostTimesPhotons))));
 }
 
 }  // namespace tempolux

@@ -14,8 +14,9 @@
 namespace tempolux {
 namespace {
 
-constexpr float kNearEnough = 1 - 1e-3f;  ///< share of the distance to a place: a closer hit hides the place
+constexpr float kNearEnough = 1 - 1e-3f;  ///< a hit before this share of the distance to a place hides the place
 
+/// True if the place [scene space] lies in the picture and no surface hides it.
 bool sees(const Tracer& tracer, const CameraView& view, Vec3 place) {
   const auto at = view.project(place);
   if (!at || !((*at)[0] >= 0 && (*at)[0] < view.width() && (*at)[1] >= 0 && (*at)[1] < view.height())) return false;

@@ -1,6 +1,7 @@
 // lib/render/places_seen.h -- places that a camera sees, and places that these places see, for pilots.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,24 +16,30 @@ namespace tempolux {
 inline constexpr int kPilotPlaces = 2048;
 /// Places of a pilot that looks from many eyes: eight eyes together look at kPilotPlaces.
 inline constexpr std::uint32_t kPlacesOfEye = kPilotPlaces / 8;
-/// Parts of the picture that a pilot measures apart: 14 of its places lie in each.
-inline constexpr int kPilotColumns = 16, kPilotRows = 9;
+/// Parts of the picture whose light a pilot measures separately. 14 of its places lie in each.
+inline constexpr int kPilotColumns = 16, kPilotRows = 9, kPilotParts = kPilotColumns * kPilotRows;
+/// Index of the part at (x, y) in [0, 1)^2 of the picture.
+inline std::size_t pilot_part(double x, double y) {
+  return std::size_t(y * kPilotRows) * kPilotColumns + std::size_t(x * kPilotColumns);
+}
 
+/// Both lists have an element for each camera ray; SeenPlace::exists is false where the ray has no such place.
 struct SeenPlaces {
-  std::vector<SeenPlace> places;  ///< by index of the camera ray: its first Lambert lobe, through mirrors and glass
-  std::vector<SeenPlace> next_places;  ///< the place that a cosine-distributed ray from there met
+  std::vector<SeenPlace> places;       ///< the first Lambert lobe that the camera ray meets, also by mirrors and glass
+  std::vector<SeenPlace> next_places;  ///< the hit of one cosine-distributed ray from that place
 };
 
-/// For cameras one after the other: the share of each camera's view that no camera before has seen, as the mean over
-/// all but the first. 0 for fewer than two cameras. Scene space. Mirrors and glass are not followed. Only the ratio of
-/// `width` and `height`, those of the pictures, counts.
+/// The share of a camera's view that no earlier camera has seen, as the mean over all cameras but the first. Cameras
+/// are in scene space. 0 for fewer than two cameras. Places behind mirrors and glass do not count. Only the ratio of
+/// the picture's `width` and `height` matters.
 double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, int width, int height);
 
-/// Follows `looks` camera rays, stratified over the picture. Same places for any number of threads.
+/// Follows `looks` camera rays, stratified over the picture. Positions are in scene space. Same places for any number
+/// of threads.
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed);
 
-/// The scene's lights with a SkyGuide. The guide learns at two sets of places: where camera rays end, and where one
-/// cosine-distributed ray from each of these places ends.
+/// The scene's lights with a SkyGuide that has learned at kSkyPlaces places: half are SeenPlaces::places, half
+/// next_places. The lights as they are if there is no environment or the guide does not pay (learn_sky).
 Lights guided_lights(const RenderScene& scene, const CameraView& view);
 
 }  // namespace tempolux

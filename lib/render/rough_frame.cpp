@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "lib/core/parallel.h"
 #include "lib/core/parallel_each.h"
 #include "lib/core/sobol.h"
 #include "lib/core/statistics.h"
@@ -16,7 +15,6 @@
 #include "lib/gather/place_records.h"
 #include "lib/irradcache/points.h"
 #include "lib/render/audit.h"
-#include "lib/render/choose_photons.h"
 #include "lib/render/hidden_light.h"
 #include "lib/render/known_light.h"
 #include "lib/render/pilot_photons.h"
@@ -27,26 +25,25 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSamples = 4;
-constexpr double kFirst = kSamples;                          ///< fewest samples of a pixel of a frame
-constexpr int kRecords = 64;                                 ///< places with two records each
-constexpr int kColumns = kPilotColumns, kRows = kPilotRows;  ///< each part of the picture has its own allowed error
-constexpr std::uint64_t kPaths = kPilotPaths;
-constexpr std::uint32_t kPoints = 500;             ///< irradiance points per side
+constexpr int kSamples = 4;             ///< samples of a place, as many as the first samples of a pixel (FrameOptions)
+constexpr double kFirst = kSamples;     ///< fewest samples of a pixel of a frame
+constexpr int kRecords = 64;            ///< places with two records each: the variance errs by sqrt(2 / 64) = 18 %
+constexpr std::uint32_t kPoints = 500;  ///< irradiance points per side (figures: docs/notebook/constants.md)
 constexpr int kRays = FinalGather::kDistanceRays;  ///< gather rays of a rough record
-/// Largest number of pixels at which the need for records is tested. The test takes a tenth of a second. In a picture
-/// with more pixels, the tested pixels form a lattice.
+/// Largest number of pixels at which the need for records is tested. The test then takes a tenth of a second. In a
+/// picture with more pixels the tested pixels form a lattice.
 constexpr double kLooks = 320 * 180;
-constexpr double kSure = kCertain;  ///< standard errors
-constexpr double kMapError2 =
-    1.0 / PhotonLightOptions{}.caustic_neighbours;  ///< squared error of a density by k photons over its square
+/// Squared error of a density by k photons, over the square of the density: 1 / k.
+constexpr double kMapError2 = 1.0 / PhotonLightOptions{}.caustic_neighbours;
 
-/// Light of one sample [W/m^2/sr], mean of the channels. `other` includes `seen`, the layers emission and specular.
+/// Radiance of one sample [W/m^2/sr], mean of the channels, by layer. `other`: all layers but caustic and indirect.
 struct Sample {
-  double other = 0, caustic = 0, indirect = 0, seen = 0;
+  double other = 0, caustic = 0, indirect = 0;
+  double seen = 0;  ///< the part of `other` in the layers emission and specular
   double sum() const { return other + caustic + indirect; }
 };
 using Samples = std::vector<std::array<Sample, kSamples>>;  ///< by place
+using PartOfLight = std::function<double(const Sample&)>;
 
 Sample sample_of(const Layers& layers) {
   Sample sample;
@@ -60,21 +57,21 @@ Sample sample_of(const Layers& layers) {
   return sample;
 }
 
+/// A measured place of the picture.
 struct Where {
-  float x = 0, y = 0;  ///< pixel
-  std::size_t part = 0;
+  float x = 0, y = 0;    ///< pixel
+  std::size_t part = 0;  ///< pilot_part
 };
 
 Where where(int i, const CameraView& view, std::uint64_t seed) {
   const Vec2 at = sobol_owen_2d(std::uint32_t(i), seed ^ 0x7061746873ull);
-  return {
-      std::floor(at.x * float(view.width())), std::floor(at.y * float(view.height())),
-      std::size_t(std::min(kRows - 1, int(at.y * kRows)) * kColumns + std::min(kColumns - 1, int(at.x * kColumns)))};
+  return {std::floor(at.x * float(view.width())), std::floor(at.y * float(view.height())),
+          pilot_part(double(at.x), double(at.y))};
 }
 
-/// Samples of all places; `counts` receives the rays of all of them.
-Samples take_samples(const RenderScene& scene, const CameraView& view, const KnownLight* known,
-                     const RoughOptions& options, RayCounts& counts) {
+/// Takes kSamples samples at each of options.places places. Adds their rays to `counts`.
+Samples samples_of(const RenderScene& scene, const CameraView& view, const KnownLight* known,
+                   const RoughOptions& options, RayCounts& counts) {
   const std::uint64_t seed = options.seed;
   Samples samples(std::size_t(options.places));
   counts += parallel_sum<RayCounts>(samples.size(), 32, [&](std::size_t i, RayCounts& rays) {
@@ -95,26 +92,26 @@ double work_of(const RayCounts& counts, const Samples& samples) {
          (kSamples * double(samples.size()));
 }
 
-double mean_of(const Samples& samples, const std::function<double(const Sample&)>& light) {
+double mean_of(const Samples& samples, const PartOfLight& light) {
   double sum = 0;
   for (const auto& some : samples)
     for (const Sample& sample : some) sum += light(sample);
   return sum / (kSamples * double(samples.size()));
 }
 
-/// Radiance in the parts of the picture, from which the allowed errors follow.
+/// Mean radiances [W/m^2/sr] of the picture and the allowed errors that follow from them.
 struct Levels {
   std::vector<std::size_t> part;  ///< part of each place
-  /// Mean of the picture. A lamp that a place sees, also in mirrors and through glass, counts at most as much as white:
-  /// a flame in a lantern is a thousand times as bright as the walls that it lights. The picture is at least as bright
-  /// as photons show: paths may find none of the light.
+  /// Mean of the picture. Radiance of the layers emission and specular counts at most as much as white, because a flame
+  /// in a lantern is a thousand times as bright as the walls that it lights. The other light is at least what photons
+  /// show, because paths may find none of it.
   double picture = 0;
-  double white = 0;
+  double white = 0;             ///< radiance that the exposure of the median part shows as white
   std::vector<double> allowed;  ///< by part: the allowed error at pixel error 1
 
   Levels(const Samples& samples, const SeenLight& photons, const CameraView& view, std::uint64_t seed)
-      : allowed(kColumns * kRows) {
-    std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
+      : allowed(kPilotParts) {
+    std::vector<double> sum(kPilotParts, 0.0), count(kPilotParts, 0.0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       part.push_back(where(int(i), view, seed).part);
       for (const Sample& sample : samples[i]) sum[part.back()] += sample.sum(), ++count[part.back()];
@@ -122,25 +119,22 @@ struct Levels {
     const double mean = mean_of(samples, [](const Sample& s) { return s.sum(); });
     for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : mean;
     std::vector<double> sorted = sum;
-    std::ranges::nth_element(sorted, sorted.begin() + std::ptrdiff_t(sorted.size() / 2));
     const double shown = photons.caustic.mean + photons.indirect.mean,
                  found = mean_of(samples, [](const Sample&s) { return s.caustic + s.indirect; }),
                  others = mean_of(samples, [](const Sample&s) { return s.other - s.seen; });
     const double least = std::max(shown, found) + others;
-    white = std::max(sorted[sorted.size() / 2], 0.1 * (least > 0 ? least : mean)) / 0.18;
-    // Photons show the light behind mirrors and glass, too. Paths have this light in `seen`. It counts once.
+    white = std::max(upper_median(sorted), 0.1 * (least > 0 ? least : mean)) / 0.18;
+    // Light behind mirrors and glass is in `shown` of photons and in `seen` of paths. It must count once.
     const double seen = mean_of(samples, [&](const Sample& s) { return std::min(s.seen, white); });
     picture = std::max(shown, found + seen) + others;
     for (std::size_t p = 0; p < sum.size(); ++p) allowed[p] = allowed_error(sum[p], picture, 1);
   }
 };
 
-using PartOfLight = std::function<double(const Sample&)>;
-
-/// For each part of the picture, the variance of a sample of some of the light, divided by the square of the allowed
-/// error. A sample counts at most as much as makes a pixel of `times` samples white.
+/// For each part of the picture, the variance of one sample of this light over the square of the allowed error. The
+/// value of a sample is cut where it alone makes a pixel of `times` samples white.
 std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
-  std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
+  std::vector<double> sum(kPilotParts, 0.0), count(kPilotParts, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     double first = 0, square = 0;
     for (const Sample& sample : samples[i]) {
@@ -156,8 +150,8 @@ std::vector<double> variances(const Samples& samples, const Levels& levels, doub
   return sum;
 }
 
-/// The variance that n adaptive samples per pixel divide by n. A frame takes samples in proportion to the root of
-/// each part's variance, which leaves (mean root)^2 / n.
+/// Variance of one sample of the whole picture. A frame takes samples in proportion to the root of each part's
+/// variance, so a mean of n samples per pixel leaves (mean root)^2 / n.
 double adaptive(const std::vector<double>& variances) {
   double roots = 0;
   for (const double variance : variances) roots += std::sqrt(variance) / double(variances.size());
@@ -183,14 +177,15 @@ SampleEffort effort_of(const Samples& samples, const Levels& levels, double time
           .lost_indirect = lost(&Sample::indirect)};
 }
 
-/// Sets the number of samples that the wish asks for, and the error that they leave of all light but layer indirect.
+/// Sets rough.samples and rough.wanted: the number of samples for this pixel error, and the squared error that they
+/// leave in all light but layer indirect.
 void ask(const Samples& samples, const Levels& levels, double pixel_error, RoughFrame& rough) {
-  constexpr double kWholeSample = 4;  // shadow rays, as in pixel_noise.cpp
+  constexpr double kWholeSample = 4;  // shadow rays: cost of a sample of all parts
   for (const double variance :
        variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
-    rough.samples += wanted / (kColumns * kRows);
-    rough.wanted += variance / wanted / (kColumns * kRows);
+    rough.samples += wanted / kPilotParts;
+    rough.wanted += variance / wanted / kPilotParts;
   }
   rough.wanted = std::max(rough.wanted, pixel_error * pixel_error);
 }
@@ -198,8 +193,8 @@ void ask(const Samples& samples, const Levels& levels, double pixel_error, Rough
 /// A rough version of the files that a frame would read.
 class RoughLight {
  public:
-  /// paths: number of light paths of the frame's map. Its density estimates are narrower than those of the pilot's
-  /// photons, so the radii of the points are reduced: the share of close hits is then that of the frame.
+  /// photons: of kPilotPaths light paths. paths: number of light paths of the frame's map. The radii of the points are
+  /// reduced to those of the frame's map, so that as many hits are close hits as in the frame.
   RoughLight(const RenderScene& scene, formats::PhotonBlock photons, std::uint64_t paths, const RoughOptions& options)
       : photons_(std::move(photons)) {
     PointOptions placing;
@@ -208,7 +203,7 @@ class RoughLight {
     placing.seen.assign(options.seen.begin(), options.seen.end());
     placed_ = place_points(scene.frame(), placing);
     estimate_points(scene.tracer, scene.lights, photons_, {}, placing, placed_.points);
-    const double narrower = std::sqrt(double(kPaths) / double(std::max(kPaths, paths)));
+    const double narrower = std::sqrt(double(kPilotPaths) / double(std::max(kPilotPaths, paths)));
     for (IrradiancePoint& point : placed_.points) point.radius *= float(narrower);
     lookup_.emplace(placed_.points, placed_.spacing, point_clearance(scene.tracer));
     lookup_->take_as_even();
@@ -216,7 +211,7 @@ class RoughLight {
     const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
     if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
   }
-  /// Known light for samples of pixels. Bright points are left out, because usually only records sample them.
+  /// Known light for samples of pixels, without bright points: usually only records sample these explicitly.
   KnownLight known() const {
     KnownLight known;
     known.points = &*lookup_;
@@ -239,7 +234,7 @@ class RoughLight {
   std::optional<BrightPoints> bright_;
 };
 
-/// The picture that a rough frame measures.
+/// Inputs of all measurements of a rough frame.
 struct Picture {
   const RenderScene& scene;
   const CameraView& view;
@@ -249,12 +244,12 @@ struct Picture {
 
 /// Two records at one place.
 struct Pair {
-  bool gathered = false;
-  double error2 = 0;  ///< squared error of light that is interpolated there
+  bool gathered = false;  ///< false: there is no Lambert lobe at the place
+  double error2 = 0;      ///< squared error of light that is interpolated there, over the square of the allowed error
   GatherCounts counts;
 };
 
-/// Places records where the picture needs them. Distances decide the places, so no light is gathered.
+/// Places records where the picture needs them. Only distances are measured, no light is gathered.
 RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   const PlacementOptions options;
   RecordStore store;
@@ -280,12 +275,13 @@ RecordStore place_roughly(const Picture& picture, const FinalGather& gather) {
   return store;
 }
 
-/// Number of independent records that would give the same variance as the interpolation between `records` valid ones.
-/// Places are uniform over a record's disc, so its weight w = 1 - d / r has the mean 1/3, and w^2 has the mean 1/6:
-/// (sum w)^2 / sum w^2 is 2/3 of the number of records.
+/// Number of records whose plain mean has the same variance as the weighted mean of `records` valid ones: (sum w)^2 /
+/// sum w^2 = 2/3 of them. For a place anywhere in the disc of a record, the weight w = 1 - d / r has the mean 1/3 and
+/// w^2 has the mean 1/6.
 double independent(int records) { return std::max(1.0, 2.0 / 3 * records); }
 
-/// Gathers twice with independent random numbers: half of the squared difference is the variance of one record.
+/// Gathers at a place with two gathers of different seeds. Half of the squared difference is the variance of one
+/// record.
 Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathers, const RecordStore& placed,
                  int place) {
   Pair pair;
@@ -306,6 +302,7 @@ Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathe
   return pair;
 }
 
+/// Sets the values of `rough` that concern records.
 void measure_records(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
   const auto gather = [&](std::uint64_t seed) {
     return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(), light.gathering(seed));
@@ -315,8 +312,7 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
   rough.recorded = true;
   rough.records = double(placed.records().size());
   std::vector<Pair> pairs(kRecords);
-  parallel_chunks(pairs.size(), 1,
-                  [&](std::size_t i, std::size_t) { pairs[i] = gather_pair(picture, gathers, placed, int(i)); });
+  parallel_each(pairs.size(), 1, [&](std::size_t i) { pairs[i] = gather_pair(picture, gathers, placed, int(i)); });
   GatherCounts all;
   double gathered = 0;
   for (const Pair& pair : pairs) {
@@ -329,23 +325,24 @@ void measure_records(const Picture& picture, const RoughLight& light, RoughFrame
                        (gathered * kRays);
 }
 
-/// Light that photons show and that paths miss with certainty. Paths that find light of radiance c only once in n
-/// samples have at least the variance n c^2 (docs/methods/caustics.md). If paths find none of the light, a single
-/// photon proves that they miss some, and the best estimate is what the photons show.
+/// Light that photons show and that paths miss with certainty. found: mean radiance that `samples` paths found. Paths
+/// that find light of radiance c once in n samples have at least the variance n c^2 (docs/methods/caustics.md). If
+/// paths find no light at all, a single photon proves that they miss some, and the mean of the photons is the best
+/// estimate.
 MissedLight missed_light(const SeenPhotons& photons, double found, double samples, double allowed2) {
-  const double missed = std::max(0.0, photons.mean - found), error = found > 0 ? kSure * photons.mean_error : 0;
+  const double missed = std::max(0.0, photons.mean - found), error = found > 0 ? kCertain * photons.mean_error : 0;
   const double sure = std::max(0.0, missed * missed - error * error);
   if (!(sure > 0)) return {};
   return {photons.square * sure / (photons.mean * photons.mean) / allowed2, samples * sure / allowed2};
 }
 
-/// The share of the picture that the samples' indirect light is, if it is above kAuditLimit and so few samples hold it
-/// that it differs from none by less than kSure standard errors; else 0. The samples then meet it in a few of all
-/// pixels, and their variances say nothing of the other pixels. For the error a sample counts at most as much as makes
-/// its pixel white: a lone bright one beside many does not make them doubtful. 0, too, if the samples of all `places`
-/// are fewer than kSure^2 for each part of the picture: so few would not suffice even if each of them met the light.
+/// The samples' indirect light as a share of the picture's light, if the share is above kAuditLimit and the mean of the
+/// light is below kCertain of its standard errors; else 0. So few samples hold the light then that their variances say
+/// nothing about other pixels. For mean and error, a sample counts at most as much as makes its pixel white: one very
+/// bright sample among many does not make the light doubtful. Also 0 if all samples at the `places` with a Lambert lobe
+/// are fewer than kCertain^2 per part of the picture: then they would not suffice even if each of them held the light.
 double unsure_share(const Samples& samples, const Levels& levels, int places) {
-  if (kSamples * places < kSure * kSure * kColumns * kRows) return 0;
+  if (kSamples * places < kCertain * kCertain * kPilotParts) return 0;
   double sum = 0, seen = 0, squares = 0;
   for (const auto& some : samples)
     for (const Sample& sample : some) {
@@ -353,10 +350,10 @@ double unsure_share(const Samples& samples, const Levels& levels, int places) {
       sum += sample.indirect, seen += value, squares += value * value;
     }
   const double share = levels.picture > 0 ? sum / (kSamples * double(samples.size()) * levels.picture) : 0;
-  return share > kAuditLimit && seen < kSure * std::sqrt(squares) ? share : 0;
+  return share > kAuditLimit && seen < kCertain * std::sqrt(squares) ? share : 0;
 }
 
-/// Compares paths with photons: the light that paths miss, and the error that a map of caustic photons would have.
+/// Compares the light of paths with that of photons. Sets the light that paths miss, and the error of a caustic map.
 void compare(const Picture& picture, const SeenLight& photons, const Samples& paths, RoughFrame& rough) {
   const auto& [caustics, indirect] = photons;
   const double level = picture.levels.picture, allowed2 = level * level;
@@ -371,8 +368,8 @@ void compare(const Picture& picture, const SeenLight& photons, const Samples& pa
     rough.hidden = hidden_share(picture.scene, *picture.options.without_extent, picture.view, level);
 }
 
-/// Sets lower bounds for gathering and records. Work: a camera ray, and one ray onward from each Lambert lobe. Error:
-/// indirect light without noise.
+/// Sets lower bounds of work and error for gathering and records, before they are measured. Work: a camera ray, and one
+/// ray from each Lambert lobe. Error: that of all light but layer indirect.
 void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   const double seen = double(rough.places) / options.places;
   rough.gather = rough.path;
@@ -383,14 +380,15 @@ void bound_by_paths(const RoughOptions& options, RoughFrame& rough) {
   rough.record_sample = rough.gather.work + Work::kRecordLookUp * seen;
 }
 
+/// Sets the values of `rough` that concern gathering.
 void measure_gathering(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
   const KnownLight known = light.known();
   RayCounts counts;
-  const Samples gathered = take_samples(picture.scene, picture.view, &known, picture.options, counts);
+  const Samples gathered = samples_of(picture.scene, picture.view, &known, picture.options, counts);
   rough.gathered = true;
   rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts, gathered));
-  // A sample that reads a record still sends a ray from the Lambert lobe, because that ray is joined with light
-  // sampling. The ray ends at its first hit.
+  // In place of a gather ray with its continuation (onward), a sample with a record takes the look-up and one ray. MIS
+  // needs this ray, which ends at its first hit.
   const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
   rough.record_sample = rough.gather.work + at_records / (kSamples * double(gathered.size()));
 }
@@ -405,13 +403,13 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   rough.places = int(std::ranges::count_if(seen.places, &SeenPlace::exists));
   formats::PhotonBlock photons;
   if (rough.places > 0) {
-    photons = pilot_photons(scene.tracer, aimed, options.kinds, kPaths, options.seed ^ 0x61727269766564ull);
-    rough.photons_per_path = double(photons.photons.size()) / kPaths;
+    photons = pilot_photons(scene.tracer, aimed, options.kinds, kPilotPaths, options.seed ^ 0x61727269766564ull);
+    rough.photons_per_path = double(photons.photons.size()) / double(kPilotPaths);
     if (scene.lights.has_distant()) rough.paths_of_light = photon_paths(rough.photons_per_path, options.photons);
   }
   const SeenLight shown = rough.places > 0 ? see_photons(scene, view, photons) : SeenLight{};
   RayCounts counts;
-  const Samples paths = take_samples(scene, view, nullptr, options, counts);
+  const Samples paths = samples_of(scene, view, nullptr, options, counts);
   const Picture picture{scene, view, options, Levels(paths, shown, view, options.seed)};
   rough.radiance = mean_of(paths, [](const Sample& s) { return s.sum(); });
   ask(paths, picture.levels, options.pixel_error, rough);

@@ -18,32 +18,26 @@
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = kPilotColumns, kRows = kPilotRows;  ///< each part has its own mean square of a kind of light
-constexpr std::size_t kLooks = kPilotPlaces;                 ///< camera rays that follow mirrors and glass
+constexpr std::size_t kLooks = kPilotPlaces;  ///< number of camera rays that follow mirrors and glass
 
-/// A photon's contribution to the mean radiance of the picture, and its position in the picture.
+/// Light that a photon or a camera ray adds to the picture.
 struct SeenFlux {
-  double radiance = 0;
-  std::size_t cell = 0;
-  double noise = 0;  ///< through mirrors and glass: the same sum with the random signs of light paths
+  double radiance = 0;   ///< contribution to the mean radiance of the picture [W/m^2/sr]
+  std::size_t part = 0;  ///< pilot_part
+  double noise = 0;      ///< of a camera ray: noise of `radiance` (FootprintLight::noise)
 };
 
-/// x, y: place in the picture, in [0, 1).
-std::size_t cell_at(double x, double y) {
-  const auto cell = [](double at, int cells) { return std::size_t(std::min(cells - 1.0, at * cells)); };
-  return cell(y, kRows) * kColumns + cell(x, kColumns);
-}
-
-/// Contribution of photon i, if the camera sees the photon. Nothing is blurred, so the sum over photons is unbiased.
+/// Contribution of photon i; 0 if the camera does not see the photon. The sum over photons is unbiased (PhotonSplats).
 SeenFlux seen_flux(const PhotonSplats& splats, const CameraView& view, const PhotonView& photons, std::size_t i) {
   const std::optional<Splat> splat = splats.splat(photons.photons[i], {}, photons.direction(i));
   if (!splat) return {};
   const auto width = std::uint32_t(view.width()), height = std::uint32_t(view.height());
   return {double(channel_mean(splat->radiance)) / (double(width) * height),
-          cell_at((splat->pixel % width + 0.5) / width, (splat->pixel / width + 0.5) / height)};
+          pilot_part((splat->pixel % width + 0.5) / width, (splat->pixel / width + 0.5) / height)};
 }
 
-/// The light of a place that camera ray i of kLooks reaches through mirrors and glass, by a density of photons.
+/// Light, by a density of photons, of a place that a camera ray has reached through mirrors and glass. u: position of
+/// the ray in the picture, in [0, 1)^2.
 SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, std::optional<SeenPoint> seen, Vec2 u) {
   if (!seen) return {};
   const Vec3 normal = seen->surface.normal_geometric;
@@ -53,13 +47,15 @@ SeenFlux seen_behind(const RenderScene& scene, const FootprintDensity& density, 
   const Rgb weight = seen->passed * bsdf.diffuse_albedo() * (kInvPi / float(kLooks));
   const FootprintLight light =
       density.estimate(seen->surface.position, {front ? normal : -normal, seen->normal, seen->normal, &bsdf});
-  return {channel_mean(weight * light.irradiance), cell_at(u.x, u.y), channel_mean(weight * light.noise)};
+  return {channel_mean(weight * light.irradiance), pilot_part(double(u.x), double(u.y)),
+          channel_mean(weight * light.noise)};
 }
 
-/// Place of camera ray i of kLooks in the picture, in [0, 1).
+/// Position of camera ray i of kLooks in the picture, in [0, 1)^2.
 Vec2 look_at(std::size_t i) { return sobol_owen_2d(std::uint32_t(i), 0); }
 
-/// The places that camera rays reach through mirrors and glass, by ray; empty if no ray does.
+/// By camera ray the place that it reaches through mirrors and glass, if any. No element if no ray reaches such a
+/// place.
 std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, const CameraView& view) {
   std::vector<std::optional<SeenPoint>> places(kLooks);
   parallel_each(kLooks, 64, [&](std::size_t i) {
@@ -72,34 +68,35 @@ std::vector<std::optional<SeenPoint>> places_behind(const RenderScene& scene, co
   return places;
 }
 
+/// seen_behind() of all camera rays for one kind of photons.
 std::vector<SeenFlux> all_behind(const RenderScene& scene, std::span<const std::optional<SeenPoint>> places,
                                  const PhotonView& photons, formats::PathKind kind) {
   if (places.empty()) return {};
-  const FootprintDensity density(scene.tracer, photons, {.asked = 8}, kind_bit(kind));
+  const FootprintDensity density(scene.tracer, photons, {.asked = kAskedPhotons}, kind_bit(kind));
   std::vector<SeenFlux> behind(density.empty() ? 0 : places.size());
   parallel_each(behind.size(), 64,
                 [&](std::size_t i) { behind[i] = seen_behind(scene, density, places[i], look_at(i)); });
   return behind;
 }
 
-/// Joins what is seen directly, by photon, and behind mirrors and glass, by camera ray.
+/// Sums light that is seen directly (by photon) and behind mirrors and glass (by camera ray).
 SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> behind) {
   SeenPhotons pilot;
-  std::vector<double> cells(kRows * kColumns, 0.0), noise(kRows * kColumns, 0.0);
+  std::vector<double> parts(kPilotParts, 0.0), noise(kPilotParts, 0.0);
   double squares = 0, squares_behind = 0;
   for (const SeenFlux& one : seen) {
     pilot.mean += one.radiance;
     squares += one.radiance * one.radiance;
-    cells[one.cell] += one.radiance;
+    parts[one.part] += one.radiance;
   }
   for (const SeenFlux& one : behind) {
     pilot.mean += one.radiance;
-    cells[one.cell] += one.radiance;
-    noise[one.cell] += one.noise;
+    parts[one.part] += one.radiance;
+    noise[one.part] += one.noise;
   }
-  for (const double cell : noise) squares_behind += cell * cell;
+  for (const double part : noise) squares_behind += part * part;
   pilot.mean_error = std::sqrt(squares + squares_behind);
-  for (const double cell : cells) pilot.square += cell * cell * double(cells.size());
+  for (const double part : parts) pilot.square += part * part * kPilotParts;
   return pilot;
 }
 

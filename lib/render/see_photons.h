@@ -1,4 +1,4 @@
-// lib/render/see_photons.h -- light of one kind that a camera sees, estimated from photons alone.
+// lib/render/see_photons.h -- caustic and indirect light that a camera sees, estimated from photons alone.
 #pragma once
 
 #include "formats/photons/photons.h"
@@ -8,20 +8,21 @@
 
 namespace tempolux {
 
-/// Radiance of one kind of light that a camera sees, as the mean over the channels and the picture.
+/// Radiance [W/m^2/sr] of one kind of light that a camera sees, mean of the channels.
 struct SeenPhotons {
-  double mean = 0, mean_error = 0;  ///< mean and its standard error
-  double square = 0;                ///< mean of the square, over 16 x 9 parts of the picture
+  double mean = 0, mean_error = 0;  ///< mean over the picture, and its standard error
+  double square = 0;                ///< mean square over the parts of the picture (pilot_part)
 };
 
-/// The same of the two kinds of light that paths may miss.
+/// The two kinds of light that paths may miss.
 struct SeenLight {
   SeenPhotons caustic, indirect;
 };
 
-/// Sums the photons of each kind that a camera ray reaches directly, which is unbiased. Camera rays that reach a place
-/// through mirrors and glass add a density of photons there: in the middle of a wall at most 20 % too bright
-/// (docs/methods/caustics.md). Same result for any number of threads.
+/// Sums photons of each kind that the camera sees directly; this sum is unbiased. At places that camera rays reach
+/// through mirrors and glass, a density estimate of the photons is added. The estimate is at most 20 % too bright in
+/// the middle of a wall (docs/methods/caustics.md). Positions are in scene space. Same result for any number of
+/// threads.
 SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons);
 
 }  // namespace tempolux

@@ -14,6 +14,7 @@
 namespace tempolux {
 namespace {
 
+/// Values of the channels of one pixel.
 struct Shown {
   float depth = 0;
   Vec3 normal{};
@@ -21,11 +22,11 @@ struct Shown {
   Rgb albedo{1.0f};
 };
 
-/// The continuation by a delta lobe; empty if there is none.
+/// The direction in which a mirror or smooth glass continues the ray; empty if the surface has no delta lobe.
 std::optional<Bsdf::Sample> sharp_way(const ShadingPoint& shading) {
   if (!shading.bsdf.has_specular() || !shading.bsdf.specular_is_delta()) return std::nullopt;
-  // 0.5 chooses the lobe that has more than half of the light. If this is a Lambert lobe, one end of [0, 1) chooses the
-  // mirror above it.
+  // 0.5 chooses the lobe that has more than half of the light. If that is a Lambert lobe below a mirror, a number close
+  // to 0 or 1 chooses the mirror.
   for (const float lobe : {0.5f, 0.0001f, 0.9999f}) {
     const Bsdf::Sample next = shading.bsdf.sample(shading.eye, lobe, {0.5f, 0.5f});
     if (next.delta && !next.diffuse && !is_black(next.weight)) return next;
@@ -33,11 +34,13 @@ std::optional<Bsdf::Sample> sharp_way(const ShadingPoint& shading) {
   return std::nullopt;
 }
 
+/// Hash of the objects on a path: `id` of those so far, and the next one.
 std::uint32_t mixed(std::uint32_t id, std::uint32_t next) {
   const std::uint32_t hash = (id ^ (next + 0x9e3779b9u)) * 0x85ebca6bu;
   return hash ^ (hash >> 15);
 }
 
+/// Follows a camera ray through mirrors and glass to the first surface without a delta lobe.
 Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
   Shown shown;
   Ray ray = eye;
@@ -72,10 +75,8 @@ void add_seen_channels(const RenderScene& scene, const CameraView& view, const s
   std::array<float*, kNames.size()> to{};
   for (std::size_t i = 0; i < kNames.size(); ++i) to[i] = image.add(kNames[i]).values.data();
   std::uint32_t* const ids = image.add_ids("seen.id").ids.data();
-  const auto width = std::size_t(view.width());
-  parallel_each(image.pixel_count(), 4096, [&](std::size_t p) {
-    const Ray ray = view.ray(float(p % width) + 0.5f, float(p / width) + 0.5f);
-    const Shown shown = follow(scene.tracer, view, ray);
+  parallel_pixels(view.width(), view.height(), [&](int x, int y, std::size_t p) {
+    const Shown shown = follow(scene.tracer, view, view.ray(float(x) + 0.5f, float(y) + 0.5f));
     const std::array<float, kNames.size()> values{shown.depth,    shown.normal.x, shown.normal.y, shown.normal.z,
                                                   shown.albedo.r, shown.albedo.g, shown.albedo.b};
     for (std::size_t i = 0; i < values.size(); ++i) to[i][p] = values[i];

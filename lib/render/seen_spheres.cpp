@@ -17,9 +17,11 @@
 namespace tempolux {
 namespace {
 
-constexpr int kBounces = 2;
-constexpr double kReflected = 0.5;
-constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres), kLeastShare = 1.0 / 512;
+constexpr double kReflected = 0.5;  ///< weight of a place over that of the place before it: surfaces reflect about half
+constexpr int kBounces = 2;         ///< all further bounces together would have the weight of the second
+constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres);  ///< cells above this share are divided
+/// Share of the weight below which a cell has less than one place per camera: the places of a camera ray weigh at most 2.
+constexpr double kLeastShare = 1.0 / (2 * kPlacesOfEye);
 constexpr double kRadiusOfCell = 0.875;  ///< radius over cell size: half a cell's diagonal is .866
 constexpr double kLeastGain = 1;         ///< log2 of the least gain in density: twice as dense
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
+#include "lib/core/statistics.h"
 #include "lib/render/pixels_around.h"
 
 namespace tempolux {
@@ -186,15 +187,10 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
 
 std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels,
                                const std::vector<double>& errors) {
-  const int width = samples.width;
-  std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
-    for (int x = 0; x < width; ++x)
-      excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), by_row[y]);
+  const std::size_t width = std::size_t(samples.width);
+  return parallel_found<Excess>(pixels.size(), width, [&](std::size_t p, std::vector<Excess>& found) {
+    excess_of(samples, pixels, errors[p], int(p % width), int(p / width), found);
   });
-  std::vector<Excess> all;
-  for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
-  return all;
 }
 
 /// Sets `seen2` of each outlier: the square of D = (T - M) / e(T). M is the pixel's radiance without the outlier. T is
@@ -206,11 +202,10 @@ void note_what_is_seen(const SampledPixels& samples, const std::vector<Layers>& 
   for (std::size_t p = 0; p < pixels.size(); ++p)
     if (samples.takes_part(p)) radiances.push_back(std::max(0.0, radiance_of(pixels[p])));
   if (radiances.empty()) return;
-  const auto median = radiances.begin() + std::ptrdiff_t(radiances.size() / 2);
-  std::nth_element(radiances.begin(), median, radiances.end());
+  const double white = upper_median(radiances) / 0.18;
   for (Excess& outlier : outliers) {
     const double under = std::max(0.0, radiance_of(pixels[outlier.pixel]) - outlier.light()),
-                 top = std::min(under + outlier.light(), std::max(*median / 0.18, under)), error = samples.error(top);
+                 top = std::min(under + outlier.light(), std::max(white, under)), error = samples.error(top);
     outlier.seen2 = error > 0 ? (top - under) * (top - under) / (error * error) : 0;
   }
 }
@@ -244,9 +239,7 @@ std::vector<double> allowed_errors(const SampledPixels& samples, const std::vect
       near.clear();
       note(pixel);
       for_each_near(samples, x, y, note);
-      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
-      std::nth_element(near.begin(), middle, near.end());
-      const double error = samples.error(*middle);
+      const double error = samples.error(upper_median(near));
       if (std::isfinite(error)) errors[pixel] = error;
     }
   });

@@ -67,17 +67,17 @@ TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
   const Lights lights(frame, build_emission_table({&frame, 1}));
   double found = 0, expected = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    PhotonLightOptions options;
-    options.caustic_radius = 0.3f;
-    const PhotonLight light(tracer, trace(tracer, lights, 40000, seed), {}, options);
+    const FootprintDensity light(tracer, trace(tracer, lights, 40000, seed),
+                                 {.neighbours = 25, .max_radius = 0.3f, .asked = kAskedPhotons},
+                                 kind_bit(formats::PathKind::caustic));
     for (int i = 0; i < 100; ++i) {
       const float y = (float(i) + 0.5f) / 100, z = kHalf * (float(i * 37 % 100) / 50 - 0.99f);
       const double d2 = 4.0 + double((4 - y) * (4 - y) + z * z), d = std::sqrt(d2);
       expected += plate_transmittance(double(4 - y) / d) * 2 / d / d2;
-      found += double(caustic_at(light, {kNear, y, z}, LitSurface(Vec3{-1, 0, 0})).g);
+      found += double(light.estimate({kNear, y, z}, LitSurface(Vec3{-1, 0, 0})).irradiance.g);
     }
     for (float z : {-0.04f, 0.0f, 0.04f})
-      EXPECT_EQ(caustic_at(light, {kFar, 0.5f, z}, LitSurface(Vec3{1, 0, 0})).g, 0) << "the far face is dark";
+      EXPECT_EQ(light.estimate({kFar, 0.5f, z}, LitSurface(Vec3{1, 0, 0})).irradiance.g, 0) << "the far face is dark";
   }
   EXPECT_NEAR(found / expected, 1, 0.06);
 }

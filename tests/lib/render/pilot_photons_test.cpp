@@ -1,5 +1,5 @@
-// How many paths of light a photon map gets.
-#include "lib/render/choose_photons.h"
+// Numbers of light paths of a photon map.
+#include "lib/render/pilot_photons.h"
 
 #include <gtest/gtest.h>
 
