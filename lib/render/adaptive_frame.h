@@ -5,13 +5,14 @@
 
 namespace tempolux {
 
-/// Takes options.samples samples of each pixel, then as many more as FrameOptions::pixel_error asks for. frame.mean
-/// must be empty.
+/// Takes options.samples samples of each pixel, then as many more as FrameOptions::pixel_error and seen_error ask for,
+/// and measures the noise. frame.mean must have its size and no light. Sets all members of `frame` but `half` and
+/// mean_radiance. Same frame for any number of threads.
 ///
-/// The noise that decides how many samples a pixel gets is the noise of its neighbours, whose samples are independent
-/// of the pixel's own. If a pixel's own samples decided, a pixel whose first samples agree by chance would get no more,
-/// and pixels that seldom find the light of an opening would stay dark. So the picture has no bias. docs/pixels.md
-/// derives the number of samples from the noise.
+/// The noise of its neighbours decides how many samples a pixel gets. Their samples are independent of the pixel's own,
+/// so the picture has no bias. If the pixel's own samples decided, a pixel whose first samples agree by chance would
+/// get no more, and pixels whose samples seldom find the light of an opening would stay dark. docs/pixels.md derives
+/// the number of samples from the noise.
 void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
                      RenderedFrame& frame);
 

@@ -16,13 +16,12 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr double kFewest = 32;  ///< effective contributions to a variance: fewer give no standard error
+constexpr double kFewest = 32;  ///< least effective number of contributions from which a variance is estimated
 /// Student's t with 31 degrees of freedom exceeds 3 times this as rarely as a normal variable exceeds 3.
 constexpr double kStudent = 3.25 / 3;
-/// Rays of a frame that cost as much as one light path with the photons that it leaves in view; as much as one camera
-/// path.
+/// Cost in rays of a frame: of one light path with its photons in view, and of one camera path.
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
-constexpr int kStep = 2;  ///< pixels, across and down, that one pixel stands for in expect()
+constexpr int kStep = 2;  ///< expect() computes one pixel in each square of this edge
 constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8;
 
 }  // namespace
@@ -80,8 +79,7 @@ void FrameAudit::add(std::size_t audit, std::size_t pixel, std::size_t layer, do
   });
 }
 
-/// Each audit is a map with its own seed and all of its paths in one group. Audits are traced in parallel and added in
-/// order.
+/// Each audit is a photon map with its own seed and one group. Audits are traced in parallel and added in their order.
 void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
   struct Seen : Splat {
     double flux = 0;
@@ -112,8 +110,8 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
   expect(tracer, camera, flux);
 }
 
-/// Sets Sums::expected. flux: of one photon [W] by layer, mean square over mean. The contribution of a photon to a
-/// pixel is that of a photon at the place that the pixel's middle shows.
+/// Sets Sums::expected. flux [W]: by layer, mean square over mean of the flux of one photon. The contribution of a
+/// photon to a pixel is taken at the surface that the pixel's centre sees.
 void FrameAudit::expect(const Tracer& tracer, const PhotonSplats& camera, const std::array<double, kLayerCount>& flux) {
   const int columns = (view_.width() + kStep - 1) / kStep, rows = (view_.height() + kStep - 1) / kStep;
   std::vector<double> unit(std::size_t(columns) * std::size_t(rows), 0.0);  ///< contribution of a photon of 1 W
@@ -148,9 +146,9 @@ void FrameAudit::expect(const Tracer& tracer, const PhotonSplats& camera, const 
   }
 }
 
-/// Each audit divides the pixels into as many runs as it has paths, row by row, and draws one pixel from each run.
+/// Each audit cuts the list of pixels into as many pieces as it has paths and draws one pixel from each piece.
 void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) {
-  for (Sums& sums : sums_) sums.expected = {};  // photons find only a part of the frame's light
+  for (Sums& sums : sums_) sums.expected = {};  // not valid if photons find only a part of the frame's light
   const std::size_t pixels = object_part_.size(), count = (effort.eye_paths + kAudits - 1) / kAudits;
   struct Found {
     std::size_t pixel = 0;

@@ -11,11 +11,11 @@
 namespace tempolux {
 namespace {
 
-/// Factor of PlacementOptions::min_weight for the cameras of all frames but the first. Later frames interpolate the
-/// records of earlier frames. With the full min_weight they would get new records all over the picture.
+/// Factor of PlacementOptions::min_weight for the cameras of all frames but the first. With the full min_weight, a
+/// later frame would get new records all over the picture, at all places that records of earlier frames barely cover.
 constexpr float kLaterWeight = 0.5f;
 
-/// Where records are placed, and where their light comes from.
+/// Inputs for the placement of records.
 struct Placement {
   const FinalGather& gather;
   const Tracer& tracer;
@@ -24,25 +24,20 @@ struct Placement {
   const RecordSource* source = nullptr;         ///< makes the records; null: `gather` does
 };
 
-/// The camera's view without the points that are not taken.
-PixelView looks_through(const Placement& place, const CameraView& view) {
-  return [&](const Look& look) -> std::optional<SeenPoint> {
-    std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
-    if (seen && place.takes && !place.takes(*seen)) seen.reset();
-    return seen;
-  };
-}
-
 GatherCounts place_for_all(const Placement& place, const RecordCameras& cameras, RecordStore& store) {
   GatherCounts counts;
   for (const int number : cameras.frames) {
     const SceneFrame frame = cameras.at(number);
     const CameraView view(frame.camera(cameras.camera_node), frame.origin, cameras.width, cameras.height);
+    const auto look_at = [&](const Look& look) {
+      std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
+      if (seen && place.takes && !place.takes(*seen)) seen.reset();
+      return seen;
+    };
     PlacementOptions options = place.options;
     if (number != cameras.frames.front()) options.min_weight *= kLaterWeight;
     const std::size_t added = place_records(
-        place.gather, {looks_through(place, view), cameras.width, cameras.height, cameras.progress, place.source},
-        options, store, counts);
+        place.gather, {look_at, cameras.width, cameras.height, cameras.progress, place.source}, options, store, counts);
     cameras.added(number, added);
   }
   return counts;
@@ -61,8 +56,8 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const InfluenceField field(cache.standing, cache.changes, input.influence);
   const MovingObjects moving(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
-  // The picture holds f E_y, so it holds f^2 times the squared error of E_y. A record with f times the rays has 1 / f
-  // times the squared error. The product, f times the error of a record with all rays, is never above that error.
+  // The picture holds f E_y (LocalisedLight), so the squared error of E_y counts f^2 times. A record with f times the
+  // rays has 1 / f times the squared error: in all f times that of a record with all rays, which is never more.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
     const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
     IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);

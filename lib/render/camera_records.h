@@ -12,22 +12,24 @@
 
 namespace tempolux {
 
-/// Cameras for which records are placed, one after the other. All frames have the same light and the same objects.
+/// Cameras for which records are placed, one after the other. All frames must have the same light and objects.
 struct RecordCameras {
   std::vector<int> frames;
   int camera_node = 0;
   int width = 640, height = 360;  ///< of the pictures, pixels
-  /// The scene at a frame; throws InputError if its light differs from that of the first.
+  /// Returns the scene at a frame; may throw, for example if the light differs from that of the first frame.
   std::function<SceneFrame(int frame)> at;
-  std::function<void(double done)> progress;
+  std::function<void(double done)> progress;  ///< called with [0, 1] for each frame; may be empty
+  /// Called after each frame with the number of records that were added for it.
   std::function<void(int frame, std::size_t records)> added;
 };
 
-/// Places records for all cameras in one store. They are valid while nothing but the camera changes.
+/// Adds the records that all cameras need to `store` and returns the counts. The records are valid while nothing but
+/// the camera changes. Same records for any number of threads.
 GatherCounts place_for_cameras(const FinalGather& gather, const Tracer& tracer, const RecordCameras& cameras,
                                const PlacementOptions& options, RecordStore& store);
 
-/// Inputs of localised gathering.
+/// Inputs of localised gathering. All references must stay valid during the call.
 struct UpdateInput {
   const FinalGather& gather;
   const Tracer& tracer;  ///< the scene at the frame
@@ -35,11 +37,12 @@ struct UpdateInput {
   /// The frame's dynamic maps relative to the static scene; first the frame's own map.
   std::span<const SignedDensity> changes;
   InfluenceThresholds influence;
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< of the estimates of changes
 };
 
-/// Updates the static records in `cache` and gathers new ones where movers change the light that the cameras see.
-/// Returns the counts and sets least_cosine.
+/// Estimates the changes of the static records cache.standing by movers, and gathers records for the frame where the
+/// cameras see influence above the lower threshold or movers. Sets cache.changes, gathered and least_cosine, and
+/// returns the counts. Same records for any number of threads.
 GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& cameras, const PlacementOptions& options,
                                 LocalisedRecords& cache);
 

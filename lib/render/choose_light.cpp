@@ -13,16 +13,18 @@ namespace tempolux {
 namespace {
 
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
-/// Rays of a record: distances along fewer do not determine its radius; irradcache-build --rays takes no more.
+/// Limits of the number of gather rays of a record. Fewer distances do not determine the radius of a record;
+/// irradcache-build --rays does not accept more.
 constexpr double kFewestRays = FinalGather::kDistanceRays, kMostRays = 1 << 20;
 constexpr double kLeastError = 1e-12;
-/// Squared error of a raw frame over that of the filtered frame, for ways without records: geometric mean of seven
-/// scenes (docs/pixels.md).
+/// Squared error of a raw frame over that of the filtered frame, without records: geometric mean of seven scenes
+/// (docs/pixels.md).
 constexpr double kFilterGain = 2.4;
 
-/// Squared error that n samples leave of light that photons show and paths do not meet; at most all of the light.
+/// Squared error of missed light after n samples; at most the square of all the light.
 double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
 
+/// Work and error of one way. map: visible caustic light comes from photons.
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
   const bool records = method == IndirectMethod::records;
   const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
@@ -58,6 +60,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   return way;
 }
 
+/// The order of ways_to_light().
 void sort(std::vector<Way>& ways) {
   std::ranges::stable_sort(ways, {},
                            [](const Way& way) { return std::pair(way.lacks > 0 || way.unsure > 0, way.score()); });

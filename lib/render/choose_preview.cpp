@@ -11,11 +11,11 @@
 namespace tempolux {
 namespace {
 
-/// Candidates for the number of photons under the Gaussian. From one to the next the Gaussian's width doubles.
+/// Candidates for the number of photons below the Gaussian. From one to the next the Gaussian's width doubles.
 constexpr std::array<double, 5> kKernels{64, 256, 1024, 4096, 16384};
-constexpr std::size_t kWeights = kKernels.size() / 2;  ///< the candidate by which errors are weighted: the middle one
+constexpr std::size_t kWeights = kKernels.size() / 2;  ///< index of the candidate whose irradiance weighs errors
 
-/// Luminance that arrives in each element: r from the photons of one map, g from the other's.
+/// Luminance of the flux in each element: r of the first map, g of the second.
 std::vector<Rgbd> flux_of(const Tracer& tracer, const std::array<std::span<const formats::Photon>, 2>& maps,
                           const MeshCuts& cuts, std::vector<formats::MeshElement>& elements) {
   std::vector<Rgbd> flux(elements.size(), Rgbd(0.0));
@@ -36,7 +36,8 @@ std::vector<Rgbd> flux_of(const Tracer& tracer, const std::array<std::span<const
   return flux;
 }
 
-/// Squared error of each candidate plus a constant; `smoothed`: irradiance of both halves by candidate and element.
+/// Squared error of each candidate plus a constant. flux: of flux_of(). smoothed: irradiance of both maps by candidate
+/// and element.
 std::array<double, kKernels.size()> errors_of(const std::vector<formats::MeshElement>& elements,
                                               const std::vector<Rgbd>& flux,
                                               const std::array<std::vector<Vec2>, kKernels.size()>& smoothed) {
@@ -53,7 +54,7 @@ std::array<double, kKernels.size()> errors_of(const std::vector<formats::MeshEle
   return errors;
 }
 
-/// The candidate with the least error, between candidates by a parabola through three of them.
+/// The number of photons with the least error, by a parabola through the best candidate and its two neighbours.
 double least_of(const std::array<double, kKernels.size()>& errors) {
   const auto least = std::size_t(std::ranges::min_element(errors) - errors.begin());
   if (least == 0 || least + 1 == errors.size()) return kKernels[least];
@@ -101,8 +102,9 @@ PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel
   }
   const double more = mean.photons > 0 ? std::clamp(1 / mean.photons, 1.0, kMostTimesPhotons) : 1;
   const auto paths = std::uint64_t(std::llround(double(photons) * more));
-  // N photons filtered by a Gaussian of deviation s have the squared error v / (N s^2) + b s^2: noise plus bias. It is
-  // least at s^4 = v / (b N). The number of photons below the Gaussian, N s^2, then grows as sqrt(N).
+  // The density of N photons, filtered by a Gaussian of deviation s, has the squared error v / (N s^2) + b s^2: noise
+  // plus bias. The error is least at s^4 = v / (b N). The number of photons below the Gaussian, N s^2, then grows as
+  // sqrt(N).
   const double growth = std::sqrt(double(paths) * frames / double(kPilotPaths));
   return {paths, window_widths(mean.area, mean.photons * double(paths) * frames, kernel * growth).filter.width};
 }

@@ -9,7 +9,9 @@
 namespace tempolux {
 namespace {
 
-constexpr double kEnough = 1024;  ///< pixels: enough to know their RMS to 2.2 % if noise is normally distributed
+constexpr double kEnough = 1024;  ///< pixels; the RMS of that many normally distributed numbers errs by 2.2 %
+/// Limits of the edge of squares: pixels that are rendered twice cost at most 1/25 of the frame's rays, and at least
+/// 1/64 because noise is not normally distributed.
 constexpr int kLeastEdge = 5, kMostEdge = 8;
 
 Rgbd total(const Layers& layers) {
@@ -18,7 +20,7 @@ Rgbd total(const Layers& layers) {
   return sum;
 }
 
-/// Means over channels of squared differences, linear and in codes.
+/// Means over the channels of squared differences, in linear radiance and in codes.
 struct Squares {
   double linear = 0, codes = 0;
   Squares& operator+=(const Squares& o) {
@@ -65,9 +67,10 @@ class Mean {
   Squares sum_, square_;
 };
 
-/// Errors of a pixel's image and of its layers; colour(layers) selects what is compared.
+/// Means over pixels of the errors of the sum of all layers and of each layer.
 struct ImageAndLayers {
   Mean image, layer[kLayerCount];
+  /// Adds a pixel. error(colour) returns the squared error of colour(layers), the selected Rgbd of a pixel.
   template <class Error>
   void add(const Error& error) {
     image.add(error([](const Layers& layers) { return total(layers); }));
@@ -81,7 +84,7 @@ struct ImageAndLayers {
   }
 };
 
-/// Mean channels of the sum of all layers, of the pixels of the mask.
+/// Means over the channels of the sum of all layers, for each pixel of the mask.
 std::vector<double> means_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
   std::vector<double> means;
   means.reserve(pixels.size());
@@ -153,7 +156,8 @@ struct ShareSums {
 }  // namespace
 
 std::array<double, kLayerCount> NoiseCheck::shares(std::vector<Twice>& pixels) {
-  constexpr double kAlike = 6, kSeen = 7.0 / 6;  // the sRGB curve's slope squared is L^(2 (1 / 2.4 - 1))
+  constexpr double kAlike = 6;       // pixels that the common ratio counts as: derived in frame_noise.h
+  constexpr double kSeen = 7.0 / 6;  // the squared slope of the sRGB curve is L^(2 (1 / 2.4 - 1))
   std::array<ShareSums, kLayerCount> sums;
   ShareSums all;
   for (std::size_t l = 0; l < kLayerCount; ++l) {

@@ -14,14 +14,14 @@
 
 namespace tempolux {
 
-/// RMSE by noise over pixels and channels, with its standard error. Below 0: not known.
+/// Root of the mean squared error by noise over pixels and channels, with its standard error. Below 0: not measured.
 struct Noise {
   double linear = -1, linear_error = 0;  ///< W/m^2/sr
   double codes = -1, codes_error = 0;    ///< 8-bit sRGB codes, 0 to 255, at FrameNoise::exposure
 };
 
 struct FrameNoise {
-  Noise image;
+  Noise image;  ///< noise of the sum of all layers
   /// The part of image.codes that comes from noise of records and photons. All samples read the same records and
   /// photons, so further samples do not reduce this part.
   double stored_codes = 0;
@@ -31,34 +31,35 @@ struct FrameNoise {
   bool known() const { return pixels > 1; }
 };
 
-/// Relative error of a linear value of .18 that changes its sRGB code by `codes`. The slope of the curve there is
-/// 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
+/// Relative error of a linear value of .18 that changes the value's sRGB code by `codes`. At .18 the slope of the curve
+/// is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
 constexpr double pixel_error_of_codes(double codes) { return codes * (1 / (305 * 0.18)); }
-/// exposure_of() the mean channels of the sum of all layers, over the pixels of the mask (empty: all).
+/// exposure_of() and mean_to_white() (lib/image/srgb.h) of the sums of all layers, mean of the channels, over the
+/// pixels of the mask (empty: all).
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
-/// mean_to_white() of the same.
 double mean_to_white(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
 
-/// Renders pixels of a grid a second time, with different random numbers and as many samples. For the two means x and
-/// y, E (x - y)^2 / 2 is the variance of x, with the gain by stratification included. The two halves of one pixel's
-/// samples would not give this variance: samples that are stratified together have halves with opposite errors, so
-/// their difference is too large, by up to a factor of 4 in variance.
+/// Measures noise by pixels that are rendered a second time, with different random numbers and the same numbers of
+/// samples. For the two means x and y, E (x - y)^2 / 2 is the variance of x, which includes the gain by stratification.
+/// The two halves of one pixel's samples would not give this variance: they are stratified together and have opposite
+/// errors, so their squared difference is up to 4 times too large.
 class NoiseCheck {
  public:
-  /// Takes one pixel of each square of edge 5 to 8, so that 1000 or more pixels are taken if the picture is large
-  /// enough. Costs 1/64 to 1/25 of the frame's rays.
+  /// Takes one pixel of each square. The edge of the squares is 5 to 8 pixels, such that about 1024 pixels are taken,
+  /// or more in large pictures and fewer in small ones. The second rendering costs 1/64 to 1/25 of the frame's rays.
   NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask);
-  /// Index of the pixel among those that are rendered twice, or kNone.
+  /// Index of pixel (x, y) among the pixels that are rendered twice, or kNone.
   std::uint32_t slot(int x, int y) const;
   std::size_t size() const { return again_.size(); }
   /// Seed of the second rendering.
   std::uint64_t seed() const { return seed_; }
-  /// Mean of the second rendering of this slot, by part. Thread-safe for different slots.
+  /// Mean of the second rendering of a pixel by its slot(), by part. The caller fills it. Thread-safe for different
+  /// slots.
   PathParts& again(std::uint32_t slot) { return again_[slot]; }
-  /// Noise of `picture`. A pixel holds either as_sampled(pixel) or what spread_outliers made of it. Let x be the
-  /// sampled value, y the second rendering, g the light that the pixel got from other pixels, z the value in `picture`,
-  /// x' = x + g and y' = y + g. The variance of z is then about E (z - y')^2 - E (x' - y')^2 / 2: the second term
-  /// removes the variance of y'. Both renderings read the same records and photons: the square of their noise
+  /// Noise of `picture`, whose pixels are as_sampled(pixel) before spread_outliers changed them. Let x be the sampled
+  /// value, y the second rendering, z the value in `picture`, g = max(0, z - x) the light that the pixel got from other
+  /// pixels, x' = x + g and y' = y + g. The variance of z is about E (z - y')^2 - E (x' - y')^2 / 2: the second term
+  /// removes the variance of y'. Both renderings read the same records and photons, so the square of stored_noise
   /// (LayerImage::stored_noise; may be empty) is added.
   template <class AsSampled>
   FrameNoise measure(const std::vector<Layers>& picture, const AsSampled& as_sampled,
@@ -77,12 +78,12 @@ class NoiseCheck {
   SampleHalves& again_halves(std::uint32_t slot) { return again_halves_[slot]; }
   /// By layer: the variance of a pixel's mean over the mean square of SampleHalves::difference, at most 1.
   ///
-  /// Let x = as_sampled(pixel), y the mean of the second rendering, and d and e the differences of their halves. The
-  /// result is the sum of (x - y)^2 over the sum of d^2 + e^2, in squares of sRGB codes at x + y plus the layer's mean.
-  /// A pixel is weighted by the inverse root of the sum of the local and the global mean of d^2, so that a few noisy
-  /// pixels do not dominate. The ratio from n pixels has a relative error of about sqrt(3 / n), and layers differ by a
-  /// factor of about 2, whose logarithm has variance .5. So the ratio of all layers together enters each layer's ratio
-  /// as 6 further pixels.
+  /// Let x = as_sampled(pixel) and y be the means of the two renderings, and d and e the differences of their halves.
+  /// The result is the weighted sum of (x - y)^2 over the weighted sum of d^2 + e^2. One factor of a pixel's weight is
+  /// the squared slope of the sRGB curve at x + y plus the layer's mean. The other factor is the inverse root of the
+  /// local plus the global mean of d^2, so that a few noisy pixels do not dominate. The ratio from n pixels has a
+  /// relative variance of about 3 / n, and layers differ by a factor of about 2, whose logarithm has the variance .5.
+  /// So the ratio of all layers together enters each layer's ratio as 3 / .5 = 6 further pixels.
   template <class AsSampled>
   std::array<double, kLayerCount> shares(const std::vector<SampleHalves>& halves, const AsSampled& as_sampled) const {
     std::vector<Twice> pixels;
@@ -103,7 +104,7 @@ class NoiseCheck {
 
  private:
   struct Twice {
-    Layers once, again, first, second, around;  ///< x, y, d, e, sum of d^2 around
+    Layers once, again, first, second, around;  ///< x, y, d, e, and the sum of d^2 over the eight neighbours
   };
   static std::array<double, kLayerCount> shares(std::vector<Twice>& pixels);
   struct Triple {
@@ -120,7 +121,7 @@ class NoiseCheck {
   std::vector<SampleHalves> again_halves_;
 };
 
-/// Noise of `mean` = (a + b) / 2 from two independent halves of a frame: the variance is E (a - b)^2 / 4.
+/// Noise of `mean` = (a + b) / 2 from two independent halves of a frame. The variance is E (a - b)^2 / 4.
 FrameNoise noise_of_halves(std::span<const Layers> mean, std::span<const Layers> a, std::span<const Layers> b);
 
 template <class Body>

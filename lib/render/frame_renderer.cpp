@@ -68,7 +68,7 @@ double mean_radiance(const LayerImage& image) {
   return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 
-/// Mean of the two halves, and its noise from their difference.
+/// Sets frame.mean to the mean of the two halves, and frame.noise from their difference.
 void join_halves(RenderedFrame& frame) {
   const LayerImage &a = frame.half[0], &b = frame.half[1];
   frame.mean = a;

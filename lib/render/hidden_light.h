@@ -1,4 +1,4 @@
-// lib/render/hidden_light.h -- light that no camera path finds: of lights without extent, by way of mirrors and smooth
+// lib/render/hidden_light.h -- light that no camera path finds: from lights without extent, through mirrors and smooth
 // glass.
 #pragma once
 
@@ -10,10 +10,10 @@ namespace tempolux {
 /// True if a light without extent (point, spot, sun) shines and some material is a mirror or smooth glass.
 bool may_hide_light(const SceneFrame& frame);
 
-/// The share of a picture of mean radiance `picture` [W/m^2/sr] that this light is on matte surfaces, by 32768 light
-/// paths; 1 if the picture is black; 0 if the share is not above kAuditLimit by kAuditErrors standard errors.
-/// `without_extent`: lights of Lights::Which::punctual whose photons are aimed where the camera looks. Same result for
-/// any number of threads.
+/// The visible caustic light of these lights over the mean radiance `picture` of a picture without it [W/m^2/sr],
+/// estimated by kPilotPaths light paths. 1 if the picture is black; 0 if the share is not above kAuditLimit by
+/// kAuditErrors standard errors. `without_extent`: lights of Lights::Which::punctual, whose photons are aimed where the
+/// camera looks. Same result for any number of threads.
 double hidden_share(const RenderScene& scene, const Lights& without_extent, const CameraView& view, double picture);
 
 }  // namespace tempolux

@@ -11,11 +11,10 @@
 
 namespace tempolux {
 
-/// Adds the float channels "influence" (LocalisedLight::influence) and "blend" (gathered_share), if `channels` has
-/// "influence". Both hold for the first Lambert lobe that the ray through the pixel's centre reaches; at mirrors and
-/// glass the ray follows the likelier of reflection and transmission. 0 where there is no Lambert lobe. An infinite
-/// influence, as on movers, is stored as the upper threshold. Throws InputError if "influence" is requested and `light`
-/// is nullptr.
+/// If `channels` has "influence", adds the float channels "influence" (LocalisedLight::influence) and "blend"
+/// (LocalisedLight::gathered_share). Their place is the first Lambert lobe that the ray through the pixel's centre
+/// reaches (seen_through); 0 where there is none. An infinite influence, as on movers, is stored as the upper
+/// threshold. Throws InputError if "influence" is requested and `light` is null.
 void add_influence_channels(const RenderScene& scene, const CameraView& view, const LocalisedLight* light,
                             const std::vector<std::string>& channels, Image& image);
 

@@ -29,7 +29,7 @@ std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading,
       return found.irradiance;
     }
   }
-  // gathered_share() without its look-up of influenced records, which was made above.
+  // This is gathered_share() without near_influenced(), which was asked above.
   const float gathered = moving ? 1 : influence_.thresholds().gathered_share(influence_.at(surface.position, shading));
   Rgb irradiance{0.0f}, records_noise{0.0f};
   for (const auto& [records, share] : {std::pair{&updated_, 1 - gathered}, std::pair{&gathered_, gathered}}) {

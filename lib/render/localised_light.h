@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// Indirect irradiance [W/m^2] of a frame by localised gathering:
+/// Indirect irradiance E [W/m^2] of a frame by localised gathering:
 ///     E = f E_y + (1 - f) E_t
 /// - E_y: interpolated between the records that were gathered for the frame.
 /// - E_t: interpolated between the static records. Each record's irradiance is its static irradiance plus the change by
@@ -20,19 +20,19 @@ namespace tempolux {
 /// Method: docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
-  /// changes[i] belongs to static_records[i]. least_cosine: the smallest cosine between normals for which a record of
-  /// either set counts.
+  /// changes[i] belongs to static_records[i]. A record counts at places where the cosine between the normals is at
+  /// least least_cosine.
   LocalisedLight(std::span<const IrradianceRecord> static_records, std::span<const RecordChange> changes,
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 
-  /// E [W/m^2]; empty if no record of a set with a share above 0 is valid at the place. `noise` [W/m^2] receives
-  /// f n_y + (1 - f) n_t, the interpolated noise of both sets of records (RecordStore::Interpolated::noise). n_t is the
-  /// noise of the static irradiance alone.
+  /// E [W/m^2] at a place with the shading normal `shading`. Empty if f needs a set of records of which none is valid
+  /// at the place. `noise` [W/m^2] receives f n_y + (1 - f) n_t, with the noise n_y, n_t of the two sets
+  /// (RecordStore::Interpolated::noise); n_t does not include noise of the changes.
   std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading, Rgb* noise = nullptr) const;
   /// f in [0, 1].
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;
-  /// Influence in the unit of the thresholds (InfluenceField::at). Infinite on movers and where no record is valid.
+  /// Influence over the static irradiance (InfluenceField::at). Infinite on movers and where no record is valid.
   float influence(const SurfacePoint& surface, Vec3 shading) const;
   const InfluenceThresholds& thresholds() const { return influence_.thresholds(); }
 

@@ -13,11 +13,10 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRouletteFrom = 3;                  ///< number of bounces that always survive
-constexpr float kLargestSurvival = kLargestPhotonSurvival;  ///< below 1: paths in a lossless box end, as photons do
+constexpr std::uint32_t kRouletteFrom = 3;  ///< paths of fewer bounces always survive
 
-/// The state of a path on its way: the ray from the last vertex, and the light that must not be added again. An event D
-/// is a Lambert lobe or a collision in a medium.
+/// A path between two vertices: its ray, its events so far, and which light was added already. Here an event D is
+/// scattering by a Lambert lobe or in a medium.
 struct PathState {
   PixelRandom random;           ///< random numbers of the path, by bounce
   Layers* result;               ///< the part of the sample that receives the light found from here on
@@ -31,39 +30,38 @@ struct PathState {
   std::uint32_t bounce = 0;     ///< number of events
   bool forked = false;          ///< both lobes of a surface have been followed: the path forks once
   bool matte = false;           ///< there was an event D; the fields below concern the last one
-  bool caustic_known = false;   ///< the light that arrives at its place by events S was added
-  bool indirect_known = false;  ///< the light that arrives at its place by events D was added
+  bool caustic_known = false;   ///< light that arrives at its place by events S was added
+  bool indirect_known = false;  ///< light that arrives at its place by events D was added
   bool specular = false;        ///< events S followed
-  /// At the last event D the bright points were sampled explicitly, so the next Lambert lobe contributes only the
-  /// remaining light.
-  bool bright_sampled = false;
-  /// m: a ray from a Lambert lobe would have spread as far after this distance. Equal to the path's length since the
-  /// last event D; 0 if the path has met only smooth mirrors and glass.
+  bool bright_sampled =
+      false;  ///< bright points were sampled explicitly: the next Lambert lobe adds the remaining light
+  /// Distance [m] after which a ray from a Lambert lobe has spread as far as this path. The path's length since the
+  /// last event D, if no glossy event widened the path; 0 if it has met only smooth mirrors and glass.
   float distance = 0;
   float spread = 0;  ///< growth of `distance` per metre of path
 
-  /// Widens the spread by a glossy event of this pdf [1/sr]. A Lambert lobe has 1/pi in its middle, and its rays spread
-  /// by one metre per metre.
-  void widen(float density) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * density))); }
-  /// True if light that the path meets now was not added yet.
+  /// Widens the spread by a glossy event of this pdf [1/sr]. The spread of a Lambert lobe is 1; its pdf is 1 / pi in
+  /// the middle.
+  void widen(float pdf_solid_angle) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * pdf_solid_angle))); }
+  /// True if light that the path meets now has not been added yet.
   bool light_counts() const { return !(matte && specular && caustic_known); }
 };
 
-/// A surface that a path has reached. Records, points and photons may hold light that arrives there; light that was
-/// added from them must not be added again.
+/// A surface that a path has reached, and which light that arrives there was already added from records, points and
+/// photons.
 struct Vertex {
   const ShadingPoint& x;
   const SurfaceMaterial& material;
   bool indirect_known = false;  ///< light that arrives by events D was added
-  bool direct_known = false;    ///< light that arrives from lights was added: none is sampled for the Lambert lobe
+  bool direct_known = false;    ///< light that arrives from lights was added: the Lambert lobe samples no light
   bool caustic_known = false;   ///< light that arrives by events S was added
   bool bright_sampled = false;  ///< bright points were sampled explicitly
   bool lamps_apart = false;     ///< records were read that leave out the light of KnownLight::lamp_spots
   float remaining_share = 1;  ///< share of the Lambert lobe's light that was not sampled explicitly at the last vertex
   bool forks = false;         ///< both lobes are followed
-  float times_diffuse = 1, times_specular = 1;  ///< probability of a lobe over the Bsdf's, if the path forks
+  float times_diffuse = 1, times_specular = 1;  ///< probability of following a lobe, over that of the Bsdf
 
-  /// probability: Bsdf::fork_probability, in (0, 1). At glass times_diffuse is the reflection's factor and
+  /// probability: Bsdf::fork_probability, in (0, 1). At glass, times_diffuse is the factor of the reflection and
   /// times_specular that of the transmission.
   void fork(float probability) {
     forks = true;
@@ -85,7 +83,7 @@ class EyeTracer {
   bool scatter_in_medium(const MediumPoint& point, PathState& state) const;
   bool scatter(const Vertex& at, float u_lobe, float times, PathState& state) const;
   bool survives(PathState& state, float most) const;
-  /// Begins the part of a path that follows an event D.
+  /// Sets the state after an event D.
   static void begin_matte(bool caustic_known, bool indirect_known, bool bright_sampled, PathState& state) {
     state.matte = true, state.specular = false;
     state.caustic_known = caustic_known, state.indirect_known = indirect_known, state.bright_sampled = bright_sampled;
@@ -106,10 +104,11 @@ class EyeTracer {
   bool leave(const Vertex& at, PathState& state) const;
   bool step(PathState& state) const;
   void go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const;
+  /// Adds rays to a counter, and their cost to counts_.onward if they belong to this part.
   void count(std::uint64_t rays, std::uint64_t& as, const PathState& state) const {
     as += rays;
     if (state.result == &parts_.onward)
-      // Nearest hit, surface and material cost twice as much as a shadow ray.
+      // A nearest hit with surface and material costs twice as much as a shadow ray (Work::kRay).
       counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;
   }
 
@@ -120,12 +119,13 @@ class EyeTracer {
   PathParts& parts_;
 };
 
-/// Russian roulette; `most`: the largest survival probability.
+/// Russian roulette after the first bounces; `most`: the largest survival probability.
 bool EyeTracer::survives(PathState& state, float most) const {
   if (state.bounce + 1 < kRouletteFrom) return true;
   return tempolux::survives(state.throughput, most, state.random.get1(state.bounce, Purpose::roulette));
 }
 
+/// Follows a ray to its hit.
 void EyeTracer::go_on(const Ray& ray, PathState& state) const {
   state.ray = ray;
   count(1, counts_.bounce, state);
@@ -134,8 +134,8 @@ void EyeTracer::go_on(const Ray& ray, PathState& state) const {
   ++state.bounce;
 }
 
-/// Draws the next ray: an event D or S by u_lobe. times: the lobe's probability over the Bsdf's. Returns false if the
-/// path ends.
+/// Draws the next ray and follows it; u_lobe chooses the event, D or S. times: probability of the lobe over that of the
+/// Bsdf. Returns false if the path ends.
 bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& state) const {
   const ShadingPoint& x = at.x;
   const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, state.random.get2(state.bounce, Purpose::scatter));
@@ -143,9 +143,9 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   const Vec3 wi = x.frame.to_world(next.wi);
   if (next.transmitted ? !x.sees_behind(wi) : !x.sees(wi)) return false;
   state.throughput *= next.weight * (1 / times);
-  if (next.straight) {  // MIS keeps the densities of the last vertex, whose light samples pass panes as well
+  if (next.straight) {  // MIS keeps the pdf at the last vertex, because light samples from there pass panes as well
     state.path.pass_straight();
-    if (!survives(state, kLargestSurvival)) return false;
+    if (!survives(state, kLargestPhotonSurvival)) return false;
     go_on(spawn_ray(x.surface, state.ray.direction), state);
     return true;
   }
@@ -159,7 +159,7 @@ bool EyeTracer::scatter(const Vertex& at, float u_lobe, float times, PathState& 
   }
   const bool front = dot(x.surface.normal_geometric, state.ray.direction) < 0;
   if (!next.diffuse && is_solid_glass(at.material)) state.inside.scatter(x.surface.material, front, next.transmitted);
-  if (!survives(state, kLargestSurvival)) return false;
+  if (!survives(state, kLargestPhotonSurvival)) return false;
 
   LastScatter& last = state.last;
   last.weighed = !next.delta;
@@ -195,7 +195,8 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, PathState& state) co
   return true;
 }
 
-/// Passes the media between the last vertex and state.hit.
+/// Passes the media between the last vertex and state.hit: by their exact transmittance if volume-compose adds the
+/// light that they scatter, else by null collisions.
 EyeTracer::Passed EyeTracer::pass_media(const Media& media, PathState& state) const {
   const float way = state.hit.surface == kNone ? INFINITY : state.hit.t;
   if (known_ && state.bounce == 0) {
@@ -214,13 +215,13 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, PathState& state) co
   return scatter_in_medium(collision, state) ? Passed::scattered : Passed::ended;
 }
 
-/// Takes one sample of the lights or of the sun and adds it to the layer of the lobe that scatters it, weighted by MIS.
-/// [Veach 1997 (9.14)]
+/// Takes one sample of the suns (of_sun) or of the other lights, and adds what each lobe scatters, weighed by MIS
+/// [Veach 1997 (9.14)], to the layer of the lobe.
 void EyeTracer::sample_light(const Vertex& at, const PathState& state, const PixelRandom& random, bool of_sun,
                              Layers& result) const {
   const ShadingPoint& x = at.x;
   const bool has_diffuse = samples_diffuse(at), has_specular = samples_specular(at, state);
-  // Rough glass also transmits light from behind. One side is drawn for this sample.
+  // Rough glass also transmits light from behind. The sample is taken on one side, which is drawn.
   const float share_behind = x.bsdf.light_share_behind();
   bool behind = false;
   float share = 1;
@@ -256,7 +257,7 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   result[state.path.after(false).layer()] += arriving * glossy;
 }
 
-/// Takes one sample of the light that the records at a surface leave out.
+/// Takes one sample of the light that records leave out (KnownLight::lamp_spots).
 void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random,
                                   Layers& result) const {
   const ShadingPoint& x = at.x;
@@ -270,8 +271,8 @@ void EyeTracer::sample_lamp_spots(const Vertex& at, const PathState& state, cons
       state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share) * irradiance;
 }
 
-/// Samples light at a surface. At the first matte surface effort_.lit samples are added to the part `lit`. Samples of
-/// the sun hardly differ from each other, so one per camera ray is enough; it belongs to the path's own part.
+/// Samples light at a surface; at the first matte surface with effort_.lit samples, which are added to the part `lit`.
+/// Samples of the sun hardly differ from each other. So there is one per camera ray, in the part that the path adds to.
 void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
   const bool first_matte = state.path.sharp() && at.x.bsdf.has_diffuse();
   const auto each = [&](const auto& sample) {
@@ -286,7 +287,7 @@ void EyeTracer::add_light(const Vertex& at, const PathState& state) const {
   each([&](const PixelRandom& random, Layers& result) { sample_light(at, state, random, false, result); });
 }
 
-/// Follows effort_.onward rays from the Lambert lobe of the first matte surface: the part `onward`.
+/// Follows effort_.onward rays from the Lambert lobe of the first matte surface, which add to the part `onward`.
 void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const {
   if (at.indirect_known && at.caustic_known && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
@@ -297,7 +298,7 @@ void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const Pat
   }
 }
 
-/// Arrival at a surface: applies the absorption of glass on the way and adds the surface's emission.
+/// Applies the absorption of glass between the last vertex and a surface, and adds the surface's emission.
 void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
   const SceneFrame& frame = scene_.frame();
   const Vec3 wo = -state.ray.direction;
@@ -311,8 +312,8 @@ void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
         state.throughput * weighed_emission(scene_.lights, point, wo, state.last, state.cone.width);
 }
 
-/// Follows the rays that leave a surface: one, or one for each lobe where the path forks. Returns false if `state`
-/// ends.
+/// Continues the path from a surface. If the path forks, `state` follows one lobe, and a copy follows the other to its
+/// end. Returns false if `state` ends.
 bool EyeTracer::leave(const Vertex& at, PathState& state) const {
   const ShadingPoint& x = at.x;
   const bool first_matte = state.path.sharp() && x.bsdf.has_diffuse();
@@ -333,7 +334,8 @@ bool EyeTracer::leave(const Vertex& at, PathState& state) const {
   return scatter(at, u_lobe, times, state);
 }
 
-/// Adds the light that records, points and photons hold for x. smooth: the shading normal without a normal map.
+/// Adds the light that records, points and photons hold for a surface, and notes in `at` which light was added. smooth:
+/// the shading normal without a normal map.
 void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state) const {
   const KnownLight& known = *known_;
   const ShadingPoint& x = at.x;
@@ -342,12 +344,12 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   const float u = state.random.get1(state.bounce, Purpose::gather);
   if (state.bright_sampled && !state.specular)
     at.remaining_share = known.remaining_share(x.surface, x.normal_geometric, state.distance, u);
-  // The Lambert lobe's total for uniform light is rho (1 - A_S(wo)), see bsdf.h.
+  // Radiance per irradiance that the Lambert lobe reflects, times the throughput (Bsdf::diffuse_reflectance).
   const Rgb reflected = state.throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * at.remaining_share);
-  // The layer indirect, or the layer of the surface that the path has seen before.
+  // Layer indirect; but specular or volume if the camera sees this surface by an event S or by a medium.
   const Layer layer = path.after(true).after(true).layer();
-  // With bright points, a point's irradiance represents only the remaining light. A glossy ray has not sampled bright
-  // points, so the path continues.
+  // With bright points, irradiance of points is only the remaining light of a surface. A glossy ray comes from a place
+  // that has not sampled bright points, so its path continues.
   if (state.matte || (state.spread > 0 && !known.bright)) {
     if (const std::optional<KnownLight::PointLight> stored =
             known.point_light(x.surface, x.normal_geometric, state.distance, u)) {
@@ -393,7 +395,7 @@ void EyeTracer::add_known_light(Vertex& at, Vec3 smooth, const PathState& state)
   }
 }
 
-/// Moves the path from one vertex to the next. Returns false if the path ends.
+/// Adds the light at state.hit and continues the path from there. Returns false if the path ends.
 bool EyeTracer::step(PathState& state) const {
   const SceneFrame& frame = scene_.frame();
   if (const Media* const media = frame.media.get()) [[unlikely]] {
@@ -410,7 +412,7 @@ bool EyeTracer::step(PathState& state) const {
   parts_.own.coverage = 1;
   SurfacePoint point = scene_.tracer.surface_point(state.hit);
   arrive(point, state);
-  // True if only light by events S may still be added, or lights behind panes.
+  // If true, only light by events S and light behind panes has not been added yet.
   const bool only_specular = state.indirect_known;
   if (only_specular && state.caustic_known && !may_be_pane(frame.materials[point.material])) return false;
 
@@ -448,7 +450,8 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
                       const KnownLight* known, RayCounts& counts, RayCone cone) {
   Hit first;
   scene.tracer.intersect(camera_ray, first);
-  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, effort_of(random.sample())).sum();
+  const PathEffort one{1, 1, random.sample(), random.sample()};
+  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, one).sum();
 }
 
 }  // namespace tempolux

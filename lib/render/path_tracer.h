@@ -12,7 +12,7 @@
 
 namespace tempolux {
 
-/// Layers of a frame (formats/conventions.md); their sum, in this order, is the image.
+/// Layers of a frame (formats/conventions.md). Their sum, in this order, is the picture.
 enum class Layer : std::uint8_t { emission, specular, direct, caustic, indirect, volume };
 inline constexpr std::size_t kLayerCount = 6;
 inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "specular", "direct",
@@ -43,12 +43,13 @@ double radiance_of(const LayersT<T>& layers) {
   return sum;
 }
 
-/// Noise of stored light, which all samples of a pixel share: numbers with a random sign whose mean squares are the
-/// variances of the layers [W/m^2/sr].
+/// Noise of the records and photons that all samples of a pixel read [W/m^2/sr]: numbers with a random sign whose mean
+/// squares are the variances of the layers.
 template <class T>
 struct StoredNoiseT {
-  RgbT<T> caustic{T(0)};   ///< of the photons that layer caustic is read from (PhotonLight::caustic)
-  RgbT<T> indirect{T(0)};  ///< of the records that layer indirect is read from (IrradianceRecord::noise)
+  RgbT<T> caustic{T(0)};   ///< of the photons in layer caustic (FootprintLight::noise)
+  RgbT<T> indirect{T(0)};  ///< of the records in layer indirect (IrradianceRecord::noise)
+  /// null: the layer has no such noise.
   const RgbT<T>* of(Layer layer) const {
     return layer == Layer::caustic ? &caustic : layer == Layer::indirect ? &indirect : nullptr;
   }
@@ -61,9 +62,10 @@ struct StoredNoiseT {
 };
 using StoredNoise = StoredNoiseT<float>;
 
-/// Decides which layer light belongs to, from the events of a camera path so far.
+/// The layer of the light that a camera path finds, by the events of the path so far.
 class EyePath {
  public:
+  /// Adds an event D (diffuse) or S at a surface.
   void scatter(bool diffuse) {
     sharp_ = sharp_ && !diffuse;
     switch (layer_) {
@@ -75,19 +77,19 @@ class EyePath {
       case Layer::volume: break;
     }
   }
-  /// Passes a pane straight. No event for light behind an event D; what the camera sees through panes is sorted as what
-  /// other glass shows.
+  /// Passes a pane straight. After an event D this is no event. Before it, this is an event S, as for other glass.
   void pass_straight() {
     if (sharp_) scatter(false);
   }
-  /// Scatters in a medium. After an event S the light counts as part of what that event shows.
+  /// Adds an event in a medium. The layer specular stays: it holds all light that mirrors and glass show.
   void scatter_in_medium() {
     sharp_ = false;
     if (layer_ == Layer::emission) layer_ = Layer::volume;
     else if (layer_ != Layer::specular && layer_ != Layer::volume) layer_ = Layer::indirect;
   }
-  /// True if the path has had no event D yet, so that the camera sees directly or by events S.
+  /// True if the path has had no event D and no event in a medium: the camera sees directly or by events S.
   bool sharp() const { return sharp_; }
+  /// The path with one more event.
   EyePath after(bool diffuse) const {
     EyePath next = *this;
     next.scatter(diffuse);
@@ -100,7 +102,8 @@ class EyePath {
   bool sharp_ = true;
 };
 
-/// Random numbers of one pixel sample: scrambled Sobol points for the first bounces, hashed numbers afterwards.
+/// Random numbers of one sample of a pixel: points of scrambled Sobol sequences, one sequence for each bounce and
+/// purpose.
 class PixelRandom {
  public:
   PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
@@ -109,20 +112,14 @@ class PixelRandom {
   std::uint32_t sample() const { return sample_; }
   /// Random numbers of another sample of the pixel.
   PixelRandom of_sample(std::uint32_t sample) const { return {key_, sample}; }
-  Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
-    return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain().get2(bounce, purpose);
-  }
-  float get1(std::uint32_t bounce, Purpose purpose) const {
-    return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : plain().get1(bounce, purpose);
-  }
+  Vec2 get2(std::uint32_t bounce, Purpose purpose) const { return sobol_owen_2d(sample_, key(bounce, purpose)); }
+  float get1(std::uint32_t bounce, Purpose purpose) const { return sobol_owen_1d(sample_, key(bounce, purpose)); }
 
-  /// Hashed numbers of this sample alone, for consumers that need an unbounded amount.
-  PathRandom hashed() const { return plain(); }
+  /// Hashed numbers of this sample, for decisions whose number has no bound.
+  PathRandom hashed() const { return {key_, sample_}; }
 
  private:
   PixelRandom(std::uint64_t key, std::uint32_t sample) : key_(key), sample_(sample) {}
-  PathRandom plain() const { return {key_, sample_}; }
-  static constexpr std::uint32_t kSobolBounces = 4;
   std::uint64_t key(std::uint32_t bounce, Purpose purpose) const {
     return key_ + (std::uint64_t(bounce) * 64 + std::uint64_t(purpose)) * 0xd1342543de82ef95ull;
   }
@@ -130,13 +127,13 @@ class PixelRandom {
   std::uint32_t sample_;
 };
 
-/// Counters of one thread's work, for statistics.
+/// Numbers of rays and look-ups, for statistics and for costs.
 struct RayCounts {
   std::uint64_t camera = 0, bounce = 0, shadow = 0;
-  std::uint64_t lookups = 0;      ///< indirect light at the first Lambert lobe that records or photons answered
-  std::uint64_t gathered = 0;     ///< indirect light at the first Lambert lobe that a gather ray had to estimate
-  std::uint64_t points_read = 0;  ///< hits of such rays and of their continuations that a point represented
-  std::uint64_t onward = 0;       ///< bounce and shadow rays that belong to PathParts::onward
+  std::uint64_t lookups = 0;      ///< first Lambert lobes whose indirect light was known (KnownLight::indirect)
+  std::uint64_t gathered = 0;     ///< first Lambert lobes whose indirect light a gather ray had to estimate
+  std::uint64_t points_read = 0;  ///< hits whose light was that of a point (KnownLight::point_light)
+  std::uint64_t onward = 0;       ///< cost of the rays of PathParts::onward, in shadow rays
   RayCounts& operator+=(const RayCounts& o) {
     camera += o.camera;
     bounce += o.bounce;
@@ -149,12 +146,10 @@ struct RayCounts {
   }
 };
 
-/// Radiance along one camera ray, in three parts that may have different numbers of samples (docs/pixels.md). The
-/// radiance is the sum of the parts. A first matte surface is the first Lambert lobe of a camera path, also after
-/// events S.
+/// Radiance along one camera ray, as the sum of three parts that may have different numbers of samples
+/// (docs/pixels.md). The first matte surface is the first Lambert lobe of a camera path, also after events S.
 struct PathParts {
-  /// Everything that is in neither of the other two: light seen directly or by events S, and known light at the first
-  /// matte surface.
+  /// All other light: light seen directly or by events S, sampled suns, and known light at the first matte surface.
   Layers own;
   Layers lit;                  ///< light sampled at the first matte surface
   Layers onward;               ///< light found by rays from the first matte surface's Lambert lobe
@@ -162,51 +157,49 @@ struct PathParts {
   Layers sum() const { return own + (lit + onward); }
 };
 
-/// Numbers of samples of each part at a path's first matte surface, and the index of the first sample of each part in
-/// the pixel's sequences. A part is the sum over its samples.
+/// Numbers of samples of two parts at a path's first matte surface, and the indices of the first of them in the pixel's
+/// Sobol sequences. A part of PathParts is the sum over its samples.
 struct PathEffort {
   std::uint32_t lit = 1, onward = 1;
   std::uint32_t lit_first = 0, onward_first = 0;
 };
-/// One sample of each part, with the random numbers of the path itself.
-inline PathEffort effort_of(std::uint32_t sample) { return {1, 1, sample, sample}; }
 
 class KnownLight;
 
-/// The scene for a renderer. All members must outlive it.
+/// The scene for a renderer. Both references must outlive this object.
 struct RenderScene {
   const Tracer& tracer;
   const Lights& lights;
-  /// Send one ray to a directional light and another one to one of the other lights at each surface. With a single ray,
-  /// the choice between the two is half of the noise.
+  /// At each surface, sample a directional light and also one of the other lights. With one sample for both, the choice
+  /// between them is half of the noise.
   bool suns_apart = false;
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 
-/// Radiance along a camera ray, by layer: path tracing with light sampling and scattering joined by the power
-/// heuristic [Veach 1997, 9.2], Russian roulette after three bounces, no clamping and no depth limit. Unbiased
-/// without `known`.
+/// Radiance [W/m^2/sr] along a camera ray (unit direction, scene space), by layer. Path tracing: MIS by the power
+/// heuristic joins light samples and scattering [Veach 1997, 9.2]; Russian roulette after three bounces; no clamping
+/// and no depth limit. Unbiased without `known` (null).
 ///
 /// With `known`, a path ends where the light is known. The result has the bias of that light, and no light is counted
 /// twice:
-/// - At the first Lambert lobe x, caustic light is read from photons, if there are any. Light that the path meets by
-/// events S after x is then not added.
-/// - Indirect light at x is read from records. The path still continues from x to its next hit, because MIS joins the
-/// emission of that hit with light sampling. If caustic light is not known, the path also continues by events S.
-/// - If no record is valid at x, the path goes on. It ends at the first hit that a point represents.
+/// - At the first Lambert lobe x, caustic light comes from photons, if there are any. Lights that the path meets by
+/// events S after x then add nothing.
+/// - Indirect light at x comes from records. The path still continues from x to its next hit, because MIS joins the
+/// emission of that hit with light samples. If caustic light is not known, the path also continues by events S.
+/// - If no record is valid at x, the path continues and ends at the first hit that a point represents.
 ///
-/// An unlit material shows its base colour to the camera, directly and by events S; it lights and scatters nothing.
-/// In media (SceneFrame::media) paths move by null collisions and take one light sample at each collision. With
-/// `known`, the camera ray is attenuated exactly, and volume-compose adds the light that media scatter towards it;
+/// An unlit material shows its base colour to the camera, directly and by events S; it neither lights nor scatters. In
+/// media (SceneFrame::media) paths move by null collisions and take one light sample at each collision. With `known`,
+/// media attenuate the camera ray exactly, and volume-compose adds the light that they scatter towards the camera;
 /// after an event S media scatter as without `known`. Light that media scatter to a matte surface is part of its
 /// indirect light.
 ///
-/// `cone` is the pixel's cone, for the level of textures (CameraView::cone); the default reads the finest level.
+/// `cone`: the pixel's cone (CameraView::cone), for the level of textures; the default reads the finest level.
+/// Thread-safe if each thread has its own `counts`.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const KnownLight* known, RayCounts& counts, RayCone cone = {});
-/// Radiance by parts along a ray whose first hit is known (surface kNone: the ray meets no surface). MIS weights are
-/// those of one sample of each part, whatever `effort` is, so each part divided by its number of samples is correct
-/// alone.
+/// The same by parts, along a ray whose first hit is given (surface kNone: the ray meets no surface). MIS weights are
+/// those of one sample of each part for any `effort`, so the mean of each part over its samples has no bias.
 PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
                          const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort);
 

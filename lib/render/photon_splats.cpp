@@ -10,10 +10,12 @@
 namespace tempolux {
 namespace {
 
-/// Tolerances for the test whether a ray to x meets x's own surface, in units of the distance from the camera: along
-/// the normal and along the surface. Positions are exact to 1e-7 of the scene; the rest allows for grazing rays.
-/// Surfaces that lie closer together than this are not distinguished.
+/// Largest distances, over the distance from the camera, of a ray's hit from the photon's position x if both are on one
+/// surface: along the normal, and along the ray. Positions are exact to 1e-7 of the scene; grazing rays need the rest.
+/// Surfaces that lie closer together are not distinguished.
 constexpr float kOff = 1e-4f, kAlong = 1e-2f;
+
+/// The layer of light of this kind; empty for kinds of media.
 
 std::optional<Layer> layer_of(formats::PathKind kind) {
   switch (kind) {
@@ -26,7 +28,8 @@ std::optional<Layer> layer_of(formats::PathKind kind) {
 
 }  // namespace
 
-/// True if a ray from the camera meets the side of the surface at which the photon arrived.
+/// True if a ray from the camera towards `place` first meets a surface about there, and comes from the side of
+/// `normal`. Sets the ray, its hit and the distance [m] of `place` from the camera.
 bool PhotonSplats::sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const {
   if (view_.orthographic()) {
     const std::optional<std::array<double, 2>> raster = view_.project(place);

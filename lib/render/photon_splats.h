@@ -10,26 +10,26 @@
 
 namespace tempolux {
 
-/// The contribution of one photon to the picture.
+/// Contribution of one photon to the picture.
 struct Splat {
   std::uint32_t pixel = 0;  ///< row * width + column
   Layer layer = Layer::indirect;
   Rgb radiance{0.0f};  ///< W/m^2/sr, mean over the pixel
 };
 
-/// Adds each photon that the camera sees to the pixel into which its position x projects:
+/// Computes the radiance that a photon at x adds to the pixel into which x projects:
 ///
-///     rho / pi (1 - A(wo)) flux |wo.n| V(x, eye) / (depth^3 / d x a)
+///     rho / pi (1 - A(wo)) flux |wo.n| V(x, eye) / (depth^3 / d a)
 ///
-/// rho (1 - A(wo)) is the surface's reflectance towards the camera below its coat (Bsdf::diffuse_reflectance); the
-/// photon's flux already includes the coat's transmittance for its own direction. n is the triangle's normal, d the
-/// distance from the camera, depth the distance along the view axis, and a the area of a pixel on the plane at depth 1.
-/// (A pixel sees the solid angle a depth^3 / d^3.) For an orthographic camera the divisor is a. V is 1 if a ray from
-/// the camera meets x, times the transmittance of media.
+/// rho (1 - A(wo)) is the surface's reflectance towards the camera below its coat (Bsdf::diffuse_reflectance). The flux
+/// already includes the coat's transmittance for the photon's own direction. n is the triangle's normal, d the distance
+/// from the camera, depth the distance along the view axis, and a the area of a pixel on the plane at depth 1. (A pixel
+/// sees the solid angle a depth^3 / d^3.) For an orthographic camera the divisor is a. V is the transmittance of media
+/// if a ray from the camera meets x, else 0.
 ///
-/// The sum over the photons of all paths of a kind has the layer of that kind as its mean, without a density estimate,
-/// points or records. The mean over any set of pixels is unbiased if the map's photons represent all paths of their
-/// kind. Light that the camera sees by mirrors and glass (layer specular) is not included.
+/// The sum over the photons of a map is an unbiased estimate of the layer of their kind, in each pixel and over any set
+/// of pixels, if the map stores all photons of this kind. It needs no density estimate, points or records. Light that
+/// the camera sees by mirrors and glass (layer specular) is not included.
 ///
 /// [Dutre, Lafortune, Willems 1993: Monte Carlo light tracing with direct computation of pixel intensities; formula:
 /// Veach 1997, 10.1.2]
@@ -38,9 +38,9 @@ class PhotonSplats {
   /// Both arguments must outlive this object.
   PhotonSplats(const Tracer& tracer, const CameraView& view) : tracer_(tracer), view_(view) {}
 
-  /// `shift` [m] brings the photon's position into scene space. wi: its direction (unit, towards its origin), if the
-  /// map stores directions. Empty if the camera does not see the photon or if the photon belongs to no layer.
-  /// Thread-safe.
+  /// `shift` [m] is added to the photon's position to bring it into scene space. wi: its direction (unit, towards where
+  /// it came from), if the map stores directions. Empty if the camera does not see the photon, or if its kind is volume
+  /// or tentative. Thread-safe.
   std::optional<Splat> splat(const formats::Photon& photon, Vec3d shift, std::optional<Vec3> wi) const;
 
  private:

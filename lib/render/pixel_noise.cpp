@@ -8,20 +8,22 @@
 namespace tempolux {
 namespace {
 
-// Shares of the variance between pixels, and between pixels at edges: each sample takes two stratified random numbers,
-// so further samples reduce the variance by more than their number.
+/// Shares of variances in own_variance(): of the variance between pixels, and of all light with edges. Samples of such
+/// light are stratified in two numbers, so they reduce the variance by more than their number (docs/pixels.md).
 constexpr double kBetween = 0.1, kSharp = 0.125;
+/// k of wanted_samples() (docs/pixels.md).
 constexpr double kStratified = 0.875;
-/// Samples of a part that costs a shadow ray, if one sample has the standard deviation of the allowed error.
+/// Number of samples of a part that costs one shadow ray, if one sample has the standard deviation of the allowed
+/// error.
 constexpr double kAtError = 2.5;
 constexpr double kOwn = 1.2;  ///< cost of a camera ray with its surface, in shadow rays
 
-/// In a frame that will be filtered, pixels at edges get this many times the samples of an unfiltered frame, and pixels
-/// inside surfaces half as many times: the filter leaves about half as much of the squared error there. The median
-/// scene takes 6 % more samples than with 1 and 1, and errs by 7 % less (docs/notebook/st-filter.md).
+/// Pixels at edges of a frame that will be filtered get this many times the samples of an unfiltered frame. Pixels
+/// inside surfaces get half of that, because the filter leaves about half as much of the squared error there. Compared
+/// with 1 and 1, the median scene takes 6 % more samples and errs by 7 % less (docs/notebook/st-filter.md).
 constexpr double kAtEdges = 1.8;
 
-/// The smallest number of first samples of the part onward: each half of a pixel's samples needs one.
+/// Number of first samples of the part onward: half of the others; but two if halves are kept, one for each half.
 int first_onward(const FrameOptions& options) {
   const int n = options.samples;
   return std::max((n + 1) / 2, options.sample_halves ? std::min(n, 2) : 1);
@@ -56,6 +58,7 @@ PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
   if (!options.mask.empty()) look_around_mask();
 }
 
+/// Sets looked_at_: the pixels of the mask, those around them, and those of the lattice.
 void PixelNoise::look_around_mask() {
   const int width = view_.width(), height = view_.height();
   looked_at_.assign(options_.mask.size(), 0);
@@ -86,10 +89,10 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   state.onward_rays = float(double(onward_rays) / first_.onward);
 }
 
-/// Variance of light that has edges: the variance of the neighbours' samples, plus a share of the variance between
-/// neighbours that their samples do not explain. If each neighbour's samples agree but neighbours differ, an edge may
-/// run through this pixel alone: for example the rim of a lamp that just reaches into a row of dark pixels. The
-/// pixel's first samples may then miss the bright part or overestimate it.
+/// Variance of one sample of the part own, whose light has edges: the mean variance within the neighbours, plus a share
+/// of the variance between neighbours that their samples do not explain. If each neighbour's samples agree but the
+/// neighbours differ, an edge may run through this pixel alone, such as the rim of a lamp that reaches into one row of
+/// pixels. The pixel's first samples may then miss the bright part or overestimate it.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {
@@ -121,12 +124,12 @@ struct PixelNoise::Around {
   }
 };
 
-/// Decides on each part separately. The variance of light sampling comes from the difference of the pixels' halves,
-/// which includes the gain by stratification; with single samples it is the variance between pixels. The variance of
-/// rays onward is that of single samples, because few of them meet bright surfaces. Each is the mean of the variance
-/// of close pixels and that of farther pixels: if one sample in 12 finds a window, all 96 samples of the close pixels
-/// miss the window in one place of 4000, and that place would stay dark. Where edges are known, only pixels of the
-/// pixel's own kind count: the samples of an edge differ by its surfaces, too, and edges are few among 80 pixels.
+/// Decides on each part separately. The variance of the part lit comes from the difference of the pixels' halves, which
+/// includes the gain by stratification; with single samples it is the variance between pixels. The variance of the part
+/// onward is that of single samples. Both are the mean of two variances, over the 24 closest and over 80 pixels. If one
+/// sample in 12 finds a window, all 96 samples of the 24 pixels miss the window at one place of 4000, and without the
+/// 80 pixels such a place would stay dark. If edges are given, pixels at edges are compared with pixels at edges only,
+/// and others with others: at an edge, samples also differ by the surface that they see.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   Around near, wide;

@@ -1,4 +1,4 @@
-// lib/render/pixel_noise.h -- how many samples a pixel needs, from the noise of its neighbours.
+// lib/render/pixel_noise.h -- the number of samples that a pixel needs, by the noise of its neighbours.
 #pragma once
 
 #include <algorithm>
@@ -10,56 +10,55 @@
 
 namespace tempolux {
 
-/// Sample variance from the number, sum and sum of squares; 0 for one sample.
+/// Variance of n numbers with this sum and sum of squares, divided by n - 1; 0 for one number.
 double sample_variance(double n, double sum, double square);
-/// The error that a pixel may have: e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture). level
-/// is the radiance around the pixel, picture the picture's mean radiance (docs/pixels.md).
+/// The error that a pixel may have [W/m^2/sr]: pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture).
+/// level: radiance around the pixel; picture: mean radiance of the picture (docs/pixels.md).
 double allowed_error(double level, double picture, double pixel_error);
-/// Number of samples of one part with which a pixel reaches the error e, if one sample has the standard deviation sigma
-/// and costs `cost` rays (docs/pixels.md). 0 if e is 0.
+/// Number of samples of one part for a pixel that may have this error: 2.5 (sigma / (error sqrt(cost)))^k, k = 7/8.
+/// sigma: standard deviation of one sample; cost: its cost in shadow rays (docs/pixels.md). 0 if the error is 0.
 double wanted_samples(double sigma, double cost, double error);
-/// x: if all parts take f times their samples, the error of a frame falls by f^-x. wanted_samples() assumes this x.
+/// x = (1 - k/2) / k: if all parts take f times their samples, the error of a frame changes by f^-x, by the same model.
 double error_exponent();
-/// Factor for `error` with which wanted_samples() leaves the same noise for a light whose variance is `times` as large:
-/// variance / samples ~ variance^(1 - k/2) error^k.
+/// Factor times^-x for `error`, with which wanted_samples() leaves the same noise if the variance is `times` as large:
+/// variance / samples is proportional to variance^(1 - k/2) error^k.
 double error_for_variance(double times);
 
-/// Noise of a picture whose pixels have their first samples, and the further samples that they need. docs/pixels.md
-/// derives both.
+/// Noise of the first samples of a picture, and the number of samples that each pixel needs. docs/pixels.md derives
+/// both.
 class PixelNoise {
  public:
   PixelNoise(const CameraView& view, const FrameOptions& options);
 
-  /// Pixels whose first samples are needed: all, or with a mask the masked pixels and their neighbours, so that a
-  /// masked pixel gets as many samples as in the whole frame. As FrameOptions::mask; empty: all.
+  /// Pixels whose first samples are needed, as FrameOptions::mask (empty: all). With a mask: its pixels, the pixels
+  /// around them and a lattice, so that the pixels of the mask get as many samples as in the whole frame.
   const std::vector<std::uint8_t>& looked_at() const { return looked_at_; }
-  /// Numbers of first samples. Rays onward are the most expensive part and often need the fewest samples: half as many
-  /// are enough to measure their noise. A frame that will be filtered gets all of them, because it may get no others.
+  /// Numbers of first samples. The part onward has half as many, because its samples cost most and often need no more.
   const PartCounts& first() const { return first_; }
   /// Stores the sums over the two halves of a pixel's first samples, and the number of rays that their part `onward`
   /// took. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
   /// Call after note() of all pixels and before wanted_at().
   void all_noted();
-  /// Number of samples of each part that a pixel is to have in all: `times` as many as pixel_error asks for, within the
-  /// limit.
+  /// Number of samples of each part that a pixel is to have in all: `times` as many as pixel_error asks for, at least
+  /// first(), at most FrameOptions::adaptive_limit.
   PartCounts wanted_at(int x, int y, double times) const;
   /// The error that a pixel may have if the radiance around it is `level` [W/m^2/sr].
   double error_at(double level) const { return allowed_error(level, picture_, options_.pixel_error); }
 
  private:
   struct Pixel {
-    double mean = 0;                     ///< mean channel of the first samples; its square may exceed a float's range
-    double lit_difference = 0;           ///< mean over the first half of the samples minus mean over the second half
-    double seen = 0, seen_variance = 0;  ///< mean and variance of one sample of the part `own` without layer specular
-    double mirrored_variance = 0;        ///< variance of one sample of layer specular
-    double onward = 0, onward_variance = 0;
-    float onward_rays = 0;  ///< rays of one sample of the part onward
+    double mean = 0;                         ///< radiance, mean of the channels; a float could not hold its square
+    double lit_difference = 0;               ///< of the part lit: mean of the first half minus mean of the second half
+    double seen = 0, seen_variance = 0;      ///< mean and variance of one sample of the part own without layer specular
+    double mirrored_variance = 0;            ///< variance of one sample of the part own in layer specular
+    double onward = 0, onward_variance = 0;  ///< mean and variance of one sample of the part onward
+    float onward_rays = 0;                   ///< cost of one sample of the part onward, in shadow rays
   };
   /// Approximate number of lattice pixels: their mean has an error of 1 % if single pixels differ by 60 %.
   static constexpr double kOnLattice = 4096;
-  // Pixels. Noise is also estimated from the 80 pixels around a pixel (docs/pixels.md). For light with edges it is
-  // estimated from 8 pixels, because edges are narrow and all pixels that see an edge take further samples.
+  /// Reach, in pixels, of the 80 pixels of wanted_at(), and of the 8 pixels of own_variance(). The latter are few
+  /// because edges are narrow, and all pixels near an edge that they contain get further samples.
   static constexpr int kWide = 4, kNearSharp = 1;
   struct Around;
 

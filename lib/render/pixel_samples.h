@@ -12,16 +12,16 @@
 
 namespace tempolux {
 
-/// Numbers of samples by part (PathParts). `own` counts camera rays.
+/// Numbers of samples of each part (PathParts). `own` is the number of camera rays.
 struct PartCounts {
   int own = 0, lit = 0, onward = 0;
 };
 
-/// Sums over one pixel's samples.
+/// Sums over samples of one pixel.
 struct PixelSum {
   LayersT<double> own, lit, onward;
   StoredNoiseT<double> stored_noise;
-  /// Sums of squares of single samples: seen() and mirrored() of `own`, radiance_of() `onward`.
+  /// Sums over samples of the squares of seen(own), mirrored(own) and radiance_of(onward).
   double seen_square = 0, mirrored_square = 0, onward_square = 0;
   void add(const PathParts& sample) {
     own += sample.own;
@@ -33,6 +33,7 @@ struct PixelSum {
     mirrored_square += square(mirrored(sample.own));
     onward_square += square(radiance_of(sample.onward));
   }
+  /// The sum of the parts and the noise; the squares are not added.
   PixelSum operator+(const PixelSum& more) const {
     PixelSum sum = *this;
     sum.stored_noise += more.stored_noise;
@@ -60,7 +61,7 @@ inline void join(const LayersT<double>& sum, int first, int count, Layers& mean)
   mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
 }
 
-/// The same for the noise of stored light.
+/// The same for noise of records and photons.
 inline void join(const StoredNoiseT<double>& sum, int first, int count, StoredNoise& mean) {
   if (count <= 0) return;
   const auto joined = [&](const Rgb& before, const Rgbd& more) {
@@ -69,7 +70,7 @@ inline void join(const StoredNoiseT<double>& sum, int first, int count, StoredNo
   mean = {joined(mean.caustic, sum.caustic), joined(mean.indirect, sum.indirect)};
 }
 
-/// The same for a sum by parts, of `count` samples each: a layer is the sum of its three parts.
+/// The same for a sum of three parts with `count` samples each.
 inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
   join(sum.own + (sum.lit + sum.onward), first, count, mean);
 }
@@ -97,14 +98,14 @@ void for_each_pixel(const CameraView& view, std::span<const std::uint8_t> mask, 
   });
 }
 
-/// Distributes samples of the parts lit and onward over a pixel's camera rays, as uniformly as whole numbers allow. One
-/// random number shifts the whole distribution, so each camera ray gets a sample with the same probability, and the
-/// mean over a part's samples is correct for any number of them.
+/// Distributes samples of the parts lit and onward over a pixel's camera rays, as uniformly as whole numbers allow. A
+/// random offset for each part makes all camera rays equally likely to get a sample, so the mean over the samples of a
+/// part is unbiased for any number of them.
 class Dealt {
  public:
   Dealt(std::uint64_t seed, std::uint64_t pixel, const PartCounts& first, const PartCounts& counts)
       : first_(first), counts_(counts), offset_(PathRandom(seed ^ 0x6465616c74ull, pixel).get2(0, Purpose::pixel)) {}
-  /// Effort of camera ray i of counts.own. The indices of samples start at `first`.
+  /// Effort of camera ray i of counts.own. Samples are numbered from `first` on.
   PathEffort operator()(int i) const {
     const std::uint32_t lit = before(i, counts_.lit, offset_.x), onward = before(i, counts_.onward, offset_.y);
     return {before(i + 1, counts_.lit, offset_.x) - lit, before(i + 1, counts_.onward, offset_.y) - onward,
@@ -127,9 +128,9 @@ struct CameraSampler {
   std::uint64_t seed;
 };
 
-/// A pixel and the samples that one pass takes of it: `count` samples, which continue the pixel's sequences after
-/// `first`. The first half of a pass belongs to one half of the pixel's samples, the second half to the other. Each
-/// half is stratified nearly as well as a pass of its size can be.
+/// A pixel and the samples that one pass takes of it: `count` samples, which continue the pixel's Sobol sequences after
+/// `first` samples. The first half of a pass belongs to one half of the pixel's samples, the second half to the other:
+/// consecutive samples are well stratified.
 struct PixelPass {
   std::size_t pixel;
   int x, y;
@@ -139,8 +140,8 @@ struct PixelPass {
   int half(int i) const { return 2 * i >= count.own; }
 };
 
-/// Takes the samples of a pass one after the other and calls add(i, sample). halves: SampleHalves of the pixel, or
-/// nullptr; a single sample goes to the half that has fewer.
+/// Takes the samples of a pass one after the other and calls add(i, sample). Also adds them to `halves`, unless it is
+/// null; the sample of a pass of one goes to the half that has fewer.
 template <class Add>
 void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleHalves* halves, RayCounts& counts,
                      const Add& add) {

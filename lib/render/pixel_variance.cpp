@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-/// The parts, which have different numbers of samples.
+/// The sums of the three parts of a half.
 template <class Half>
 auto parts_of(Half& half) {
   return std::array{&half.own, &half.lit, &half.onward};
@@ -76,7 +76,8 @@ bool wants_sample_halves(const std::vector<std::string>& channels) {
 
 namespace {
 
-/// The channel LAYER.noise of a pixel whose value is `shown`.
+/// LAYER.noise of a pixel that shows the radiance `shown`, without noise of records and photons. share:
+/// LayerImage::difference_share.
 Rgb noise_of(const SampleHalves& halves, std::size_t l, float share, const Rgb& shown) {
   Rgb difference = halves.difference(l);
   const Rgb taken = halves.mean(l) - shown;

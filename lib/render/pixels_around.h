@@ -6,7 +6,7 @@
 
 namespace tempolux {
 
-/// Pixels: the 24 pixels within this distance are the surroundings of a pixel.
+/// Reach, in columns and rows, of the 24 pixels around a pixel from which its noise and its outliers are judged.
 inline constexpr int kNearPixels = 2;
 
 /// Calls body(pixel, i, j) for the pixels (i, j) of the picture at most `reach` columns and rows away from (x, y), row

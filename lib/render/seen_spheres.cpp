@@ -1,4 +1,3 @@
-// lib/render/seen_spheres.cpp -- camera rays, the places that they see, and octree cells around these places.
 #include "lib/render/seen_spheres.h"
 
 #include <algorithm>
@@ -20,14 +19,16 @@ namespace {
 constexpr double kReflected = 0.5;  ///< weight of a place over that of the place before it: surfaces reflect about half
 constexpr int kBounces = 2;         ///< all further bounces together would have the weight of the second
 constexpr double kSplitShare = 1.0 / double(formats::kMaxViewSpheres);  ///< cells above this share are divided
-/// Share of the weight below which a cell has less than one place per camera: the places of a camera ray weigh at most 2.
+/// Share of the weight below which a cell has less than one place per camera: the places of a camera ray weigh at
+/// most 2.
 constexpr double kLeastShare = 1.0 / (2 * kPlacesOfEye);
 constexpr double kRadiusOfCell = 0.875;  ///< radius over cell size: half a cell's diagonal is .866
 constexpr double kLeastGain = 1;         ///< log2 of the least gain in density: twice as dense
 
+/// A cell of the octree.
 struct Cell {
-  int level = 0;                  // size 2^level m
-  std::array<double, 3> index{};  // integers: corner = index 2^level
+  int level = 0;                  ///< edge 2^level m
+  std::array<double, 3> index{};  ///< integers: the lowest corner is at index 2^level
   std::vector<const WeighedPlace*> places;
   double weight = 0;
 
@@ -67,14 +68,15 @@ double median_distance(std::vector<WeighedPlace> places) {
   return middle->distance;
 }
 
-/// Exponent of a quarter of the median visible distance, rounded down to a power of two; the lowest possible one if
-/// nothing was seen.
+/// Level of the smallest cells: their edge is a quarter of the median distance, rounded down to a power of two. No
+/// limit if nothing was seen directly.
 int lowest_level(const std::vector<WeighedPlace>& places) {
   const double distance = median_distance(places);
   return distance > 0 ? std::ilogb(distance / 4) : -1000;
 }
 
-/// Halves heavy cells while the limit on their number allows.
+/// Divides heavy cells while the limit of their number allows, and drops light cells. whole: weight of all places;
+/// lowest: level of the smallest cells.
 std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
   const auto drop_light = [&](std::vector<Cell>& some) {
     std::erase_if(some, [&](const Cell& cell) { return cell.weight < kLeastShare * whole; });
@@ -97,7 +99,7 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
   return done;
 }
 
-/// Adds the places that a camera sees and the places that these see. `number` is the key of the random numbers.
+/// Adds the places that a camera sees and those of kBounces bounces from there. `number`: key of the random numbers.
 void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number,
                      std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
@@ -127,14 +129,15 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
 
 // ---- a lattice of cameras -----------------------------------------------------------------------------------
 
-/// Widening of the picture: a quarter of it on each side, which is more than half a step of directions, the largest
-/// distance between a camera and its lattice direction.
+/// Height of a representative's picture over that of the camera: a quarter more on each side. The camera's direction
+/// differs from the lattice direction by at most half a step, a sixth of the angle of view.
 constexpr double kWider = 1.5;
-/// The lattice's planes lie at thirds of its steps, so that coordinates which people type (0, 0.5, 1.6) are not close
-/// to a plane.
+/// Offset of the lattice's planes in steps, so that coordinates which people type (0, 0.5, 1.6) are not close to a
+/// plane.
 constexpr double kShift = 1.0 / 3;
 
-/// yaw about +y, pitch and roll [radians]; a camera with all angles 0 looks along -z.
+/// Yaw about +y, pitch and roll [radians] of the rotation `a` from camera space; with all angles 0 the camera looks
+/// along -z.
 std::array<double, 3> angles_of(const Affine& a) {
   const Vec3d right = a.direction({1, 0, 0}), forward = a.direction({0, 0, -1});
   const double yaw = std::atan2(-forward.x, -forward.z), pitch = std::asin(std::clamp(forward.y, -1.0, 1.0));
@@ -142,6 +145,7 @@ std::array<double, 3> angles_of(const Affine& a) {
   return {yaw, pitch, std::atan2(dot(right, cross(level, forward)), dot(right, level))};
 }
 
+/// The rotation of these yaw, pitch and roll.
 Affine turned(const std::array<double, 3>& angles) {
   const auto [yaw, pitch, roll] = angles;
   const Vec3d forward{-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)},
@@ -152,18 +156,21 @@ Affine turned(const std::array<double, 3>& angles) {
   return a;
 }
 
+/// True if no surface lies between two places in scene space.
 bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
   const Vec3d way = to - from;
   const double distance = length(way);
   return distance == 0 || !tracer.occluded({Vec3(from), Vec3(way / distance), 0, float(distance)});
 }
 
-/// A cell of the lattice of cameras, and the cameras that represent it.
+/// A cell of the lattice of cameras.
 struct CameraCell {
-  std::array<double, 9> key{};  ///< level, indices of position and of direction, width of the picture, cameras
+  /// Level; indices of position and of direction; height of the picture; bits of the octants that have a camera.
+  std::array<double, 9> key{};
   std::vector<PlacedCamera> cameras;
 };
 
+/// The cell of a camera whose visible surfaces have this median distance [m].
 CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double distance) {
   const bool perspective = camera.camera.kind == Camera::Kind::perspective;
   const double half_height = perspective ? distance * std::tan(camera.camera.yfov_rad / 2) : camera.camera.ymag_m;
@@ -228,7 +235,7 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
     all.push_back(&place);
   }
   if (!(whole > 0) || !(farthest > 0) || !(scene_radius > 0)) return {};
-  // Eight cells around the world's origin hold all places.
+  // Eight cells that meet at the world's origin hold all places.
   const std::vector<Cell> cells = split(cells_of(all, level_above(farthest) + 1), whole, lowest_level(places));
 
   std::vector<formats::ViewSphere> spheres;

@@ -1,4 +1,4 @@
-// lib/render/seen_spheres.h -- a few spheres on a lattice that hold the places at which cameras look.
+// lib/render/seen_spheres.h -- spheres on a lattice around the places that cameras see, at which photons are aimed.
 #pragma once
 
 #include <array>
@@ -11,52 +11,50 @@
 
 namespace tempolux {
 
-/// A place that a camera sees, or that such a place sees.
+/// A place that a camera sees, or that a path from such a place reaches.
 struct WeighedPlace {
-  Vec3d position{};  ///< world space, m
-  /// 1 for a place that the camera sees, halved at each bounce because surfaces reflect about half
-  double weight = 0;
-  double distance = 0;  ///< m, from the camera; 0 for a place that was not seen directly
+  Vec3d position{};     ///< world space, m
+  double weight = 0;    ///< 1 for a place that the camera sees, halved at each bounce: surfaces reflect about half
+  double distance = 0;  ///< from the camera [m]; 0 after a bounce
 };
 
-/// The places that cameras and their neighbours in the lattice see.
+/// Places that look_around() has found.
 struct SeenAround {
   std::vector<WeighedPlace> places;
-  std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras that have been used
+  std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras whose places were added
 };
 
-/// Adds the places that a camera and those around it see in the scene of `tracer`. All cameras in one cell of a lattice
-/// get the same places, so that a camera which moves or turns a little needs the same photons. A second camera in one
-/// cell adds nothing.
+/// Adds the places that representatives of a camera see. A lattice divides all cameras into cells, and all cameras of
+/// one cell have the same representatives. So a camera that moves or turns a little needs the same photons, and a
+/// second camera of a cell adds nothing. Adds nothing, too, if the camera sees no surface.
 ///
-/// A cell is a cube of edge 2^k m, the largest that is neither longer than the median distance d of visible surfaces
-/// nor than half the height h of the picture at that distance; directions have steps of a third of the angle of view.
-/// The cell has up to eight cameras: one at the centre of each octant of the cube, if the given camera sees this
-/// centre. Their pictures are half as wide again. Each camera sends rays through 256 stratified positions of its
-/// picture, which pass mirrors and glass (seen_through) and then make up to two cosine-distributed bounces. Only the
-/// ratio of `width` and `height` of the picture counts.
+/// The positions of a cell form a cube of edge 2^k m, the largest that is neither longer than the median distance of
+/// visible surfaces nor than half the height of the picture at this distance; its directions lie within a third of the
+/// angle of view. Up to eight cameras represent a cell: one at the centre of each octant of the cube, if the given
+/// camera sees this centre. Their pictures are half as wide again. Each sends kPlacesOfEye rays through stratified
+/// positions of its picture, which pass mirrors and glass (seen_through) and then make up to two cosine-distributed
+/// bounces. Only the ratio of the picture's `width` and `height` matters.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
-/// Divides space into the cells of an octree and computes a sphere around each cell that holds places. A cell's size is
-/// a power of two, and its corners are multiples of the size, so small movements of the places do not change the cells.
-/// Cells with more than 1/32 of the weight are divided in eight, the heaviest first. A cell stays whole if there would
-/// be more than formats::kMaxViewSpheres cells, or cells smaller than about a quarter of the median distance of visible
-/// places. Cells with less than 1/512 of the weight get no sphere; uniform photons light them. The weight of a sphere
-/// is its cell's share, rounded to a power of two.
+/// Divides world space into the cells of an octree and returns a sphere around each cell that holds places. The edge of
+/// a cell is a power of two in m, and its corners are multiples of the edge, so small movements of the places do not
+/// change the cells. Cells with more than 1/32 of the weight are divided in eight, the heaviest first. A cell is not
+/// divided if there would be more than formats::kMaxViewSpheres cells, or cells smaller than about a quarter of the
+/// median distance of visible places. Cells with less than 1/512 of the weight get no sphere; uniform photons light
+/// them. The weight of a sphere is the weight of its cell over that of all places, rounded to a power of two.
 ///
-/// Returns no sphere if aiming gains little. The gain is how much denser photons aimed at the spheres (Aim) are than
-/// uniform photons on the disc of radius `scene_radius` [m], as the geometric mean over places. Spheres need a gain of
-/// at least 2. Reasons: docs/methods/aim.md.
+/// Returns no sphere if aiming gains less than a factor of 2. The gain is the density of photons aimed at the spheres
+/// (Aim) over the density of uniform photons on the disc of radius `scene_radius` [m], as the geometric mean over
+/// places. Reasons: docs/methods/aim.md.
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius);
 
-/// The spheres in scene space; `origin`: the frame's.
+/// The spheres in scene space. `origin`: world-space position of the scene space's origin [m].
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin);
 
-/// The spheres, in scene space, around the places that this camera and those around it see. scene_radius [m].
+/// spheres_around() the places of look_around(), in scene space. scene_radius [m].
 std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view);
 
-/// Lights that aim photons of sun and sky at the places that the camera sees (docs/methods/aim.md). `which`: as for
-/// Lights.
+/// Lights that aim photons of sun and sky at spheres_seen() of a camera (docs/methods/aim.md). `which`: as for Lights.
 Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view,
                     Lights::Which which = Lights::Which::all);
 

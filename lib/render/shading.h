@@ -1,4 +1,4 @@
-// lib/render/shading.h -- a hit as the camera sees it: its side towards the viewer and its Bsdf.
+// lib/render/shading.h -- a surface point with the side that a ray sees and its Bsdf.
 #pragma once
 
 #include "lib/material/bsdf.h"
@@ -7,11 +7,11 @@
 
 namespace tempolux {
 
-/// A surface point seen along wo.
+/// A surface point seen from direction wo (unit, towards the viewer). point: with the material's normal map applied.
 struct ShadingPoint : SeenSide {
   SurfacePoint surface;
   Bsdf bsdf;
-  Bsdf::Direction eye;  ///< wo_local
+  Bsdf::Direction eye;  ///< wo_local, with what the Bsdf needs of it
 
   ShadingPoint(const SurfacePoint& point, Vec3 wo, const MaterialValues& material)
       : SeenSide(point, wo),

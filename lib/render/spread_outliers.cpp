@@ -10,19 +10,19 @@
 namespace tempolux {
 namespace {
 
-constexpr double kConfirmed = 0.5;  ///< share of the outlier that other samples must find to confirm it
+constexpr double kConfirmed = 0.5;  ///< an outlier is confirmed if the other samples find this share of its light
 
-/// Light that a pixel may give away.
+/// An outlier: light that a pixel may give away.
 struct Excess {
   std::size_t pixel;
   Layer layer;
   Rgbd radiance;
   int samples;       ///< samples of the outlier's part
-  double seen2 = 0;  ///< visible squared error of the bright pixel if the light stays, in units of e^2
+  double seen2 = 0;  ///< visible squared error of the pixel if the light stays, over the square of the allowed error
   double light() const { return channel_mean(radiance); }
 };
 
-/// Calls body(pixel) for the pixels around (x, y), without (x, y) itself, that take part.
+/// Calls body(pixel) for the 24 pixels around (x, y), as far as they take part.
 template <class Body>
 void for_each_near(const SampledPixels& samples, int x, int y, const Body& body) {
   for_each_around(samples.width, samples.height, x, y, kNearPixels, [&](std::size_t pixel, int, int) {
@@ -30,15 +30,16 @@ void for_each_near(const SampledPixels& samples, int x, int y, const Body& body)
   });
 }
 
-/// Level of the widest box that is no wider than the picture: three passes of it leave a nearly uniform result.
+/// Level of the widest box, of radius 2^level, that is no wider than the picture. Its three passes leave a nearly
+/// uniform picture.
 int last_level(int width, int height) {
   int level = 0;
   while ((2 << (level + 1)) + 1 <= std::max(width, height)) ++level;
   return level;
 }
 
-/// Three passes of a box filter of 2 r + 1 values, mirrored at the ends, so that the sum stays the same. Values are
-/// `step` apart.
+/// Three passes of a box filter of 2 r + 1 values over a line of `count` values, which lie `step` apart in memory. The
+/// line is mirrored at its ends, so the sum stays the same. sums, line: memory that calls reuse.
 void blur_line(double* values, int count, std::size_t step, int r, std::vector<double>& sums,
                std::vector<double>& line) {
   const auto mirrored = [count](int i) {
@@ -63,6 +64,7 @@ void blur_line(double* values, int count, std::size_t step, int r, std::vector<d
   for (int i = 0; i < count; ++i) values[std::size_t(i) * step] = line[std::size_t(i)];
 }
 
+/// blur_line() of all rows, then of all columns.
 void blur(std::vector<double>& image, int width, int height, int r) {
   constexpr std::size_t kLines = 16;
   parallel_chunks(std::size_t(height), kLines, [&](std::size_t first, std::size_t last) {
@@ -77,13 +79,13 @@ void blur(std::vector<double>& image, int width, int height, int r) {
 }
 
 /// Moves outliers that can be spread with box radius r from `waiting` to `spread`, in their order. An outlier of light
-/// L spreads over the 3 x 3 cells of r x r pixels around it. S is the sum of the allowed errors e of these cells, U the
-/// light that they have received before, n their number of pixels. Three boxes of b = 2 r + 1 pixels leave the share
-/// m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3); if 1 / m^2 is less than n, it replaces n, and S and
-/// U are reduced by the same factor. The outlier is spread if
-///     L <= S: the light per pixel is below the allowed error, and
-///     n L / S (2 U / S + L / S) <= seen2: the squared error that the outlier adds, n ((U + L)^2 - U^2) / S^2 in units
-///     of e^2, is at most its visible squared error as a single bright pixel.
+/// L spreads over the 3 x 3 cells of r x r pixels around it. Let S be the sum of the allowed errors e in these cells, U
+/// the light that they have received before, and n = 9 r^2 their number of pixels. Three boxes of b = 2 r + 1 pixels
+/// leave the share m^2 of the light in the middle pixel, m = (3 b^2 + 1) / (4 b^3). If 1 / m^2 is less than n, it
+/// replaces n, and S and U are reduced by the same factor. The outlier is spread if
+///     L <= S: its light per pixel is below the allowed error; and
+///     n L / S (2 U / S + L / S) <= seen2: the squared error that it adds over e^2, n ((U + L)^2 - U^2) / S^2, is at
+///     most its visible squared error as a single bright pixel.
 /// Cells outside the picture add nothing to S, because blur() mirrors their light back.
 void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& errors, const std::vector<double>& got,
                   int width, int r, std::vector<Excess>& spread) {
@@ -117,8 +119,8 @@ void take_fitting(std::vector<Excess>& waiting, const std::vector<double>& error
   waiting = std::move(stay);
 }
 
-/// Takes `excess` out of its pixels and spreads it as w blur(excess / blur(w)), with the allowed error as w. Its sum
-/// stays for any weights w. Adds what each pixel gets to `all`.
+/// Takes `excess` out of its pixels and adds w blur(excess / blur(w)) to `pixels`, with the weights w. The sum of each
+/// layer stays the same for any w. Adds the light that each pixel receives to `all`.
 void spread(std::span<const Excess> excess, const SampledPixels& samples, int r, const std::vector<double>& weight,
             std::vector<double>& all, std::vector<Layers>& pixels) {
   std::vector<double> blurred = weight, given;
@@ -144,6 +146,7 @@ void spread(std::span<const Excess> excess, const SampledPixels& samples, int r,
     }
 }
 
+/// Appends the outliers of pixel (x, y), at most one for each part. error: the pixel's allowed error.
 void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y,
                std::vector<Excess>& found) {
   const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
@@ -156,7 +159,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
     const int count = counts.*number;
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
     if (!(claimed > error) || !(error > 0)) return;
-    // Two bright samples of many may be chance, so neither confirms the other.
+    // The two brightest samples may both be outliers, so neither confirms the other.
     const double second = channel_mean(Rgbd(sample.second)) / count;
     double others = (channel_mean(Rgbd((samples.parts[pixel].*part)[sample.layer])) - claimed - second) * count;
     int other_count = count - 2;
@@ -174,7 +177,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
     beside /= std::max(1, near);
     const double allowed = error + std::max(others, beside);
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
-    // If further samples found about one such sample's light again, the light is confirmed.
+    // The light is confirmed if the other samples found about as much light as this one sample.
     if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
     Rgbd excess = Rgbd(sample.radiance) * ((1 - allowed / claimed) / count);
     if (second > allowed) excess += Rgbd(sample.second) * ((1 - allowed / second) / count);
@@ -185,6 +188,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
   look(brightest.onward, &PathParts::onward, &PartCounts::onward);
 }
 
+/// The outliers of all pixels, in the order of the pixels.
 std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels,
                                const std::vector<double>& errors) {
   const std::size_t width = std::size_t(samples.width);
@@ -193,10 +197,10 @@ std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<L
   });
 }
 
-/// Sets `seen2` of each outlier: the square of D = (T - M) / e(T). M is the pixel's radiance without the outlier. T is
-/// M plus the outlier's light, but at most white, because a display shows nothing above white; T is M if M is above
-/// white. e(T) is the allowed error at T. White is the median radiance of the pixels divided by .18, the exposure at
-/// which seen errors are measured.
+/// Sets Excess::seen2 to ((T - M) / e(T))^2. M is the pixel's radiance without the outlier. T is M plus the outlier's
+/// light, cut at white, because a display shows nothing above white; T = M if M is above white. e(T) is the allowed
+/// error at T. White is the median radiance of the pixels over .18, as at the exposure at which seen errors are
+/// measured.
 void note_what_is_seen(const SampledPixels& samples, const std::vector<Layers>& pixels, std::vector<Excess>& outliers) {
   std::vector<double> radiances;
   for (std::size_t p = 0; p < pixels.size(); ++p)

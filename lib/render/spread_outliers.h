@@ -1,4 +1,4 @@
-// lib/render/spread_outliers.h -- spreads light that a single sample of a pixel found over the pixels around.
+// lib/render/spread_outliers.h -- spreads light that a single sample of a pixel found over the pixels around it.
 #pragma once
 
 #include <functional>
@@ -9,13 +9,14 @@
 
 namespace tempolux {
 
-/// The brightest sample of one part of a pixel, in the layer in which the sample is brightest, and the second of that
-/// layer. Layer emission is ignored: it holds edges of what the camera sees, not outliers.
+/// The brightest value of one layer in one sample, among all layers and samples of one part of a pixel. Layer emission
+/// does not count: its bright samples are edges of what the camera sees, not outliers.
 struct BrightestSample {
   Rgb radiance{0.0f};   ///< W/m^2/sr
-  Rgb second{0.0f};     ///< the brightest of the other samples noted so far in the same layer; 0: none
+  Rgb second{0.0f};     ///< second brightest value in the same layer; 0 if there is none
   float brightest = 0;  ///< sum of the channels of `radiance`
   Layer layer = Layer::specular;
+  /// Takes the next sample into account.
   void note(const Layers& sample);
 };
 
@@ -29,14 +30,14 @@ struct BrightestSamples {
   }
 };
 
-/// Further samples of a pixel, which only decide whether its bright sample is an outlier. The picture does not include
-/// them, so it stays unbiased.
+/// Further samples of a pixel. They only decide whether its brightest sample is an outlier and are not part of the
+/// picture: if they were, their number would depend on the pixel's own samples, and the picture would be biased.
 struct FurtherSamples {
   PathParts mean;
   PartCounts count;
 };
-/// The least number of samples that decides about an outlier. An object that covers a quarter of a pixel is rightly
-/// met by one of four stratified samples, and then by three of 12 more.
+/// Least number of samples that decides about an outlier. One of four stratified samples of a pixel rightly meets an
+/// object that covers a quarter of the pixel; three of 12 further samples then confirm it.
 inline constexpr int kJudges = 16;
 
 /// A picture whose pixels have all their samples. Every span holds width * height elements, top row first.
@@ -45,36 +46,37 @@ struct SampledPixels {
   std::span<const PathParts> parts;    ///< means
   std::span<const PartCounts> counts;  ///< number of samples of each part, at least one
   std::span<const BrightestSamples> brightest;
-  std::span<const std::uint8_t> mask;  ///< 0: the pixel neither gives nor gets light; empty: all pixels do
-  /// The error that a pixel may have for a radiance around it [W/m^2/sr]; if it is 0, nothing is taken; thread-safe.
+  std::span<const std::uint8_t> mask;  ///< 0: the pixel neither gives nor receives light; empty: all pixels do both
+  /// The error that a pixel may have, by the radiance around it (both W/m^2/sr). Where it is 0, the pixel gives no
+  /// light. Thread-safe.
   std::function<double(double)> error;
-  /// By pixel the index in `further`, or kNone; empty: no pixel has further samples.
+  /// By pixel: index in `further`, or kNone. Empty: no pixel has further samples.
   std::span<const std::uint32_t> further_of{};
   std::span<const FurtherSamples> further{};
   bool takes_part(std::size_t pixel) const { return mask.empty() || mask[pixel] != 0; }
 };
 
-/// The error that each pixel may have, from the median of the radiance around it: the outliers themselves do not raise
-/// their limit. 0 for pixels without a surface and outside the mask: these neither give nor get light.
+/// The error that each pixel may have [W/m^2/sr], from the median radiance of the pixel and the 24 around it, which an
+/// outlier does not change. 0 for pixels without a surface and outside the mask: these neither give nor receive light.
 std::vector<double> allowed_errors(const SampledPixels& samples, const std::vector<Layers>& pixels);
 
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994],
 /// docs/methods/outliers.md.
 ///
 /// Each of the two brightest samples of a part keeps a contribution of at most
-///     error(radiance around) + max(mean of the pixel's other samples, mean of the 24 pixels around), in its layer;
-/// the other samples include FurtherSamples. The excess is the outlier. Outliers are spread in ascending order of their
-/// light, each over the smallest box in which its light per pixel is below the allowed error and its squared error,
-/// added to the light that was spread there before, is less than the visible squared error of the bright pixel. An
-/// outlier for which no box suffices stays in its pixel.
+///     allowed error + max(mean of the pixel's other samples, mean of the 24 pixels around), in its layer.
+/// The other samples include FurtherSamples. The excess is the outlier. Outliers are spread in ascending order of their
+/// light, each over the smallest box that fulfils two conditions: its light per pixel is below the allowed error, and
+/// the squared error that it adds is less than the visible squared error of the bright pixel. An outlier stays in its
+/// pixel if no box does.
 ///
 /// A pixel receives light in proportion to its allowed error; a pixel without a surface (coverage 0) neither gives nor
-/// receives. The sum of a layer over the picture stays the same up to rounding. Returns the share of the picture's
-/// light that was spread. errors: allowed_errors().
+/// receives. The sum of a layer over the picture stays the same up to rounding. Returns the light that was spread over
+/// the light of the picture. errors: allowed_errors().
 double spread_outliers(const SampledPixels& samples, const std::vector<double>& errors, std::vector<Layers>& pixels);
 
-/// Pixels with fewer than kJudges samples of a part that has an outlier: further samples are to decide about it.
-/// Ascending. errors: allowed_errors().
+/// Pixels, in ascending order, with an outlier in a part of fewer than kJudges samples: further samples shall decide
+/// about it. errors: allowed_errors().
 std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels,
                                          const std::vector<double>& errors);
 

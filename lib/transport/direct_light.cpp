@@ -4,7 +4,7 @@ namespace tempolux {
 
 namespace {
 
-/// Sets the rest of a sample whose light is known.
+/// Sets irradiance and shadow ray of a sample from its light. False if the light comes from behind the receiver.
 bool arrives(const Receiver& at, DirectSample& sample) {
   const LightSample& light = sample.light;
   const float cosine = dot(light.wi, at.shading);

@@ -7,27 +7,28 @@
 
 namespace tempolux {
 
-/// One side of a surface, which receives light.
+/// The side of a surface that receives light.
 struct Receiver {
   const SurfacePoint& place;
   Vec3 geometric, shading;     ///< unit, on the lit side
-  const Bsdf* coat = nullptr;  ///< set if the lobes weigh light by its angle of arrival (Bsdf::arrival_weight)
+  const Bsdf* coat = nullptr;  ///< Bsdf of a Lambert lobe under a coat, for its arrival_weight(); null: no coat
 };
 
-/// One sample of the lights that can reach a receiver.
+/// One sample of the light that reaches a receiver.
 struct DirectSample {
   LightSample light;
-  /// Estimate of the unshadowed irradiance by the cosine to the shading normal [W/m^2], times Bsdf::arrival_weight
-  /// under a coat.
+  /// Estimate of the unshadowed irradiance [W/m^2] with the cosine to the shading normal; under a coat, times
+  /// Bsdf::arrival_weight.
   Rgb irradiance{0.0f};
-  Ray shadow;  ///< its transmittance() is the share of the light that arrives
+  Ray shadow;  ///< shadow ray: transmittance() along it is the share of the light that arrives
 };
 
-/// Draws a light and a point on it (Lights::sample). False if no light can reach the receiver, or the light comes from
-/// behind its geometric or its shading normal.
+/// Draws a light by u_choice and a point on it by u, all in [0, 1) (Lights::sample). False if no light can reach the
+/// receiver, or if the light comes from behind the geometric or the shading normal; the sample then counts as 0.
 bool sample_direct(const Lights& lights, const Receiver& at, float u_choice, Vec2 u, DirectSample& sample);
-/// The same among all but the directional lights, from one stratified pair, and among the directional lights.
+/// The same for all lights but the directional ones. u chooses the light and the point.
 bool sample_other_than_suns(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);
+/// The same for the directional lights.
 bool sample_sun(const Lights& lights, const Receiver& at, float u, DirectSample& sample);
 
 }  // namespace tempolux

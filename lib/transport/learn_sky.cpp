@@ -13,9 +13,10 @@
 namespace tempolux {
 namespace {
 
-constexpr std::uint32_t kRays = 4;
+constexpr std::uint32_t kRays = 4;  ///< of a place (figures: docs/pixels.md)
 constexpr std::uint64_t kSeed = 0x736b79;
 
+/// Appends the rays of place `number` that see the environment, weighed by the radiance that arrives.
 void add_hits(const Tracer& tracer, const Lights& lights, const SeenPlace& from, std::uint32_t number,
               std::vector<SkyGuide::Hit>& hits) {
   const Frame axes(from.normal);

@@ -1,4 +1,4 @@
-// lib/transport/learn_sky.h -- finds out in which directions places see the environment.
+// lib/transport/learn_sky.h -- estimates in which directions places see the environment.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,21 @@
 
 namespace tempolux {
 
-/// A place with a Lambert lobe, which will sample lights; or none.
+/// A place at which lights will be sampled; or none.
 struct SeenPlace {
   SurfacePoint surface;
-  Vec3 geometric, normal;  ///< unit, on the side that is seen; zero vectors: there is no place
+  Vec3 geometric, normal;  ///< geometric and shading normal, unit, on the side that is seen; zero if there is no place
 
   bool exists() const { return normal != Vec3{}; }
 };
 
-/// Number of places that suffice: where one ray in fifty finds a window their rays make 1300 hits, enough for 10 to 20
-/// parts (SkyGuide). Twelve times the rays reduce the variance of a light sample by a further 4 % (docs/pixels.md).
+/// Number of places for a guide. If one ray in fifty finds a window, the rays of all places make 1300 hits, enough for
+/// 10 to 20 parts (SkyGuide). Twelve times the rays reduce the variance of a light sample by 4 % more (docs/pixels.md).
 inline constexpr std::size_t kSkyPlaces = 16384;
 
-/// Sends four rays from each place, with the density cos / pi about the shading normal. Null if there is no environment
-/// or no part of the places profits from a guide. Same result for any number of threads.
+/// Sends four rays from each place, with the pdf cos / pi [1/sr] about the shading normal, and makes a guide from those
+/// that see the environment. All places must exist. Null if there is no environment or no part of the places profits
+/// from a guide (SkyGuide). Same result for any number of threads.
 std::shared_ptr<const SkyGuide> learn_sky(const Tracer& tracer, const Lights& lights,
                                           std::span<const SeenPlace> places);
 

@@ -25,7 +25,7 @@ Rgb passed_straight(const SceneFrame& frame, SurfacePoint point, Vec3 direction)
 
 namespace {
 
-/// Share of light that surfaces on the way let through.
+/// Share of light that the surfaces on the way pass straight: that of all panes, or black for any other surface.
 Rgb passed_surfaces(const Tracer& tracer, Ray ray) {
   if (!tracer.has_panes()) return Rgb(tracer.occluded(ray) ? 0.0f : 1.0f);
   Rgb passed(1.0f);
@@ -63,13 +63,13 @@ Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const Mediu
                          const WayBits& bits, std::uint64_t& shadow_rays) {
   LightSample light;
   if (!lights.sample(point.position, {}, u, light)) return Rgb(0.0f);
-  // The path runs from the eye, so light travels against it: the phase function's peak lies ahead along the path.
+  // Light travels against the direction of the path, so the peak of the phase function lies ahead along the path.
   const float phase = pdf_hg(point.g, point.travel, light.wi);
   Rgb radiance = light.facing_irradiance * phase;
   if (weigh && !light.delta) radiance *= mis_power(light.pdf_solid_angle, phase);
   if (is_black(radiance)) return radiance;
   ++shadow_rays;
-  SurfacePoint from{};  // in a medium there is no surface to offset the ray from
+  SurfacePoint from{};  // without an offset, because there is no surface in a medium
   from.position = point.position;
   return radiance * transmittance(tracer, spawn_shadow_ray(from, light.position, light.position_offset), bits);
 }
