@@ -14,7 +14,7 @@
 #include "formats/error.h"
 #include "lib/aqm/vision_model.h"
 #include "lib/image/channel_groups.h"
-#include "lib/render/frame_renderer.h"
+#include "lib/render/data_channels.h"
 #include "lib/warp/warped_image.h"
 #include "tools/common/cli.h"
 #include "tools/common/keep_memory.h"

@@ -150,18 +150,15 @@ void AdaptiveFrame::spread() {
       }};
   const std::vector<double> errors = allowed_errors(samples, pixels);
   const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels, errors);
-  std::vector<std::uint32_t> further_of(judged.empty() ? 0 : pixels.size(), kNone);
-  std::vector<FurtherSamples> further(judged.size());
+  for (const std::size_t pixel : judged) samples.further[pixel] = {};
   frame_.rays += parallel_sum<RayCounts>(judged.size(), 64, [&](std::size_t i, RayCounts& rays) {
     const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
     const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
-    further_of[pixel] = std::uint32_t(i);
-    further[i].count = more;
     const PixelPass pass{pixel, int(pixel % width), int(pixel / width), have, more};
-    join_parts(sample_pixel(camera_, pass, nullptr, rays), {}, more, further[i].mean);
+    FurtherSamples& further = samples.further.at(pixel);
+    further.count = more;
+    join_parts(sample_pixel(camera_, pass, nullptr, rays), {}, more, further.mean);
   });
-  samples.further_of = further_of;
-  samples.further = further;
   std::vector<Layers> before;
   for (const std::size_t pixel : judged) before.push_back(pixels[pixel]);
   frame_.spread = spread_outliers(samples, errors, pixels);
@@ -199,7 +196,7 @@ void AdaptiveFrame::reach_seen_error() {
   // kLeastTimes: a measurement over 1024 pixels errs by 2.2 %, so less than 3 x 2.2 % of the noise is no certain gain:
   // 1.066^(1 / .64) = 1.1 times the samples.
   constexpr double kMostTimes = 4, kLeastTimes = 1.1;
-  constexpr int kMostIdle = 8;  // passes without a sample: all pixels are at their limit, or show no noise
+  constexpr int kMostIdle = 8;  // passes in a row without a sample: all pixels are at their limit or show no noise
   put_together();
   double times = 0.25;
   const double at_first = noise_left();

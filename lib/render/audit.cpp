@@ -17,7 +17,8 @@ namespace {
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
 constexpr double kFewest = 32;  ///< least effective number of contributions from which a variance is estimated
-/// Student's t with 31 degrees of freedom exceeds 3 times this as rarely as a normal variable exceeds 3.
+/// Factor for standard errors from 32 audits. Student's t with 31 degrees of freedom exceeds 3 times this factor as
+/// rarely as a normally distributed number exceeds 3.
 constexpr double kStudent = 3.25 / 3;
 /// Cost in rays of a frame: of one light path with its photons in view, and of one camera path.
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;

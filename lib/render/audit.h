@@ -1,4 +1,4 @@
-// lib/render/audit.h -- measures the bias of a frame's layers with light of its own.
+// lib/render/audit.h -- estimates the bias of a frame's layers by independent photons and camera paths.
 #pragma once
 
 #include <array>
@@ -71,7 +71,8 @@ class FrameAudit {
  public:
   static constexpr std::size_t kAudits = 32;
 
-  /// objects: id.object by pixel. Pixels with mask 0 are not audited. All arguments must outlive the audit.
+  /// objects: the object that each pixel shows (channel id.object). Pixels with mask 0 are not audited. All arguments
+  /// must outlive the audit.
   FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
              std::span<const std::uint8_t> mask);
   /// Adds the photons of effort.photon_paths light paths from `lights` that the camera sees (PhotonSplats). `lights`

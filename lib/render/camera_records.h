@@ -1,5 +1,5 @@
-// lib/render/camera_records.h -- irradiance records where the cameras of frames need them, gathered or updated from
-// static records.
+// lib/render/camera_records.h -- places irradiance records where the cameras of frames need them, and updates static
+// records.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct UpdateInput {
   const FinalGather& gather;
   const Tracer& tracer;  ///< the scene at the frame
   const PointLookup& points;
-  /// The frame's dynamic maps relative to the static scene; first the frame's own map.
+  /// Densities of dynamic maps: first the frame's own map, then those of frames before (record_changes).
   std::span<const SignedDensity> changes;
   InfluenceThresholds influence;
   std::uint64_t seed = 0;  ///< of the estimates of changes

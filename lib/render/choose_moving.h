@@ -1,5 +1,4 @@
-// lib/render/choose_moving.h -- a pilot decides whether to compute the changes by movers instead of each frame's whole
-// light.
+// lib/render/choose_moving.h -- a pilot decides what frames with movers reuse of the static scene's light.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "lib/render/coverage_channel.h"
+#include "lib/render/data_channels.h"
 
 #include <algorithm>
 #include <array>

@@ -1,3 +1,5 @@
+#include "lib/render/data_channels.h"
+
 #include <algorithm>
 #include <array>
 
@@ -5,7 +7,6 @@
 #include "lib/core/parallel.h"
 #include "lib/image/channel_groups.h"
 #include "lib/material/bsdf.h"
-#include "lib/render/frame_renderer.h"
 #include "lib/scene/same_surfaces.h"
 
 namespace tempolux {
@@ -46,7 +47,7 @@ void set(const std::array<float*, kCount>& planes, std::size_t i, const std::arr
   for (std::size_t c = 0; c < kCount; ++c) planes[c][i] = numbers[c];
 }
 
-/// The samples of the requested channels, which the constructor adds to the image; null: not requested.
+/// The planes of the requested channels. The constructor adds these channels to the image. null: not requested.
 struct DataPlanes {
   float* z = nullptr;
   std::array<float*, 3> normal{}, position{}, albedo{};

@@ -14,12 +14,6 @@ constexpr double kEnough = 1024;  ///< pixels; the RMS of that many normally dis
 /// 1/64 because noise is not normally distributed.
 constexpr int kLeastEdge = 5, kMostEdge = 8;
 
-Rgbd total(const Layers& layers) {
-  Rgbd sum(0.0);
-  for (const Rgb& radiance : layers.value) sum += Rgbd(radiance);
-  return sum;
-}
-
 /// Means over the channels of squared differences, in linear radiance and in codes.
 struct Squares {
   double linear = 0, codes = 0;
@@ -73,7 +67,7 @@ struct ImageAndLayers {
   /// Adds a pixel. error(colour) returns the squared error of colour(layers), the selected Rgbd of a pixel.
   template <class Error>
   void add(const Error& error) {
-    image.add(error([](const Layers& layers) { return total(layers); }));
+    image.add(error([](const Layers& layers) { return sum_of_layers<double>(layers); }));
     for (std::size_t l = 0; l < kLayerCount; ++l)
       layer[l].add(error([l](const Layers& layers) { return Rgbd(layers.value[l]); }));
   }
@@ -89,7 +83,7 @@ std::vector<double> means_of(std::span<const Layers> pixels, std::span<const std
   std::vector<double> means;
   means.reserve(pixels.size());
   for (std::size_t p = 0; p < pixels.size(); ++p)
-    if (mask.empty() || mask[p]) means.push_back(channel_mean(total(pixels[p])));
+    if (mask.empty() || mask[p]) means.push_back(channel_mean(sum_of_layers<double>(pixels[p])));
   return means;
 }
 
@@ -127,7 +121,9 @@ FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposu
   ImageAndLayers sums;
   double stored = 0;
   for (const Triple& of : triples) {
-    stored += squares(total(of.shown), total(of.shown) + total(of.stored), exposure).codes;
+    stored += squares(sum_of_layers<double>(of.shown),
+                      sum_of_layers<double>(of.shown) + sum_of_layers<double>(of.stored), exposure)
+                  .codes;
     sums.add([&](const auto& colour) {
       const Rgbd shown = colour(of.shown), sampled = colour(of.sampled);
       Rgbd given(0.0);

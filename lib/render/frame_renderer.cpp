@@ -42,8 +42,9 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
   if (options.sample_halves) frame.mean.difference_share = check.shares(frame.mean.sample_halves, as_sampled);
 }
 
-LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
+LayerImage empty_layers(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
   LayerImage image;
+  image.media = scene.frame().media != nullptr;
   image.width = view.width();
   image.height = view.height();
   const std::size_t count = std::size_t(view.width()) * std::size_t(view.height());
@@ -53,19 +54,6 @@ LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
   if (options.sample_halves) image.sample_halves.resize(count);
   if (options.known && options.known->has_noise()) image.stored_noise.resize(count);
   return image;
-}
-
-Rgb total(const Layers& layers) {
-  Rgb sum = layers.value[0];
-  for (std::size_t l = 1; l < kLayerCount; ++l) sum += layers.value[l];
-  return sum;
-}
-
-double mean_radiance(const LayerImage& image) {
-  const double sum = parallel_sum<double>(image.pixels.size(), 4096, [&](std::size_t p, double& light) {
-    light += channel_sum(Rgbd(total(image.pixels[p])));
-  });
-  return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 
 /// Sets frame.mean to the mean of the two halves, and frame.noise from their difference.
@@ -92,19 +80,21 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   RenderedFrame frame;
   if (options.halves) {
     for (std::size_t h = 0; h < 2; ++h) {
-      frame.half[h] = empty_layers(view, options);
+      frame.half[h] = empty_layers(scene, view, options);
       take_samples({scene, view, options.known, options.seed ^ kSeedsOfHalves[h]}, options.mask,
                    std::max(1, options.samples / 2), frame.half[h], frame.rays,
                    options.progress ? [&, h](double f) { options.progress((f + double(h)) / 2); } : options.progress);
     }
     join_halves(frame);
   } else {
-    frame.mean = empty_layers(view, options);
+    frame.mean = empty_layers(scene, view, options);
     if (options.pixel_error > 0) render_adaptive(scene, view, options, frame);
     else render_fixed(scene, view, options, frame);
   }
-  for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
-  frame.mean_radiance = mean_radiance(frame.mean);
+  const std::vector<Layers>& pixels = frame.mean.pixels;
+  frame.mean_radiance =
+      parallel_sum<double>(pixels.size(), 4096, [&](std::size_t p, double& sum) { sum += radiance_of(pixels[p]); }) /
+      double(pixels.size());
   if (!(frame.samples_per_pixel > 0)) frame.samples_per_pixel = frame.mean.samples;
   return frame;
 }
@@ -136,7 +126,7 @@ void add_colour_channels(const LayerImage& layers, const std::vector<std::string
   if (!layers.sample_halves.empty()) add_variance_channels(layers, channels, image);
   for (const std::string& name : channels) {
     if (name == "RGBA") {
-      add_colour("", image, [&](std::size_t p) { return total(layers.pixels[p]); });
+      add_colour("", image, [&](std::size_t p) { return sum_of_layers<float>(layers.pixels[p]); });
       std::vector<float>& alpha = image.add("A").values;
       for (std::size_t p = 0; p < alpha.size(); ++p) alpha[p] = layers.pixels[p].coverage;
     }

@@ -78,21 +78,4 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 /// add_variance_channels(). The sum of the layers in the order of kLayerNames, in float32, is exactly R G B.
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
-/// The scene and the camera one frame later or earlier. null: there is no such frame.
-struct NeighbourFrame {
-  const SceneFrame* frame = nullptr;
-  const CameraView* view = nullptr;
-};
-/// Adds the requested data channels of one ray through each pixel's centre. A surface with alpha mode BLEND is met or
-/// passed at random, once per pixel. Where the ray meets no surface, Z is infinity, id is kNone, all else is 0.
-/// - Z: CameraView::depth [m]; P: position in world space [m]; id: object.
-/// - N: shading normal with normal map, unit, world axes, on the side that is seen.
-/// - albedo: Bsdf::diffuse_albedo, with textures at the pixel's level.
-/// - motion: in pixels, +u right, +v up, to the point's place in the frame `next` (forward) and `previous` (backward).
-void add_data_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
-                       const NeighbourFrame& next, const NeighbourFrame& previous, Image& image);
-
-/// Throws InputError, which lists the known groups, if `channels` holds an unknown group.
-void check_channels(const std::vector<std::string>& channels);
-
 }  // namespace tempolux

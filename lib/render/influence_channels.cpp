@@ -1,4 +1,4 @@
-#include "lib/render/influence_channels.h"
+#include "lib/render/data_channels.h"
 
 #include <algorithm>
 #include <cmath>

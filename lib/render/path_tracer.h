@@ -35,7 +35,14 @@ struct LayersT {
 };
 using Layers = LayersT<float>;
 
-/// Mean channel of the sum of all layers [W/m^2/sr].
+/// Sum of all layers [W/m^2/sr], in the precision T.
+template <class T>
+RgbT<T> sum_of_layers(const Layers& layers) {
+  RgbT<T> sum(T(0));
+  for (const Rgb& radiance : layers.value) sum += RgbT<T>(radiance);
+  return sum;
+}
+/// The same, mean of the channels.
 template <class T>
 double radiance_of(const LayersT<T>& layers) {
   double sum = 0;
@@ -68,14 +75,8 @@ class EyePath {
   /// Adds an event D (diffuse) or S at a surface.
   void scatter(bool diffuse) {
     sharp_ = sharp_ && !diffuse;
-    switch (layer_) {
-      case Layer::emission: layer_ = diffuse ? Layer::direct : Layer::specular; break;
-      case Layer::specular: break;
-      case Layer::direct: layer_ = diffuse ? Layer::indirect : Layer::caustic; break;
-      case Layer::caustic: layer_ = diffuse ? Layer::indirect : Layer::caustic; break;
-      case Layer::indirect: break;
-      case Layer::volume: break;
-    }
+    if (layer_ == Layer::emission) layer_ = diffuse ? Layer::direct : Layer::specular;
+    else if (layer_ == Layer::direct || layer_ == Layer::caustic) layer_ = diffuse ? Layer::indirect : Layer::caustic;
   }
   /// Passes a pane straight. After an event D this is no event. Before it, this is an event S, as for other glass.
   void pass_straight() {

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kRemembered = 4;  ///< places per pixel: a pixel may see several surfaces
+constexpr std::size_t kRemembered = 4;  ///< number of places in each half of a pixel: it may see several surfaces
 constexpr float kAlike = 0.999f;        ///< least cosine between normals at places that share caustic light
 
 /// Caustic irradiance that was estimated at a place.

@@ -35,10 +35,10 @@ class PixelNoise {
   const std::vector<std::uint8_t>& looked_at() const { return looked_at_; }
   /// Numbers of first samples. The part onward has half as many, because its samples cost most and often need no more.
   const PartCounts& first() const { return first_; }
-  /// Stores the sums over the two halves of a pixel's first samples, and the number of rays that their part `onward`
-  /// took. Thread-safe for different pixels.
+  /// Stores the sums over the two halves of a pixel's first samples. onward_rays: cost of their part onward, in shadow
+  /// rays. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
-  /// Call after note() of all pixels and before wanted_at().
+  /// Computes the radiance of the picture. Call after note() of all pixels and before wanted_at().
   void all_noted();
   /// Number of samples of each part that a pixel is to have in all: `times` as many as pixel_error asks for, at least
   /// first(), at most FrameOptions::adaptive_limit.

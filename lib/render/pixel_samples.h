@@ -52,7 +52,8 @@ struct PixelSum {
   }
 };
 
-/// Joins `sum` over `count` samples to `mean`, the mean over `first` samples before.
+/// Changes `mean`, the mean over `first` samples, to the mean over these and `count` further samples. sum: over the
+/// further samples.
 inline void join(const LayersT<double>& sum, int first, int count, Layers& mean) {
   if (count == 0) return;
   const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);
@@ -160,7 +161,7 @@ void for_each_sample(const CameraSampler& camera, const PixelPass& pass, SampleH
     const PathParts parts = trace_eye_path(scene, ray, hit, random, known, counts, view.cone(), effort);
     if (halves) {
       const bool single = pass.count.own == 1;
-      halves->add(single ? halves->half[1].own.count < halves->half[0].own.count : pass.half(i), parts, effort);
+      halves->add(single ? halves->half[1][0].count < halves->half[0][0].count : pass.half(i), parts, effort);
     }
     add(i, parts);
   }

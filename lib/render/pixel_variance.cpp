@@ -8,56 +8,40 @@
 #include "lib/render/frame_renderer.h"
 
 namespace tempolux {
-namespace {
-
-/// The sums of the three parts of a half.
-template <class Half>
-auto parts_of(Half& half) {
-  return std::array{&half.own, &half.lit, &half.onward};
-}
-
-}  // namespace
-
-void SampleHalves::Sum::add(const Layers& sample, float samples) {
-  radiance += sample;
-  count += samples;
-}
-
 void SampleHalves::add(int h, const PathParts& sample, const PathEffort& effort) {
-  half[h].own.add(sample.own, 1);
-  half[h].lit.add(sample.lit, float(effort.lit));
-  half[h].onward.add(sample.onward, float(effort.onward));
+  const std::array radiance{&sample.own, &sample.lit, &sample.onward};
+  const std::array count{1u, effort.lit, effort.onward};
+  for (std::size_t i = 0; i < radiance.size(); ++i) {
+    half[std::size_t(h)][i].radiance += *radiance[i];
+    half[std::size_t(h)][i].count += float(count[i]);
+  }
 }
 
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
-  for (int h = 0; h < 2; ++h) {
-    const auto other = parts_of(more.half[h]);
-    for (std::size_t i = 0; Sum * sum : parts_of(half[h])) {
-      sum->add(other[i]->radiance, other[i]->count);
-      ++i;
+  for (std::size_t h = 0; h < 2; ++h)
+    for (std::size_t i = 0; i < half[h].size(); ++i) {
+      half[h][i].radiance += more.half[h][i].radiance;
+      half[h][i].count += more.half[h][i].count;
     }
-  }
   return *this;
 }
 
 Rgb SampleHalves::difference(std::size_t l) const {
   Rgb sum(0.0f);
-  const auto first = parts_of(half[0]), second = parts_of(half[1]);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const float a = first[i]->count, b = second[i]->count;
+  for (std::size_t i = 0; i < half[0].size(); ++i) {
+    const Sum &first = half[0][i], &second = half[1][i];
+    const float a = first.count, b = second.count;
     if (a > 0 && b > 0)
-      sum += (first[i]->radiance.value[l] * (1 / a) - second[i]->radiance.value[l] * (1 / b)) *
-             (std::sqrt(a * b) / (a + b));
+      sum += (first.radiance.value[l] * (1 / a) - second.radiance.value[l] * (1 / b)) * (std::sqrt(a * b) / (a + b));
   }
   return sum;
 }
 
 Rgb SampleHalves::mean(std::size_t l) const {
   Rgb mean(0.0f);
-  const auto first = parts_of(half[0]), second = parts_of(half[1]);
-  for (std::size_t i = 0; i < first.size(); ++i)
-    if (const float count = first[i]->count + second[i]->count; count > 0)
-      mean += (first[i]->radiance.value[l] + second[i]->radiance.value[l]) * (1 / count);
+  for (std::size_t i = 0; i < half[0].size(); ++i)
+    if (const float count = half[0][i].count + half[1][i].count; count > 0)
+      mean += (half[0][i].radiance.value[l] + half[1][i].radiance.value[l]) * (1 / count);
   return mean;
 }
 

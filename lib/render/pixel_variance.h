@@ -19,17 +19,13 @@ struct SampleHalves {
   struct Sum {
     Layers radiance;  ///< [W/m^2/sr]
     float count = 0;  ///< samples
-    void add(const Layers& sample, float samples);
   };
-  struct Half {
-    Sum own, lit, onward;
-  };
-  Half half[2];
+  std::array<std::array<Sum, 3>, 2> half;  ///< of each half the sums of own, lit and onward
 
   /// Adds a sample to half h, 0 or 1.
   void add(int h, const PathParts& sample, const PathEffort& effort);
   SampleHalves& operator+=(const SampleHalves& more);
-  float samples() const { return half[0].own.count + half[1].own.count; }
+  float samples() const { return half[0][0].count + half[1][0].count; }
   /// Half the difference between the halves in layer l [W/m^2/sr]: the sum over the parts of
   /// (a - b) (n_a n_b)^(1/2) / (n_a + n_b), with the means a, b of the halves and their counts n_a, n_b. For
   /// independent samples, the mean of its square is the variance of the mean over both halves. A part with an empty

@@ -14,7 +14,7 @@ namespace tempolux {
 
 /// Places of a picture that a pilot looks at. A share p of them is known to sqrt(p (1 - p) / 2048): 1.1 % at most.
 inline constexpr int kPilotPlaces = 2048;
-/// Places of a pilot that looks from many eyes: eight eyes together look at kPilotPlaces.
+/// Places per camera of a pilot with several cameras: eight cameras together look at kPilotPlaces.
 inline constexpr std::uint32_t kPlacesOfEye = kPilotPlaces / 8;
 /// Parts of the picture whose light a pilot measures separately. 14 of its places lie in each.
 inline constexpr int kPilotColumns = 16, kPilotRows = 9, kPilotParts = kPilotColumns * kPilotRows;

@@ -190,7 +190,7 @@ void ask(const Samples& samples, const Levels& levels, double pixel_error, Rough
   rough.wanted = std::max(rough.wanted, pixel_error * pixel_error);
 }
 
-/// A rough version of the files that a frame would read.
+/// Irradiance points and bright points, made of the pilot's photons, in place of the frame's files.
 class RoughLight {
  public:
   /// photons: of kPilotPaths light paths. paths: number of light paths of the frame's map. The radii of the points are

@@ -1,4 +1,4 @@
-#include "lib/render/seen_channels.h"
+#include "lib/render/data_channels.h"
 
 #include <algorithm>
 #include <array>

@@ -152,9 +152,8 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
   const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
   const BrightestSamples& brightest = samples.brightest[pixel];
   const PartCounts& counts = samples.counts[pixel];
-  const FurtherSamples* const further = samples.further_of.empty() || samples.further_of[pixel] == kNone
-                                            ? nullptr
-                                            : &samples.further[samples.further_of[pixel]];
+  const auto found_further = samples.further.find(pixel);
+  const FurtherSamples* const further = found_further == samples.further.end() ? nullptr : &found_further->second;
   const auto look = [&](const BrightestSample& sample, Layers PathParts::*part, int PartCounts::*number) {
     const int count = counts.*number;
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;

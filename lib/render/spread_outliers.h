@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "lib/render/pixel_samples.h"
@@ -50,9 +51,7 @@ struct SampledPixels {
   /// The error that a pixel may have, by the radiance around it (both W/m^2/sr). Where it is 0, the pixel gives no
   /// light. Thread-safe.
   std::function<double(double)> error;
-  /// By pixel: index in `further`, or kNone. Empty: no pixel has further samples.
-  std::span<const std::uint32_t> further_of{};
-  std::span<const FurtherSamples> further{};
+  std::unordered_map<std::size_t, FurtherSamples> further{};  ///< by pixel
   bool takes_part(std::size_t pixel) const { return mask.empty() || mask[pixel] != 0; }
 };
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "formats/error.h"
-#include "lib/render/frame_renderer.h"
+#include "lib/render/data_channels.h"
 #include "tools/common/cli.h"
 #include "tools/stages/measured.h"
 #include "tools/stages/planning.h"

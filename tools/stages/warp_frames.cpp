@@ -7,7 +7,7 @@
 #include "lib/aqm/animation_quality.h"
 #include "lib/image/frame_identity.h"
 #include "lib/image/why_mask.h"
-#include "lib/render/frame_renderer.h"
+#include "lib/render/data_channels.h"
 #include "lib/warp/flow_of_view.h"
 #include "lib/warp/warped_image.h"
 

@@ -1,5 +1,5 @@
 // Which neighbours' surfaces a pixel sees: an edge at known positions in pixels.
-#include "lib/render/coverage_channel.h"
+#include "lib/render/data_channels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // tests/lib/render/deforming_motion_test.cpp -- motion of points on deforming surfaces, against the closed form.
-#include "lib/render/frame_renderer.h"
+#include "lib/render/data_channels.h"
 #include "tests/lib/scene/gltf_maker.h"
 
 namespace tempolux {

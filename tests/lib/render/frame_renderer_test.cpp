@@ -8,6 +8,7 @@
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
+#include "lib/render/data_channels.h"
 #include "lib/render/known_light.h"
 #include "lib/render/localised_light.h"
 #include "tests/support/frames.h"

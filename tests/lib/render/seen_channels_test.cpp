@@ -1,5 +1,5 @@
 // What mirrors show: depths on paper.
-#include "lib/render/seen_channels.h"
+#include "lib/render/data_channels.h"
 
 #include <gtest/gtest.h>
 

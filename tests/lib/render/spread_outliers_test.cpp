@@ -296,19 +296,16 @@ TEST(SpreadOutliers, WhatFurtherSamplesConfirmStays) {
   SampledPixels samples{even.width, even.height, even.parts, even.counts, even.brightest, even.mask, even.error};
   const std::vector<double> errors = allowed_errors(samples, even.sums());
   EXPECT_EQ(pixels_to_judge(samples, even.sums(), errors), std::vector<std::size_t>{claims});
-  std::vector<std::uint32_t> further_of(even.parts.size(), kNone);
-  further_of[claims] = 0;
   for (const auto& [mean, left] : {std::pair{11.0f, 11.0f}, std::pair{1.0f, 1.8f}}) {
     FurtherSamples further;
     further.mean.onward[Layer::indirect] = Rgb(mean);
     further.count = {12, 12, 12};
-    samples.further_of = further_of;
-    samples.further = {&further, 1};
+    samples.further = {{claims, further}};
     std::vector<Layers> pixels = even.sums();
     spread_outliers(samples, errors, pixels);
     EXPECT_NEAR(pixels[claims][Layer::indirect].g, left, mean > 1 ? 0 : kError + 1e-4) << mean;
   }
-  samples.further_of = {};
+  samples.further = {};
   even.counts[claims] = {16, 16, 16};  // of which one brought 161
   EXPECT_EQ(pixels_to_judge(samples, even.sums(), errors), std::vector<std::size_t>{});
 }
