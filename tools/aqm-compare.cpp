@@ -17,8 +17,8 @@ namespace {
 
 void declare(tools::Tool& tool, tools::CompareOptions& o) {
   CLI::App& app = tool.app();
-  app.add_option("test", o.test, "frame to judge, EXR, or a pattern such as f.####.exr")->required();
-  app.add_option("reference", o.reference, "its reference, unless --reference-halves is given");
+  tool.file_option("test", o.test, "frame to judge, EXR, or a pattern such as f.####.exr")->required();
+  tool.file_option("reference", o.reference, "its reference, unless --reference-halves is given");
   tool.file_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
       ->expected(2);
   app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");

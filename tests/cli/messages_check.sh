@@ -28,3 +28,6 @@ tool-probe scene.glb -o b.out --second b2.out --work input-error -q; echo "exit 
 tool-probe /abs/sub/scene.glb -o f.##.out --frames 3-4 --bytes 0 --threads 1 --state st/a 'st/b c' --depfile d.mk -v 2>&1 | sed 's/[0-9.]* s/T s/; s/([0-9.]* CPU/(T CPU/'
 cat d.mk f.03.out f.04.out
 ls -A
+# Only names of files may be patterns: a scene, a camera or a map of light has its own name at every frame.
+tool-probe '100% #1.glb' --camera 'view #2' --environment '50%.hdr' --volume 'smoke.##.vdb' --frame 7 -o g.out --bytes 0; echo "exit $?"
+head -1 g.out

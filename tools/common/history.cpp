@@ -53,8 +53,9 @@ std::string Tool::history_line(std::optional<int> frame) const {
   std::string line = "tempolux " TEMPOLUX_VERSION " " + state_->name;
   const auto add = [&](const CLI::Option& option) {
     for (const std::string& value : option.results()) {
-      const bool named = has_frame_pattern(value) || value.find("%%") != std::string::npos;  // "10%" is not a pattern
-      line += " " + quoted(without_folder(frame && named ? frame_name(value, *frame) : value));
+      const bool named = frame && state_->files.contains(&option) &&
+                         (has_frame_pattern(value) || value.find("%%") != std::string::npos);
+      line += " " + quoted(without_folder(named ? frame_name(value, *frame) : value));
     }
   };
   const std::vector<const CLI::Option*> options =

@@ -218,11 +218,15 @@ CLI::Option* Tool::output_option(std::string& path, const std::string& help, con
 }
 
 CLI::Option* Tool::file_option(const std::string& names, std::string& file, const std::string& help) {
-  return state_->app.add_option(names, file, help)->type_name("FILE");
+  CLI::Option* option = state_->app.add_option(names, file, help)->type_name("FILE");
+  state_->files.insert(option);
+  return option;
 }
 
 CLI::Option* Tool::file_option(const std::string& names, std::vector<std::string>& files, const std::string& help) {
-  return state_->app.add_option(names, files, help)->type_name("FILE");
+  CLI::Option* option = state_->app.add_option(names, files, help)->type_name("FILE");
+  state_->files.insert(option);
+  return option;
 }
 
 CLI::Option* Tool::choice_option(const std::string& names, std::string& word, const std::vector<std::string>& words,

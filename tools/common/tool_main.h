@@ -105,7 +105,7 @@ class Tool {
 
   /// Adds -o,--output (or another option that names an output); history lines do not contain it.
   CLI::Option* output_option(std::string& path, const std::string& help, const std::string& names = "-o,--output");
-  /// Adds an option whose value is the name of a file.
+  /// Adds an option whose value is the name of a file, or a pattern of names for the frames of a range.
   CLI::Option* file_option(const std::string& names, std::string& file, const std::string& help);
   CLI::Option* file_option(const std::string& names, std::vector<std::string>& files, const std::string& help);
   /// Adds an option whose value is one of `words`; help shows the default.
