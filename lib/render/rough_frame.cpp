@@ -13,6 +13,7 @@
 #include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/gather/place_records.h"
+#include "lib/image/srgb.h"
 #include "lib/irradcache/points.h"
 #include "lib/render/audit.h"
 #include "lib/render/hidden_light.h"
@@ -103,8 +104,9 @@ double mean_of(const Samples& samples, const PartOfLight& light) {
 struct Levels {
   std::vector<std::size_t> part;  ///< part of each place
   /// Mean of the picture. Radiance of the layers emission and specular counts at most as much as white, because a flame
-  /// in a lantern is a thousand times as bright as the walls that it lights. The other light is at least what photons
-  /// show, because paths may find none of it.
+  /// in a lantern is a thousand times as bright as the walls that it lights. Direct light does so, too, because a bulb
+  /// close to a wall makes a very bright spot. The other light is at least what photons show, because paths may find none
+  /// of it.
   double picture = 0;
   double white = 0;             ///< radiance that the exposure of the median part shows as white
   std::vector<double> allowed;  ///< by part: the allowed error at pixel error 1
@@ -121,7 +123,8 @@ struct Levels {
     std::vector<double> sorted = sum;
     const double shown = photons.caustic.mean + photons.indirect.mean,
                  found = mean_of(samples, [](const Sample&s) { return s.caustic + s.indirect; }),
-                 others = mean_of(samples, [](const Sample&s) { return s.other - s.seen; });
+                 lit = 1 / exposure_of(sum),
+                 others = mean_of(samples, [lit](const Sample&s) { return std::min(s.other - s.seen, lit); });
     const double least = std::max(shown, found) + others;
     white = std::max(upper_median(sorted), 0.1 * (least > 0 ? least : mean)) / 0.18;
     // Light behind mirrors and glass is in `shown` of photons and in `seen` of paths. It must count once.

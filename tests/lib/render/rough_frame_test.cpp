@@ -95,6 +95,18 @@ TEST(RoughFrame, ALampInViewDoesNotHideTheRoom) {
   EXPECT_NEAR(lost[1], lost[0], 0.1 * lost[0]);
 }
 
+/// A bulb d before the wall in view. Half of its light meets the wall in a spot of about d, and half the other walls.
+/// Walls reflect half, so a third of the light that returns to the wall in view comes from the spot. Paths meet the
+/// spot with a chance of pi d^2 / (8 pi): with d = 2 mm hardly. In the spot itself, of a few samples, radiance is
+/// I / (2 pi d^2), a 10^5 times that of the wall beside it, so it would be nearly all of the picture's mean.
+TEST(RoughFrame, ASpotOfDirectLightDoesNotHideTheRoom) {
+  test::HandMadeScene scene;
+  scene.add_room({0, 0, 0}, {4, 4, 4}, test::matte(Rgb(0.5f)));
+  scene.add_point_light({1.3f, 2.4f, 0.002f}, Rgb(1.0f));
+  const RoughFrame rough = rough_of(scene.frame());
+  EXPECT_NEAR(std::sqrt(rough.missed.square), 1.0 / 3, 0.1);
+}
+
 /// A dark room with a hole of 10 cm in its right wall, behind which a lamp on the wall lights a board. A path meets the
 /// hole with a chance of about A / (8 pi) = 1 in 2500, so a few of 8192 samples find all light there is. With a hole
 /// of 1 m hundreds do.
