@@ -1,4 +1,5 @@
-// lib/material/smooth_material.h -- finds materials that reflect or transmit light only by mirrors and smooth glass.
+// lib/material/smooth_material.h -- finds materials that reflect or transmit light only by mirrors and smooth glass, or
+// by lobes so sharp that paths hardly ever meet a lamp without extent through them.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 
 namespace tempolux {
 
-/// Index of the first material in use whose S lobes are all mirrors or smooth glass; kNone if there is none. Textures
-/// are ignored, so a material that they make smooth in parts may be missed.
+/// Index of the first material in use whose S lobes are all mirrors, smooth glass or sharper than roughness .07; kNone
+/// if there is none. Textures are ignored, so a material that they make smooth in parts may be missed.
 std::uint32_t first_smooth_material(const SceneFrame& frame);
 
 }  // namespace tempolux

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kReflectance = 0.5;
 
-Material mirror() {
+Material mirror(float roughness = 0) {
   Material m = test::matte(Rgb(1.0f));
   m.metallic = 1;
-  m.roughness = 0;
+  m.roughness = roughness;
   return m;
 }
 
@@ -50,6 +50,8 @@ TEST(HiddenLight, NeedsALampWithoutExtentAndAMirror) {
   EXPECT_TRUE(may_hide_light(UnderAMirror(mirror()).scene.frame()));
   EXPECT_FALSE(may_hide_light(UnderAMirror(mirror(), 0).scene.frame()));
   EXPECT_FALSE(may_hide_light(UnderAMirror(test::matte(Rgb(1.0f))).scene.frame()));
+  EXPECT_TRUE(may_hide_light(UnderAMirror(mirror(0.05f)).scene.frame())) << "one path in 40000 meets the lamp";
+  EXPECT_FALSE(may_hide_light(UnderAMirror(mirror(0.2f)).scene.frame())) << "one in 160";
 }
 
 /// The image's light over that of the lamp and its image. Of 32768 light paths one in 70 reaches the picture by way of
