@@ -13,6 +13,10 @@
 namespace tempolux {
 namespace {
 
+/// Parts of all triangles whose emission varies, beside one for each triangle. Bounds memory, to 16 MB, and the time of
+/// each tool that builds lights.
+constexpr double kMostParts = 0x1p16;
+
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 
 /// Raises `weights`, the largest weight of each slot over several frames, by the weights of one more frame.
@@ -49,17 +53,36 @@ bool any_flux_changes(const SceneFrame& frame) {
   return false;  // the flux of a punctual light does not depend on its position
 }
 
+/// Divides the surfaces' triangles. All parts together are limited; a triangle gets a share of them by its flux.
+void divide_parts(const SceneFrame& frame, const std::vector<std::uint32_t>& surfaces,
+                  std::vector<EmissionParts>& parts) {
+  std::vector<std::vector<double>> weights(parts.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!parts[i].vary()) continue;
+    for (const EmissionPart& part : parts[i].all()) {
+      const Surface& surface = frame.surfaces[surfaces[i]];
+      weights[i].push_back(TriangleLight(surface, part.triangle, Material()).area * max_component(part.share));
+      sum += weights[i].back();
+    }
+  }
+  if (!(sum > 0)) return;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!parts[i].vary()) continue;
+    for (double& weight : weights[i]) weight *= kMostParts / sum;
+    parts[i].divide(frame, surfaces[i], weights[i]);
+  }
+}
+
 }  // namespace
 
 std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame) {
   const std::uint32_t s = table.surfaces[index];
-  const Surface& surface = frame.surfaces[s];
-  const bool same = table.shares[index].alpha == frame.materials[surface.material].alpha;
-  const EmissionShares own = same ? EmissionShares() : EmissionShares(frame, s);
+  const EmissionParts own = table.parts[index]->hold_at(frame, s) ? EmissionParts() : table.parts[index]->at(frame, s);
+  const EmissionParts& parts = own.all().empty() ? *table.parts[index] : own;
   std::vector<TriangleLight> lights;
-  lights.reserve(surface.primitive->triangles.size());
-  for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t)
-    lights.emplace_back(frame, s, t, same ? table.shares[index] : own);
+  lights.reserve(parts.all().size());
+  for (const EmissionPart& part : parts.all()) lights.emplace_back(frame, s, part, parts.vary());
   return lights;
 }
 
@@ -67,6 +90,7 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
   TEMPOLUX_CHECK(!frames.empty());
   const SceneFrame& any = frames.front();
   EmissionTable table;
+  std::vector<EmissionParts> parts;
   if (!any.bounds.empty()) {
     table.sphere_centre = (Vec3d(any.bounds.lower) + Vec3d(any.bounds.upper)) * 0.5;
     table.sphere_radius = 0.5 * length(Vec3d(any.bounds.upper) - Vec3d(any.bounds.lower)) * (1 + 1e-5);
@@ -76,8 +100,10 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
                                    [&](const SceneFrame& f) { return f.materials[f.surfaces[s].material].emissive(); });
     if (!emits) continue;
     table.surfaces.push_back(s);
-    table.shares.emplace_back(any, s);
+    parts.emplace_back(any, s);
   }
+  divide_parts(any, table.surfaces, parts);
+  for (EmissionParts& of : parts) table.parts.push_back(std::make_shared<const EmissionParts>(std::move(of)));
   std::vector<double> weights;
   for (const SceneFrame& frame : frames) {
     TEMPOLUX_CHECK(frame.surfaces.size() == any.surfaces.size() && frame.lights.size() == any.lights.size());

@@ -180,10 +180,20 @@ bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) c
   return sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.facing_irradiance);
 }
 
+/// The slot of the triangle's part at a point of the triangle.
+std::uint32_t Lights::slot_at(std::uint32_t surface, std::uint32_t triangle, Vec3 on_light) const {
+  const EmissionParts& parts = *parts_[surface];
+  const std::uint32_t first = first_slot_[surface], index = parts.first(triangle);
+  if (index + 1 == parts.first(triangle + 1)) return first + index;
+  const TriangleLight& t = triangles_[first + index];
+  const Vec2 in_part = t.coordinates(on_light), b = t.part.at(in_part.x, in_part.y);
+  return first + parts.index(triangle, b.x, b.y);
+}
+
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
                               From from) const {
   if (first_slot_[surface] == kNone) return 0;
-  const std::uint32_t slot = first_slot_[surface] + triangle, light = tree_index_[slot];
+  const std::uint32_t slot = slot_at(surface, triangle, on_light), light = tree_index_[slot];
   if (light == kNone) return 0;
   const double on_triangle = pdf_triangle(triangles_[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;

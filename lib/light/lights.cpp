@@ -70,11 +70,14 @@ bool Lights::shines(const EmissionSlot& slot) const {
 
 void Lights::add_slots(const EmissionTable& table) {
   first_slot_.assign(frame_->surfaces.size(), kNone);
+  parts_.resize(frame_->surfaces.size());
   for (std::size_t i = 0; i < table.surfaces.size(); ++i) {
     const std::uint32_t s = table.surfaces[i];
     first_slot_[s] = std::uint32_t(slots_.size());
+    parts_[s] = table.parts[i];
     const std::vector<TriangleLight> lights = triangle_lights(table, i, *frame_);
-    for (std::uint32_t t = 0; t < lights.size(); ++t) slots_.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
+    for (const EmissionPart& part : parts_[s]->all())
+      slots_.push_back({EmissionSlot::Kind::triangle, s, part.triangle, kNone, 0});
     triangles_.insert(triangles_.end(), lights.begin(), lights.end());
   }
   for (std::uint32_t i = 0; i < frame_->lights.size(); ++i)

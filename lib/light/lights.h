@@ -24,9 +24,9 @@ namespace tempolux {
 
 class SkyGuide;
 
-/// An entry of the emission table: an emissive triangle, a punctual light, or the environment. A triangle of a double
-/// sided material is one slot with the flux of both sides. Slots and probabilities stay the same over a segment: a lamp
-/// that is dimmed or moved keeps its slot, and only the flux of its photons changes.
+/// An entry of the emission table: an emissive triangle or a part of one, a punctual light, or the environment. A
+/// triangle of a double sided material has the flux of both sides. Slots and probabilities stay the same over a
+/// segment: a lamp that is dimmed or moved keeps its slot, and only the flux of its photons changes.
 struct EmissionSlot {
   enum class Kind : std::uint8_t { triangle, punctual, environment };
   Kind kind = Kind::triangle;
@@ -35,25 +35,25 @@ struct EmissionSlot {
   double probability = 0;                       ///< of choosing this slot for a photon; sums to 1 over the table
 };
 
-/// Probabilities with which lights emit photons, the same for all frames of a segment. Slots are the triangles of
-/// `surfaces` in order, then the frame's punctual lights, then the environment if there is one.
+/// Probabilities with which lights emit photons, the same for all frames of a segment. Slots are the parts of
+/// the triangles of `surfaces` in order, then the frame's punctual lights, then the environment if there is one.
 /// A probability is proportional to the slot's maximum flux over the segment's frames. Flux is measured by luminance,
 /// or by 5 % of the largest channel if that is more, so that blue lamps count. A directional light's flux is its
 /// irradiance times the area pi R^2 of the scene sphere's disc; the environment's is pi R^2 times the integral of its
-/// radiance. A triangle whose emission is textured counts with its mean.
+/// radiance. A part of a triangle whose emission is textured counts with its mean.
 /// Little of the environment's light may enter a building, or lamps may hardly matter outdoors. So if there are an
 /// environment and other lights, the environment gets at least kUnguidedShare of the photons, and so do the others.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< indices into SceneFrame::surfaces of the surfaces that emit at some frame
-  std::vector<EmissionShares> shares;   ///< of `surfaces`, at the first frame
-  std::vector<double> probability;      ///< by slot, sums to 1; all equal if nothing ever emits
-  Vec3d sphere_centre{};                ///< scene sphere over the segment; scene space, m
+  std::vector<std::shared_ptr<const EmissionParts>> parts;  ///< of `surfaces`, shares of the first frame
+  std::vector<double> probability;                          ///< by slot, sums to 1; all equal if nothing ever emits
+  Vec3d sphere_centre{};                                    ///< scene sphere over the segment; scene space, m
   double sphere_radius = 0;
   std::shared_ptr<const EnvironmentLight> environment;  ///< its Environment must outlive the table; nullptr: none
   std::vector<AimSphere> aim;  ///< spheres to aim photons of directional lights and environment at; empty: no aiming
 };
 
-/// The triangles of table.surfaces[index] as lights of a frame, in the surface's order.
+/// The parts table.parts[index] as lights of a frame, in the same order.
 std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame);
 
 /// The segment's table. Evaluates all frames of the segment if an emitter moves, else one frame.
@@ -210,6 +210,7 @@ class Lights {
     return triangles_[slot].emitted_at(*frame_, slots_[slot].surface, slots_[slot].triangle, b1, b2);
   }
   std::size_t slot_at(double u) const;
+  std::uint32_t slot_at(std::uint32_t surface, std::uint32_t triangle, Vec3 on_light) const;
   Vec2 direction_numbers(std::size_t slot, const std::array<double, 4>& u) const;
   void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
                      PhotonEmission& e) const;
@@ -227,9 +228,10 @@ class Lights {
   Vec3 sphere_centre_;
   double sphere_radius_;
   std::vector<EmissionSlot> slots_;
-  std::vector<TriangleLight> triangles_;   ///< of the first slots, in the same order
-  std::vector<double> cumulative_;         ///< cumulative probability, by slot
-  std::vector<Rgb> photon_flux_;           ///< by slot: flux / probability, if all its photons carry the same flux
+  std::vector<TriangleLight> triangles_;  ///< of the first slots, in the same order
+  std::vector<double> cumulative_;        ///< cumulative probability, by slot
+  std::vector<Rgb> photon_flux_;          ///< by slot: flux / probability, if all its photons carry the same flux
+  std::vector<std::shared_ptr<const EmissionParts>> parts_;  ///< by surface; nullptr: the surface emits nothing
   std::vector<std::uint32_t> first_slot_;  ///< first slot of each surface; kNone: the surface emits nothing
   std::vector<std::uint32_t> tree_index_;  ///< by slot: number of its light in the tree; kNone: it emits nothing
   std::vector<std::uint32_t> tree_slot_;   ///< slot of each light in the tree

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/parallel_each.h"
 #include "lib/core/pi.h"
 #include "lib/core/sampling.h"
 #include "lib/light/spherical_triangle.h"
@@ -73,30 +72,35 @@ TriangleLight::TriangleLight(const Surface& surface, std::uint32_t index, const 
   two_sided = material.double_sided;
 }
 
-EmissionShares::EmissionShares(const SceneFrame& frame, std::uint32_t surface)
-    : alpha(frame.materials[frame.surfaces[surface].material].alpha) {
-  if (!emission_varies(frame.materials[frame.surfaces[surface].material])) return;
-  of.resize(frame.surfaces[surface].primitive->triangles.size());
-  parallel_each(of.size(), 1024, [&](std::size_t t) { of[t] = mean_emission_share(frame, surface, std::uint32_t(t)); });
-}
-
-TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index,
-                             const EmissionShares& shares)
-    : TriangleLight(frame.surfaces[surface], index, frame.materials[frame.surfaces[surface].material]) {
-  varies = !shares.of.empty();
-  if (varies) radiance = radiance * shares.of[index];
+TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, const EmissionPart& of, bool it_varies)
+    : TriangleLight(frame.surfaces[surface], of.triangle, frame.materials[frame.surfaces[surface].material]) {
+  varies = it_varies;
+  part = of.where;
+  if (varies) radiance = radiance * of.share;
+  if (part.size == 1) return;
+  corner = point(part.corner.x, part.corner.y);
+  edge1 = edge1 * part.size;
+  edge2 = edge2 * part.size;
+  area *= double(part.size) * double(part.size);
 }
 
 Rgb TriangleLight::varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1,
                               double b2) const {
-  return emission_at(frame, surface, index, float(b1), float(b2), 0) *
-         coverage_at(frame, surface, index, float(b1), float(b2));
+  const Vec2 b = part.at(b1, b2);
+  return emission_at(frame, surface, index, b.x, b.y, 0) * coverage_at(frame, surface, index, b.x, b.y);
 }
 
 Rgbd TriangleLight::flux() const { return Rgbd(radiance) * (kPiD * area * (two_sided ? 2 : 1)); }
 
 Vec3 TriangleLight::point(double b1, double b2) const {
   return Vec3(Vec3d(corner) + Vec3d(edge1) * b1 + Vec3d(edge2) * b2);
+}
+
+Vec2 TriangleLight::coordinates(Vec3 in_plane) const {
+  const Vec3d e1(edge1), e2(edge2), to = Vec3d(in_plane) - Vec3d(corner), n = cross(e1, e2);
+  const double square = dot(n, n);
+  if (!(square > 0)) return {0, 0};
+  return {float(dot(cross(to, e2), n) / square), float(dot(cross(e1, to), n) / square)};
 }
 
 bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample) {

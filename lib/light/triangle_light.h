@@ -1,25 +1,14 @@
-// lib/light/triangle_light.h -- one emissive triangle: draws points on it for a shading point, and evaluates their
-// pdf.
+// lib/light/triangle_light.h -- one emissive triangle, or a part of one: draws points on it for a shading point, and
+// evaluates their pdf.
 #pragma once
 
-#include <vector>
-
 #include "lib/core/vec.h"
+#include "lib/light/emission_parts.h"
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
 
-/// For each triangle, the mean of texture x alpha, by which the material's emission is multiplied. Frames at which the
-/// material has the same alpha have the same shares.
-struct EmissionShares {
-  float alpha = 1;
-  std::vector<Rgb> of;  ///< one per triangle, or empty if no texture or alpha changes the emission
-
-  EmissionShares() = default;
-  EmissionShares(const SceneFrame& frame, std::uint32_t surface);
-};
-
-/// An emissive triangle at a frame, scene space. The front is where the normal points.
+/// An emissive triangle, or a part of one, at a frame, scene space. The front is where the normal points.
 struct TriangleLight {
   Vec3 corner{}, edge1{}, edge2{};
   Vec3 normal{};       ///< unit; zero if the triangle has no area
@@ -29,13 +18,14 @@ struct TriangleLight {
   bool two_sided = false;
   /// If true, `radiance` is the mean over the triangle; emitted_at() gives the radiance of a point.
   bool varies = false;
+  TrianglePart part;  ///< of a triangle of the surface
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
-  /// A triangle of a surface of the frame. Where a texture or alpha makes its emission vary, radiance is the mean over
-  /// the triangle.
-  TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, const EmissionShares& shares);
-  /// Radiance at the barycentric coordinates (b1, b2), times the share of rays that alpha lets meet the triangle there.
+  /// A part of a triangle of a surface of the frame. If `varies`, radiance is the part's share of the emission.
+  TriangleLight(const SceneFrame& frame, std::uint32_t surface, const EmissionPart& part, bool varies);
+  /// Radiance at the barycentric coordinates (b1, b2) in this part of triangle `index`, times the share of rays that
+  /// alpha lets meet the triangle there.
   Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {
     return varies ? varying_at(frame, surface, index, b1, b2) : radiance;
   }
@@ -43,6 +33,8 @@ struct TriangleLight {
   bool emits() const { return area > 0 && max_component(radiance) > 0; }
   Rgbd flux() const;                       ///< W: pi L A, twice if two-sided
   Vec3 point(double b1, double b2) const;  ///< from the barycentric coordinates of corners 1 and 2
+  /// Barycentric coordinates in the plane of a point that lies in the plane; (0, 0) if there is no area.
+  Vec2 coordinates(Vec3 in_plane) const;
 
  private:
   Rgb varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const;

@@ -9,14 +9,25 @@
 namespace tempolux {
 namespace {
 
-/// The part of a texture that lies on a triangle.
+std::array<Vec2, 3> coordinates_of(const Surface& surface, std::uint32_t triangle, const Texture& texture,
+                                   const TrianglePart& part) {
+  std::array<Vec2, 3> at = corner_coordinates(*surface.primitive, surface.primitive->triangles[triangle], texture);
+  if (part.size == 1) return at;
+  const Vec2 along1{at[1].x - at[0].x, at[1].y - at[0].y}, along2{at[2].x - at[0].x, at[2].y - at[0].y};
+  const auto place = [&, origin = at[0]](Vec2 b) {
+    return Vec2{origin.x + along1.x * b.x + along2.x * b.y, origin.y + along1.y * b.x + along2.y * b.y};
+  };
+  return {place(part.at(0, 0)), place(part.at(1, 0)), place(part.at(0, 1))};
+}
+
+/// The piece of a texture that lies on a part of a triangle.
 class Spread {
  public:
-  Spread(const SceneFrame& frame, const Surface& surface, std::uint32_t triangle, const Texture& texture,
-         TextureTransfer transfer)
+  Spread(const SceneFrame& frame, const Surface& surface, std::uint32_t triangle, const TrianglePart& part,
+         const Texture& texture, TextureTransfer transfer)
       : texture_(texture),
         pyramid_(frame.images->pyramid(texture.image, transfer)),
-        at_(corner_coordinates(*surface.primitive, surface.primitive->triangles[triangle], texture)),
+        at_(coordinates_of(surface, triangle, texture, part)),
         lower_{std::min({at_[0].x, at_[1].x, at_[2].x}), std::min({at_[0].y, at_[1].y, at_[2].y})},
         upper_{std::max({at_[0].x, at_[1].x, at_[2].x}), std::max({at_[0].y, at_[1].y, at_[2].y})} {}
 
@@ -25,7 +36,7 @@ class Spread {
   float extent() const {
     return std::max((upper_.x - lower_.x) * float(pyramid_.width()), (upper_.y - lower_.y) * float(pyramid_.height()));
   }
-  /// The level of the pyramid whose texels are as large as one of cuts^2 equal parts of the triangle; at least 0.
+  /// The level of the pyramid whose texels are as large as one of cuts^2 equal pieces; at least 0.
   float level(int cuts) const {
     const Vec2 a{at_[1].x - at_[0].x, at_[1].y - at_[0].y}, b{at_[2].x - at_[0].x, at_[2].y - at_[0].y};
     const float texels = 0.5f * std::abs(a.x * b.y - a.y * b.x) * float(pyramid_.width()) * float(pyramid_.height());
@@ -46,24 +57,30 @@ class Spread {
 
 }  // namespace
 
-Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface_index, std::uint32_t triangle) {
+Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface_index, std::uint32_t triangle,
+                        const TrianglePart& part, Rgb whole) {
   const Surface& surface = frame.surfaces[surface_index];
   const Material& material = frame.materials[surface.material];
   if (!emission_varies(material)) return Rgb(1.0f);
   std::optional<Spread> emission, base_color;
   float extent = 0;
   if (material.textures && material.textures->emission) {
-    emission.emplace(frame, surface, triangle, material.textures->emission, TextureTransfer::srgb);
+    emission.emplace(frame, surface, triangle, part, material.textures->emission, TextureTransfer::srgb);
     if (!emission->any_colour()) return Rgb(0.0f);
     extent = emission->extent();
   }
   const bool covers = !lets_rays_pass(material);
   if (!covers && material.textures && material.textures->base_color) {
-    base_color.emplace(frame, surface, triangle, material.textures->base_color, base_color_transfer(material));
+    base_color.emplace(frame, surface, triangle, part, material.textures->base_color, base_color_transfer(material));
     extent = std::max(extent, base_color->extent());
   }
+  const auto vertex_alpha = [&](float u, float v) {
+    const Vec2 b = part.at(u, v);
+    return TextureSpot(frame, surface_index, triangle, b.x, b.y, 0).vertex_color()[3];
+  };
   constexpr int kMostCuts = 8;
-  const int cuts = extent < kMostCuts - 1 ? 2 + int(extent) : kMostCuts;
+  int cuts = extent < kMostCuts - 1 ? 2 + int(extent) : kMostCuts;
+  if (part.size != 1) cuts = std::max(2, int(kMostCuts * std::abs(part.size)));
   const float level = emission ? emission->level(cuts) : 0;
   Rgbd sum{0.0};
   for (int i = 0; i < cuts; ++i)
@@ -73,15 +90,27 @@ Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface_index, st
         const float u = (float(i) + third) / float(cuts), v = (float(j) + third) / float(cuts);
         Rgba value{1, 1, 1, 1};
         if (emission) value = emission->read(u, v, level);
-        const float alpha = covers ? 1
-                                   : (base_color ? base_color->read(u, v, 0)[3] : 1) *
-                                         TextureSpot(frame, surface_index, triangle, u, v, 0).vertex_color()[3];
+        const float alpha = covers ? 1 : (base_color ? base_color->read(u, v, 0)[3] : 1) * vertex_alpha(u, v);
         const double share = covers ? 1 : double(coverage(material, alpha));
         sum += Rgbd(Rgb{value[0], value[1], value[2]}) * share;
       }
   constexpr float kLeast = 0.01f;
   const Rgb mean(sum / double(cuts * cuts));
-  return {std::max(mean.r, kLeast), std::max(mean.g, kLeast), std::max(mean.b, kLeast)};
+  const Rgb least = whole * kLeast;
+  return {std::max(mean.r, least.r), std::max(mean.g, least.g), std::max(mean.b, least.b)};
+}
+
+float emission_texels(const SceneFrame& frame, std::uint32_t surface_index, std::uint32_t triangle) {
+  const Surface& surface = frame.surfaces[surface_index];
+  const Material& material = frame.materials[surface.material];
+  if (!material.textures) return 0;
+  float extent = 0;
+  const auto add = [&](const Texture& texture, TextureTransfer transfer) {
+    if (texture) extent = std::max(extent, Spread(frame, surface, triangle, {}, texture, transfer).extent());
+  };
+  add(material.textures->emission, TextureTransfer::srgb);
+  if (lets_rays_pass(material)) add(material.textures->base_color, base_color_transfer(material));
+  return extent;
 }
 
 }  // namespace tempolux

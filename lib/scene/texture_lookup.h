@@ -87,10 +87,26 @@ inline bool may_be_pane(const Material& material) {
 /// How the texture of the base colour is decoded.
 TextureTransfer base_color_transfer(const Material& material);
 
-/// Mean over a triangle of emission times coverage, as a share of the material's emission; 1 if neither varies. The
-/// triangle is cut into 4 to 64 similar parts of about a texel; each part is read at its centre, averaged over its
-/// size. The result is 0 if the texture is black everywhere on the triangle, else at least 0.01, so that no emitting
-/// triangle is sampled too rarely. It depends neither on the material's emission nor on the surface's shape.
-Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
+/// A part of a triangle that is similar to the triangle. Its corners have the barycentric coordinates `corner`,
+/// `corner` + (size, 0) and `corner` + (0, size); a negative size turns the part by half a turn.
+struct TrianglePart {
+  Vec2 corner{0, 0};
+  float size = 1;
+
+  /// Barycentric coordinates in the triangle of a point that has the coordinates (b1, b2) in the part.
+  Vec2 at(double b1, double b2) const { return {float(corner.x + size * b1), float(corner.y + size * b2)}; }
+};
+
+/// Mean over a part of a triangle of emission times coverage, as a share of the material's emission; 1 if neither
+/// varies. The part is cut into similar pieces of about a texel, 4 to 64 on a whole triangle and at least 4 on a
+/// smaller part. Each piece is read at its centre, averaged over its size. The result is 0 if the texture is black
+/// everywhere on the part, else at least 0.01 of `whole`, so that no emitting part is sampled too rarely; `whole` is 1,
+/// or the share of the whole triangle. The result depends neither on the material's emission nor on the surface's
+/// shape.
+Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle,
+                        const TrianglePart& part = {}, Rgb whole = Rgb(1.0f));
+/// Texels of the textures that make emission or coverage vary, along the longer side of the triangle's bounding
+/// rectangle in the texture; 0 if there is none.
+float emission_texels(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
 
 }  // namespace tempolux

@@ -149,6 +149,114 @@ TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
   EXPECT_NEAR(Lights(frames[1], table).total_flux().r, 8 * M_PI, 1e-4);
 }
 
+/// kLamp with a texture of 32 x 32 texels, black but for three: white, grey (half), and white.
+HandMadeScene lamp_of_texels(const std::array<float, 6>& transform = {1, 0, 0, 0, 1, 0},
+                             const std::vector<Vec2>& uvs = kLampUvs) {
+  constexpr std::size_t kSide = 32;
+  HandMadeScene scene;
+  Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
+  lamp.double_sided = false;
+  lamp.textures.emplace().emission = texture_of_image();
+  lamp.textures->emission.transform = transform;
+  std::vector<std::uint8_t> texels(3 * kSide * kSide, 0);
+  const auto set = [&](std::size_t x, std::size_t y, std::uint8_t code) {
+    for (std::size_t c = 0; c < 3; ++c) texels[3 * (y * kSide + x) + c] = code;
+  };
+  set(3, 20, 255);
+  set(4, 20, 188);
+  set(25, 9, 255);
+  scene.set_images({png_image(kSide, kSide, 3, texels)});
+  scene.add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
+  scene.set_uvs(uvs);
+  return scene;
+}
+
+// Three texels of 1024 shine. If the lamp were sampled evenly, 4 samples of 1000 would find light, and the mean square
+// would be about 400 times the square of the mean. Sampled by parts of about a texel, half of each part's neighbours'
+// area is dark at worst: below 5 times.
+TEST(EmissiveTexture, SamplesAndPhotonsGoWhereTheTextureShines) {
+  HandMadeScene scene = lamp_of_texels();
+  const Lights lights(scene.frame(), table_of(scene));
+  constexpr double kTexel = 4.0 / 1024;
+  const Vec3 point{0.3f, -0.2f, -1}, normal{0, 0, 1};
+  const auto expected_from = [&](float x, float y) {
+    const Vec3 to = Vec3{x, y, 1} - point;
+    return to.z * to.z / double(dot(to, to) * dot(to, to)) * kTexel;
+  };
+  const auto middle = [](int texel) { return -1 + (float(texel) + 0.5f) / 16; };
+  const double expected =
+                   2 * (expected_from(middle(3), middle(20)) + double(kHalf) * expected_from(middle(4), middle(20)) +
+                        expected_from(middle(25), middle(9))),
+               flux = M_PI * 2 * (2 + double(kHalf)) * kTexel;
+  double sum = 0, square = 0, photons = 0, photon_square = 0;
+  constexpr int kSide = 256;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const Vec2 u{(float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide};
+      LightSample light;
+      if (lights.sample(point, normal, u, light)) {
+        const double e = double(light.facing_irradiance.g) * double(std::max(0.0f, dot(light.wi, normal)));
+        sum += e / (kSide * kSide);
+        square += e * e / (kSide * kSide);
+      }
+      const double carried = double(lights.emit(std::array<double, 4>{u.x, u.y, 0.3, 0.6}).flux.g);
+      photons += carried / (kSide * kSide);
+      photon_square += carried * carried / (kSide * kSide);
+    }
+  EXPECT_NEAR(sum, expected, 0.01 * expected);
+  EXPECT_NEAR(photons, flux, 0.01 * flux);
+  EXPECT_LT(square, 5 * expected * expected);
+  EXPECT_LT(photon_square, 5 * flux * flux);
+}
+
+// MIS weighs paths that hit the lamp by the density of light samples. That density is 0 only where the lamp is dark,
+// and its integral over the lamp's solid angle is the probability that a sample is drawn, 1. sample() and
+// pdf_solid_angle() agree. Also for a texture that is turned, repeated or mirrored, for coordinates that are all
+// alike, and for coordinates that are not numbers.
+TEST(EmissiveTexture, DensityOfPartsHasTheIntegralOne) {
+  const float nan = std::nanf("");
+  const std::vector<Vec2> alike(4, {0.1f, 0.64f}), lost(4, {nan, nan});
+  std::vector<HandMadeScene> scenes;
+  scenes.push_back(lamp_of_texels());
+  scenes.push_back(lamp_of_texels({0.6f, 0.8f, 0.1f, -0.8f, 0.6f, 0.3f}));
+  scenes.push_back(lamp_of_texels({3, 0, 0.5f, 0, -2, 0.2f}));
+  scenes.push_back(lamp_of_texels({1e9f, 0, 0, 0, 1e9f, 0}));
+  scenes.push_back(lamp_of_texels({1, 0, 0, 0, 1, 0}, alike));
+  scenes.push_back(lamp_of_texels({1, 0, 0, 0, 1, 0}, lost));
+  for (std::size_t n = 0; n < scenes.size(); ++n) {
+    const SceneFrame& frame = scenes[n].frame();
+    const Lights lights(frame, build_emission_table({&frame, 1}));
+    const Vec3 point{0.1f, 0.4f, -0.5f}, normal{0, 0, 1};
+    if (n == 5 && lights.total_flux().g == 0) continue;  // reads one texel, which is black
+    double integral = 0;
+    constexpr int kSide = 512;
+    for (int i = 0; i < kSide; ++i)
+      for (int j = 0; j < kSide; ++j) {
+        const float b1 = (float(i) + 0.5f) / kSide, b2 = (float(j) + 0.37f) / kSide;
+        if (b1 + b2 >= 1) continue;
+        for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
+          const auto& corners = frame.surfaces[0].primitive->triangles[triangle];
+          const Vec3 p0 = frame.surfaces[0].position(corners[0]),
+                     at = p0 + (frame.surfaces[0].position(corners[1]) - p0) * b1 +
+                          (frame.surfaces[0].position(corners[2]) - p0) * b2,
+                     to = at - point;
+          const double pdf = double(lights.pdf_solid_angle(point, normal, 0, triangle, at)), d2 = double(dot(to, to));
+          integral += pdf * double(to.z) / (d2 * std::sqrt(d2)) * 4 / (kSide * kSide);
+          if (n == 0 && emission_at(frame, 0, triangle, b1, b2, 0).g > 0) { EXPECT_GT(pdf, 0) << at.x << " " << at.y; }
+        }
+      }
+    EXPECT_NEAR(integral, 1, 0.02) << n;
+    for (int i = 0; i < 200; ++i) {
+      LightSample light;
+      if (!lights.sample(point, normal, Vec2{(float(i) + 0.5f) / 200, float(i * 83 % 200) / 200}, light)) continue;
+      const double first = double(lights.pdf_solid_angle(point, normal, 0, 0, light.position)),
+                   second = double(lights.pdf_solid_angle(point, normal, 0, 1, light.position)),
+                   pdf = double(light.pdf_solid_angle);
+      EXPECT_LT(std::min(std::abs(first / pdf - 1), std::abs(second / pdf - 1)), 1e-3) << n << " " << i;
+    }
+  }
+}
+
 /// A horizontal square of side 2 at z = 0 of a material with alpha; u along x, v along y.
 HandMadeScene veil(Material::Alpha mode, float alpha, bool textured) {
   HandMadeScene scene;
