@@ -5,6 +5,7 @@
 
 #include "lib/gather/bright_points.h"
 #include "lib/gather/hemisphere.h"
+#include "lib/material/inside.h"
 
 namespace tempolux {
 void GatherRays::clear() {
@@ -25,7 +26,11 @@ bool GatherRays::aim(const GatherDirections& directions, std::uint32_t cell, std
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                          const GatherOptions& options)
-    : tracer_(tracer), reach_(tracer), incoming_(tracer, lights, points, options.bright), options_(options) {
+    : tracer_(tracer),
+      reach_(tracer),
+      around_(tracer),
+      incoming_(tracer, lights, points, options.bright),
+      options_(options) {
   for (std::size_t i = 0; i < strata_.size(); ++i)
     strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }
@@ -70,6 +75,13 @@ void FinalGather::follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot
   shot.distance.resize(shot.rays.size());
   shot.sources.resize(shot.rays.size());
   incoming_(shot.rays, shot.keys, shot.radiance, shot.distance, counts, shot.sources);
+  const Inside inside(around_(from.position, normal, from.offset));
+  for (std::size_t i = 0; inside.any() && i < shot.rays.size(); ++i) {
+    if (!(shot.distance[i] < INFINITY)) continue;
+    const Rgb passed = inside.transmittance_over(tracer_.frame().materials, shot.distance[i]);
+    shot.radiance[i] *= passed;
+    shot.sources[i].noise *= passed;
+  }
   const Bsdf bsdf = incoming_.bsdf_at(from, normal);
   if (!(bsdf.has_specular() && bsdf.has_diffuse())) return;
   for (std::size_t i = 0; i < shot.rays.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "lib/gather/incoming_radiance.h"
 #include "lib/gather/reachable_area.h"
 #include "lib/irradcache/records.h"
+#include "lib/trace/solid_around.h"
 
 namespace tempolux {
 
@@ -50,7 +51,7 @@ class FinalGather {
   /// how much. ray_share in [1/8, 1]: the share of `rays` that the place needs, rounded up to a power of two.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// Computes the light along the rays. Below a coat, light is weighted by Bsdf::arrival_weight, as photons are: the
-  /// coat reflects more of it at grazing angles.
+  /// coat reflects more of it at grazing angles. The absorbing solid around `from` absorbs along the rays' first parts.
   void follow(const SurfacePoint& from, Vec3 normal, GatherRays& shot, GatherCounts& counts) const;
   /// R [m], the harmonic mean distance of hits of cosine-distributed rays; infinite if all rays miss. Sends 64 rays,
   /// and 64 more at a time up to 512 until 8 have hit something; R then has a relative error of 1/3. These rays are
@@ -76,6 +77,7 @@ class FinalGather {
 
   const Tracer& tracer_;
   Reach reach_;
+  SolidAround around_;
   IncomingRadiance incoming_;
   GatherOptions options_;
   static constexpr std::size_t kFewer = 3;

@@ -14,7 +14,9 @@
 #include "lib/core/sobol.h"
 #include "lib/density/morton.h"
 #include "lib/material/bsdf.h"
+#include "lib/material/inside.h"
 #include "lib/material/surface_material.h"
+#include "lib/trace/solid_around.h"
 #include "lib/transport/direct_light.h"
 #include "lib/transport/media.h"
 
@@ -177,6 +179,7 @@ struct DirectLight {
   const Lights& lights;
   int samples;
   float offset = Reach(tracer).offset();
+  SolidAround around{tracer};
   bool looks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
 
   /// How the surface scatters; plain() if no surface of the scene needs more.
@@ -186,8 +189,13 @@ struct DirectLight {
   /// Irradiance [W/m^2]: the mean over the light samples.
   Rgb at(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random) const {
     Rgbd sum{0.0};
+    const Inside inside(around(point.position, point.normal, offset));
     for_samples(point, scattering, random, [&](const DirectSample& direct, const WayBits& bits) {
-      sum += Rgbd(direct.irradiance) * Rgbd(transmittance(tracer, direct.shadow, bits));
+      Rgbd passed(transmittance(tracer, direct.shadow, bits));
+      if (inside.any()) [[unlikely]]
+        passed *=
+            Rgbd(inside.transmittance_over(tracer.frame().materials, length(direct.light.position - point.position)));
+      sum += Rgbd(direct.irradiance) * passed;
     });
     return Rgb(sum / double(samples));
   }

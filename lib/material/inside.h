@@ -24,12 +24,17 @@ inline Rgb transmittance(const MaterialValues& m, float distance) {
 
 /// The solids that a path is inside. A path enters a solid by crossing a front, and leaves it by crossing a back.
 /// Solids are identified by their materials; crossing a back of another material leaves the innermost solid. Only the
-/// innermost solid absorbs. If more than kDeepest solids are nested, the outermost is forgotten. A path may start
-/// inside a solid. If it meets a back without having entered a solid, the distance since its last hit counts as inside
-/// the back's solid. A path that leaves the scene counts as outside of all solids, so an open solid does not absorb
-/// light that escapes.
+/// innermost solid absorbs. If more than kDeepest solids are nested, the outermost is forgotten.
+/// A path may start inside a solid; the caller names the solid if it absorbs (SolidAround). If a path meets a back
+/// without having entered a solid, the distance since its last hit counts as inside the back's solid. A path that
+/// leaves the scene counts as outside of all solids, so an open solid does not absorb light that escapes.
 class Inside {
  public:
+  Inside() = default;
+  /// `start`: material of the solid in which the path starts; kNone: outside.
+  explicit Inside(std::uint32_t start) {
+    if (start != kNone) enter(start);
+  }
   bool any() const { return count_ > 0; }  ///< true if the path is inside a solid
   /// Transmittance [1] of the last `distance` m before a surface of material `met`. front: the path arrives at the
   /// surface's front.

@@ -15,6 +15,7 @@
 #include "lib/photon/photon_path.h"
 #include "lib/photon/pilot_signature.h"
 #include "lib/scene/texture_lookup.h"
+#include "lib/trace/solid_around.h"
 
 namespace tempolux {
 namespace {
@@ -176,6 +177,22 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
     const bool light_moves = slot.light != kNone && frame.segment.moves(frame.lights[slot.light].node);
     slot_moves_.push_back(surface_moves || light_moves);
   }
+  find_solids_of_lights();
+}
+
+/// Finds the absorbing solid in which each light is; a surface's first triangle stands for all of its triangles.
+void PhotonTracer::find_solids_of_lights() {
+  const SolidAround around(tracer_);
+  if (!around.any()) return;
+  for (const EmissionSlot& slot : lights_.slots()) {
+    const bool placed = slot.kind == EmissionSlot::Kind::point || slot.kind == EmissionSlot::Kind::spot;
+    if (slot.kind == EmissionSlot::Kind::triangle && slot.triangle > 0) slot_inside_.push_back(slot_inside_.back());
+    else if (slot.kind == EmissionSlot::Kind::triangle) {
+      const Hit middle{0, slot.surface, slot.triangle, 1.0f / 3, 1.0f / 3};
+      const SurfacePoint point = tracer_.surface_point(middle);
+      slot_inside_.emplace_back(around(point.position, point.normal_geometric, point.offset));
+    } else slot_inside_.emplace_back(placed ? around(tracer_.frame().lights[slot.light].position, {}, 0) : kNone);
+  }
 }
 
 PhotonBatch PhotonTracer::trace(std::size_t number) const {
@@ -259,6 +276,10 @@ std::size_t PhotonTracer::start(std::span<const std::uint64_t> numbers, std::uin
     if (watch_) wave.touched[i] = slot_moves_[e.slot] ? watch_->all() : 0;
     path.random = PathRandom(options_.seed, numbers[i]);
     path.flux = e.flux * share;
+    if (!slot_inside_.empty()) [[unlikely]] {
+      path.inside = slot_inside_[e.slot];
+      path.flux *= path.inside.index_squared(tracer_.frame().materials);  // as index_squared_of_start does
+    }
     path.ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
     path.balance = batch.by_path ? &batch.balance_of[first_path + i] : &batch;
     if (wave.moved) [[unlikely]]

@@ -13,6 +13,7 @@
 #include "lib/core/random.h"
 #include "lib/light/lights.h"
 #include "lib/material/bsdf.h"
+#include "lib/material/inside.h"
 #include "lib/trace/mover_watch.h"
 #include "lib/trace/trace.h"
 #include "lib/volume/medium.h"
@@ -157,6 +158,7 @@ class PhotonTracer {
   void follow(std::span<const std::uint64_t> numbers, std::uint32_t first_path, PhotonBatch& batch) const;
   std::size_t start(std::span<const std::uint64_t> numbers, std::uint32_t first_path, Wave& wave,
                     PhotonBatch& batch) const;
+  void find_solids_of_lights();
   std::size_t leave_planes_of_lights(std::size_t arrived, Wave& wave, PhotonBatch& batch) const;
   bool moves(const Hit& hit) const { return hit.surface >= tracer_.frame().static_count; }
   std::size_t fly(std::uint32_t bounce, std::size_t count, Wave& wave, std::size_t& scattered_count,
@@ -181,6 +183,7 @@ class PhotonTracer {
   std::vector<std::uint8_t> varies_;        ///< by material: true if it has textures or lets rays pass (alpha)
   std::uint64_t group_count_, members_, batches_per_group_;
   const MoverWatch* watch_ = nullptr;
+  std::vector<Inside> slot_inside_;  ///< by slot: the absorbing solid that the light is in; empty: no solid absorbs
   std::vector<char> slot_moves_;  ///< by slot of the emission table: true if the light moves or changes
 };
 

@@ -10,33 +10,37 @@
 #include "lib/core/random.h"
 #include "lib/density/photon_view.h"
 #include "lib/photon/photon_trace.h"
+#include "lib/render/frame_noise.h"
 
 namespace tempolux {
 namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr double kFewest = 32;  ///< least effective number of contributions from which a variance is estimated
+constexpr std::size_t kLooks = 4;  ///< paths of a pixel whose layer specular is audited
+constexpr double kFewest = 32;     ///< least effective number of contributions from which a variance is estimated
 /// Factor for standard errors from 32 audits. Student's t with 31 degrees of freedom exceeds 3 times this factor as
 /// rarely as a normally distributed number exceeds 3.
 constexpr double kStudent = 3.25 / 3;
 /// Cost in rays of a frame: of one light path with its photons in view, and of one camera path.
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
 constexpr int kStep = 2;  ///< expect() computes one pixel in each square of this edge
-constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8;
+constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8,
+                        kSpecularKey = 0x6d6972726full << 8;
 
 }  // namespace
 
-AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool paths, std::uint64_t seed) {
-  const double each =
-      share * double(rays.camera + rays.bounce + rays.shadow) / std::max(1.0, double(photons) + double(paths));
+AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool paths, bool specular,
+                         std::uint64_t seed) {
+  const double each = share * double(rays.camera + rays.bounce + rays.shadow) /
+                      std::max(1.0, double(photons) + double(paths) + double(specular));
   const auto count = [&](bool wanted, double cost) { return wanted ? std::uint64_t(std::ceil(each / cost)) : 0; };
-  return {count(photons, kRaysOfPhoton), count(paths, kRaysOfPath), seed};
+  return {count(photons, kRaysOfPhoton), count(paths, kRaysOfPath), count(specular, kRaysOfPath), seed};
 }
 
 FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
-                       std::span<const std::uint8_t> mask)
-    : view_(view), frame_(frame), mask_(mask), object_part_(objects.size()) {
+                       std::span<const std::uint8_t> mask, const Inside& camera_inside)
+    : view_(view), frame_(frame), mask_(mask), camera_inside_(camera_inside), object_part_(objects.size()) {
   parts_.push_back({"picture"});
   for (int j = 0; j < kTilesAcross; ++j)
     for (int i = 0; i < kTilesAcross; ++i)
@@ -58,6 +62,7 @@ FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::
     });
   }
   picture_ = mean_to_white(frame.mean.pixels, mask_) * double(parts_[0].pixels);
+  white_ = 1 / exposure_of(frame.mean.pixels, mask_);
 }
 
 /// Calls body(part) for the picture, for the pixel's tile and for the pixel's object.
@@ -85,7 +90,7 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
   struct Seen : Splat {
     double flux = 0;
   };
-  const PhotonSplats camera(tracer, view_);
+  const PhotonSplats camera(tracer, view_, camera_inside_);
   std::array<std::vector<Seen>, kAudits> seen;
   parallel_each(kAudits, 1, [&](std::size_t k) {
     PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
@@ -179,6 +184,67 @@ void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) 
     }
 }
 
+/// Pixels whose middle shows a surface with S lobes. What the frame shows does not decide, as its noise would.
+std::vector<std::size_t> FrameAudit::specular_pixels(const RenderScene& scene) const {
+  const auto width = std::size_t(view_.width());
+  return parallel_found<std::size_t>(object_part_.size(), 4096, [&](std::size_t p, std::vector<std::size_t>& found) {
+    Hit hit;
+    if ((mask_.empty() || mask_[p]) &&
+        scene.tracer.intersect(view_.ray(float(p % width) + 0.5f, float(p / width) + 0.5f), hit) &&
+        lobes_of(scene.frame().materials[scene.tracer.surface_point(hit).material]).specular)
+      found.push_back(p);
+  });
+}
+
+void FrameAudit::add_specular(const RenderScene& scene, const AuditEffort& effort) {
+  const std::vector<std::size_t> pixels = specular_pixels(scene);
+  const std::size_t count = (effort.specular_paths + kAudits * kLooks - 1) / (kAudits * kLooks);
+  if (pixels.empty() || count == 0) return;
+  struct Found {
+    std::size_t pixel = 0;
+    double shown = 0, light = 0;  ///< of the paths that count, over kLooks
+  };
+  constexpr auto layer = std::size_t(Layer::specular);
+  std::vector<Found> found(kAudits * count);
+  parallel_each(found.size(), 16, [&](std::size_t i) {
+    const std::uint64_t seed = mix64(effort.seed ^ (kSpecularKey + i / count));
+    const std::size_t run = i % count;
+    const float within = PathRandom(seed ^ 1, run).get1(0, Purpose::pixel);
+    const std::size_t at = std::size_t((double(run) + double(within)) * double(pixels.size()) / double(count));
+    const std::size_t pixel = found[i].pixel = pixels[std::min(pixels.size() - 1, at)],
+                      width = std::size_t(view_.width());
+    const double shown = channel_mean(Rgbd(frame_.mean.pixels[pixel].value[layer]));
+    std::array<double, kLooks> light{}, mirrored{};
+    for (std::size_t s = 0; s < kLooks; ++s) {
+      const PixelRandom random(seed, run, std::uint32_t(s));
+      const Vec2 jitter = random.get2(0, Purpose::pixel);
+      const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
+      RayCounts rays;
+      Hit first;
+      scene.tracer.intersect(ray, first);
+      const PathParts path =
+          trace_eye_path(scene, ray, first, random, nullptr, rays, view_.cone(), effort_of(std::uint32_t(s)));
+      light[s] = channel_mean(Rgbd(path.sum().value[layer]));
+      mirrored[s] = channel_mean(Rgbd(path.mirrored));
+    }
+    for (std::size_t s = 0; s < kLooks; ++s) {
+      double brightest = 0;
+      for (std::size_t o = 0; o < kLooks; ++o)
+        if (o != s) brightest = std::max(brightest, mirrored[o]);
+      if (brightest > white_) continue;
+      found[i].shown += shown / kLooks, found[i].light += light[s] / kLooks;
+    }
+  });
+  const double pixels_of_look = double(pixels.size()) / double(count);
+  for (Sums& sums : sums_) sums.shown[layer] = 0;
+  for (const Found& look : found)
+    for_parts_of(look.pixel, [&](std::size_t p) { sums_[p].shown[layer] += pixels_of_look * look.shown / kAudits; });
+  for (Sums& sums : sums_) sums.light[layer].fill(sums.shown[layer]);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (const double differs = found[i].light - found[i].shown; differs != 0)
+      add(i / count, found[i].pixel, layer, pixels_of_look * differs);
+}
+
 AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   const Sums& sums = sums_[part];
   const double n = double(parts_[part].pixels);
@@ -205,7 +271,7 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
 
 std::vector<AuditEntry> FrameAudit::entries() const {
   std::vector<AuditEntry> entries;
-  for (const Layer layer : kAudited)
+  for (const Layer layer : {Layer::specular, Layer::direct, Layer::caustic, Layer::indirect})
     for (std::size_t part = 0; part < parts_.size(); ++part) {
       if (parts_[part].pixels == 0) continue;
       const AuditEntry found = entry(part, std::size_t(layer));

@@ -99,6 +99,7 @@ class EyeTracer {
                     Layers& result) const;
   void sample_lamp_spots(const Vertex& at, const PathState& state, const PixelRandom& random, Layers& result) const;
   void add_light(const Vertex& at, const PathState& state) const;
+  void add_met(Rgb light, const PathState& state) const;
   void arrive(const SurfacePoint& point, PathState& state) const;
   void add_known_light(Vertex& at, Vec3 smooth, const PathState& state) const;
   bool leave(const Vertex& at, PathState& state) const;
@@ -298,6 +299,12 @@ void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const Pat
   }
 }
 
+/// Adds light of a lamp or of the sky that the path meets.
+void EyeTracer::add_met(Rgb light, const PathState& state) const {
+  (*state.result)[state.path.layer()] += light;
+  if (state.path.sharp() && state.path.layer() == Layer::specular) parts_.mirrored += light;
+}
+
 /// Applies the absorption of glass between the last vertex and a surface, and adds the surface's emission.
 void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
   const SceneFrame& frame = scene_.frame();
@@ -308,8 +315,7 @@ void EyeTracer::arrive(const SurfacePoint& point, PathState& state) const {
   state.cone.advance(state.hit.t);
   state.distance += state.spread * state.hit.t;
   if (state.light_counts())
-    (*state.result)[state.path.layer()] +=
-        state.throughput * weighed_emission(scene_.lights, point, wo, state.last, state.cone.width);
+    add_met(state.throughput * weighed_emission(scene_.lights, point, wo, state.last, state.cone.width), state);
 }
 
 /// Continues the path from a surface. If the path forks, `state` follows one lobe, and a copy follows the other to its
@@ -405,8 +411,7 @@ bool EyeTracer::step(PathState& state) const {
   Layers& result = *state.result;
   if (state.hit.surface == kNone) {
     if (scene_.lights.has_environment() && state.light_counts())
-      result[state.path.layer()] +=
-          state.throughput * weighed_environment(scene_.lights, state.ray.direction, state.last);
+      add_met(state.throughput * weighed_environment(scene_.lights, state.ray.direction, state.last), state);
     return false;
   }
   parts_.own.coverage = 1;
@@ -442,7 +447,7 @@ PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const 
   PathParts parts;
   ++counts.camera;
   EyeTracer(scene, known, effort, counts, parts)
-      .follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, {}, {}});
+      .follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, scene.camera_inside, {}});
   return parts;
 }
 

@@ -7,6 +7,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sobol.h"
 #include "lib/light/lights.h"
+#include "lib/material/inside.h"
 #include "lib/material/surface_material.h"
 #include "lib/trace/trace.h"
 
@@ -155,6 +156,7 @@ struct PathParts {
   Layers lit;                  ///< light sampled at the first matte surface
   Layers onward;               ///< light found by rays from the first matte surface's Lambert lobe
   StoredNoise stored_noise{};  ///< not included in `own`
+  Rgb mirrored{0.0f};          ///< part of `own`: lamps and sky that the camera sees by events S alone
   Layers sum() const { return own + (lit + onward); }
 };
 
@@ -174,6 +176,7 @@ struct RenderScene {
   /// At each surface, sample a directional light and also one of the other lights. With one sample for both, the choice
   /// between them is half of the noise.
   bool suns_apart = false;
+  Inside camera_inside{};  ///< the absorbing solid in which camera paths start
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 

@@ -81,6 +81,7 @@ std::optional<Splat> PhotonSplats::splat(const formats::Photon& photon, Vec3d sh
   radiance *= float(double(std::abs(dot(x.normal_geometric, wo))) / area);
   if (const Media* const media = frame.media.get()) [[unlikely]]
     radiance *= float(std::exp(-media->optical_depth(ray.origin, ray.direction, distance)));
+  radiance *= camera_inside_.transmittance_over(frame.materials, distance);
   const auto column = std::uint32_t((*raster)[0]), row = std::uint32_t((*raster)[1]);
   return Splat{row * std::uint32_t(view_.width()) + column, *layer, radiance};
 }

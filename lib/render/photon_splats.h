@@ -25,7 +25,7 @@ struct Splat {
 /// already includes the coat's transmittance for the photon's own direction. n is the triangle's normal, d the distance
 /// from the camera, depth the distance along the view axis, and a the area of a pixel on the plane at depth 1. (A pixel
 /// sees the solid angle a depth^3 / d^3.) For an orthographic camera the divisor is a. V is the transmittance of media
-/// if a ray from the camera meets x, else 0.
+/// and of the solid that the camera is in if a ray from the camera meets x, else 0.
 ///
 /// The sum over the photons of a map is an unbiased estimate of the layer of their kind, in each pixel and over any set
 /// of pixels, if the map stores all photons of this kind. It needs no density estimate, points or records. Light that
@@ -35,8 +35,9 @@ struct Splat {
 /// Veach 1997, 10.1.2]
 class PhotonSplats {
  public:
-  /// Both arguments must outlive this object.
-  PhotonSplats(const Tracer& tracer, const CameraView& view) : tracer_(tracer), view_(view) {}
+  /// `tracer` and `view` must outlive this object.
+  PhotonSplats(const Tracer& tracer, const CameraView& view, const Inside& camera_inside = {})
+      : tracer_(tracer), view_(view), camera_inside_(camera_inside) {}
 
   /// `shift` [m] is added to the photon's position to bring it into scene space. wi: its direction (unit, towards where
   /// it came from), if the map stores directions. Empty if the camera does not see the photon, or if its kind is volume
@@ -48,6 +49,7 @@ class PhotonSplats {
 
   const Tracer& tracer_;
   const CameraView& view_;
+  Inside camera_inside_;  ///< the absorbing solid that the camera is in
 };
 
 }  // namespace tempolux

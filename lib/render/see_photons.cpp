@@ -104,7 +104,7 @@ SeenPhotons joined(std::span<const SeenFlux> seen, std::span<const SeenFlux> beh
 
 SeenLight see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons) {
   const std::vector<std::optional<SeenPoint>> places = places_behind(scene, view);
-  const PhotonSplats splats(scene.tracer, view);
+  const PhotonSplats splats(scene.tracer, view, scene.camera_inside);
   const auto of_kind = [&](formats::PathKind kind) {
     std::vector<SeenFlux> seen(photons.photons.size());
     parallel_each(photons.photons.size(), 64, [&](std::size_t i) {

@@ -14,7 +14,12 @@ namespace tempolux::tools {
 namespace {
 
 /// Frames sample direct light themselves, so its audit only tests the audit.
-constexpr std::array<const char*, 2> kLayers{"caustic", "indirect"};
+struct AuditedLayer {
+  const char *name, *in_words;
+};
+constexpr std::array<AuditedLayer, 3> kLayers{
+    {{"caustic", "caustic light"}, {"indirect", "indirect light"}, {"specular", "light in mirrors and glass"}}};
+constexpr std::size_t kMatte = 2;  // the first layers are light on surfaces that the camera sees
 
 /// Sums of one layer over the frames.
 struct Sum {
@@ -29,6 +34,10 @@ struct Sum {
   bool biased() const { return std::abs(mean()) > kAuditLimit && std::abs(mean()) > kAuditErrors * error(); }
   /// True if the layer's audited light is a share of the picture below the limit: no error of such a layer is seen.
   bool faint() const { return std::abs(share) < kAuditLimit * std::abs(of_layer); }
+  /// Three errors are as much as the whole layer, and more than the limit: the audit met too little of its light.
+  bool unknown() const {
+    return kAuditErrors * std::sqrt(of_layer_square) > frames && kAuditErrors * error() > kAuditLimit && !biased();
+  }
 };
 
 /// A percentage with as many decimals as the error needs to show its first digit.
@@ -71,26 +80,34 @@ FramesAccount account_of_frames(const std::vector<std::string>& files) {
     ExrReadOptions attributes;  // and one channel: an EXR image without any is invalid
     attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
     const Image image = load_exr(file, attributes);
-    for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l], file, sums[l]);
+    for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l].name, file, sums[l]);
     unbiased += number(image, "audit.unbiased") != nullptr;
   }
   FramesAccount account;
   bool audited = false;
   if (unbiased == files.size()) account.line = "no bias, as camera paths find all light";
+  std::string unknown;
   for (std::size_t l = 0; l < kLayers.size(); ++l) {
     const Sum& sum = sums[l];
-    audited |= sum.frames > 0;
+    audited |= sum.frames > 0 && l < kMatte;
+    if (sum.frames > 0 && sum.unknown()) {
+      unknown += (unknown.empty() ? "" : " and ") + std::string(kLayers[l].in_words);
+      continue;
+    }
     if (sum.frames == 0 || (sum.faint() && !sum.biased())) continue;
-    std::string text = std::string(kLayers[l]) + " light " +
+    std::string text = std::string(kLayers[l].in_words) + " " +
                        percent(sum.of_layer / sum.frames, std::sqrt(sum.of_layer_square) / sum.frames);
     if (sum.biased() && !sum.worst_name.empty())
       text += ", most by " + sum.worst_name + " (" + percent(sum.worst, sum.worst_error) + " of the picture)";
     account.line += (account.line.empty() ? "audit: " : ", ") + text;
     if (sum.biased())
-      account.warnings.push_back(std::string(kLayers[l]) + " light is off by " + percent(sum.mean(), sum.error()) +
+      account.warnings.push_back(std::string(kLayers[l].in_words) + " is off by " + percent(sum.mean(), sum.error()) +
                                  " of the picture; more photons (PHOTONS), more points (POINTS=\"--point-count N\") or "
                                  "another INDIRECT mend it");
   }
+  if (!unknown.empty())
+    account.line +=
+        (account.line.empty() ? "audit: " : ", ") + unknown + " not known, as too few of the tested paths bring it";
   if (audited && account.line.empty()) account.line = "audit: indirect and caustic light are below 2 % of the picture";
   return account;
 }

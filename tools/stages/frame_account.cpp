@@ -49,9 +49,12 @@ std::string in_words(const AuditEntry& part, const std::vector<std::string>& obj
 
 std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit,
                        const std::vector<std::string>& object_names) {
-  std::string line = std::string(kLayerNames[std::size_t(of.layer)]) + " light " +
-                     percent(of.of_layer(), of.of_layer_error()) + " (" + percent(of.share(), of.share_error()) +
-                     " of the picture)";
+  const std::string name = of.layer == Layer::specular ? "light in mirrors and glass "
+                                                       : std::string(kLayerNames[std::size_t(of.layer)]) + " light ",
+                    share = percent(of.share(), of.share_error()) + " of the picture";
+  if (kAuditErrors * of.of_layer_error() > 1 && kAuditErrors * of.share_error() > kAuditLimit && !is_biased(of))
+    return name + "not known, as too few of the tested paths bring it (" + share + ")";
+  std::string line = name + percent(of.of_layer(), of.of_layer_error()) + " (" + share + ")";
   for (const char* kind : {"object", "tile"})
     if (const AuditEntry* worst = worst_of(audit, of.layer, kind))
       line += ", " + in_words(*worst, object_names) + " " + percent(worst->of_layer(), worst->of_layer_error());

@@ -15,6 +15,7 @@
 #include "lib/render/places_seen.h"
 #include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
+#include "lib/trace/solid_around.h"
 #include "tools/stages/base_frame.h"
 #include "tools/stages/frame_account.h"
 #include "tools/stages/frame_output.h"
@@ -90,6 +91,7 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
 /// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
 /// - All light if the scene has a sun and a mirror or smooth glass: photons, because no camera path meets a sun via a
 ///   smooth surface.
+/// - What mirrors and glass show (layer specular): camera paths, if they find all of its light.
 /// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
 /// true.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Shot& shot, bool& unbiased) {
@@ -97,22 +99,24 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   const RenderScene& scene = shot.scene;
   const CameraView& view = shot.view;
   const bool hidden = scene.lights.has_suns() && first_smooth_material(scene.frame()) != kNone,
-             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed();
+             paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed(),
+             specular = !options.traces_paths() && !may_hide_light(scene.frame());
   unbiased = paths && !photons && options.traces_paths();
   if (unbiased) return {};
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   const Tracer& tracer = scene.tracer;
-  AuditEffort effort = audit_effort(options.audit, shot.rendered.rays, photons, paths,
+  AuditEffort effort = audit_effort(options.audit, shot.rendered.rays, photons, paths, specular,
                                     mix64(shot.options.seed + std::uint64_t(tracer.frame().frame)));
   const auto measure = [&] {
-    FrameAudit audit(view, shot.rendered, ids.channels.front().ids, shot.options.mask);
+    FrameAudit audit(view, shot.rendered, ids.channels.front().ids, shot.options.mask, scene.camera_inside);
     if (photons) audit.add_photons(tracer, shot.aimed(hidden ? Lights::Which::all : Lights::Which::placed), effort);
     if (paths) {
       const Lights distant(tracer.frame(), shot.emission, Lights::Which::distant);
-      audit.add_paths({tracer, distant, distant.has_suns()}, effort);
+      audit.add_paths({tracer, distant, distant.has_suns(), scene.camera_inside}, effort);
     }
+    if (specular) audit.add_specular(scene, effort);
     return audit.entries();
   };
   const std::vector<AuditEntry> entries = measure();
@@ -121,7 +125,8 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   };
   if (std::ranges::none_of(entries, warns)) return entries;
   // In one of a hundred unbiased frames chance alone gives such a figure. A larger audit with another seed decides.
-  effort.photon_paths *= kAuditAgain, effort.eye_paths *= kAuditAgain, effort.seed = mix64(effort.seed);
+  effort.photon_paths *= kAuditAgain, effort.eye_paths *= kAuditAgain, effort.specular_paths *= kAuditAgain;
+  effort.seed = mix64(effort.seed);
   return measure();
 }
 
@@ -156,7 +161,8 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   const Tracer tracer(frame, tree);
   Lights lights(frame, input.emission(frame.frame));
   const bool is_reference = options.integrator == "path";
-  const RenderScene scene{tracer, lights, !is_reference && lights.has_suns()};
+  const SolidAround around(tracer);
+  const RenderScene scene{tracer, lights, !is_reference && lights.has_suns(), Inside(around(view.eye(), {}, 0))};
   if (!is_reference && lights.has_environment()) lights = guided_lights(scene, view);
   const IndirectLight light(tool, options.light, scene, tool.common().seed_for_frame(number), number);
 

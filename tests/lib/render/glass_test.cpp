@@ -5,6 +5,7 @@
 
 #include "lib/material/bsdf.h"
 #include "lib/render/path_tracer.h"
+#include "lib/trace/solid_around.h"
 #include "tests/support/layers.h"
 #include "tests/support/materials.h"
 #include "tests/support/mean.h"
@@ -43,6 +44,25 @@ double fresnel(double cos_o, double index) {
   const double c = std::sqrt(1 - (1 - cos_o * cos_o) / (index * index));
   const double rs = (cos_o - index * c) / (cos_o + index * c), rp = (index * cos_o - c) / (index * cos_o + c);
   return (rs * rs + rp * rp) / 2;
+}
+
+/// A camera in coloured water looks down at a matte floor 1 m below, under a lamp beside the camera: Beer's law over 2 m.
+TEST(GlassPaths, CameraInsideASolidSeesThroughIt) {
+  HandMadeScene scene;
+  Material water = glass(0);
+  water.attenuation_color = Rgb(0.5f);
+  water.attenuation_distance = 1;
+  scene.add_box({-9, -9, -9}, {9, 9, 9}, water);
+  scene.add_quad({-4, -1, 4}, {4, -1, 4}, {4, -1, -4}, {-4, -1, -4}, matte(Rgb(0.5f)));
+  scene.add_point_light({0.01f, 0, 0}, Rgb(1.0f));
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const RenderScene seen{tracer, lights, false, Inside(SolidAround(tracer)({0, 0, 0}, {}, 0))};
+  RayCounts counts;
+  const Layers light =
+      trace_eye_path(seen, {{0, 0, 0}, {0, -1, 0}, 0, INFINITY}, PixelRandom(5, 0, 0), nullptr, counts);
+  EXPECT_NEAR(double(light[Layer::direct].g), 0.5 / M_PI * 0.25, 1e-3);
 }
 
 /// A slab 0.2 m thick with the transmittance a along the path inside: T = (1-F)^2 a / (1 - F^2 a^2). The radiance is
