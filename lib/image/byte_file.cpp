@@ -43,7 +43,9 @@ void ByteFile::read_at(std::uint64_t offset, void* to, std::size_t count) const 
 }
 
 void BufferedFile::read_at(std::uint64_t offset, void* to, std::size_t count) {
-  if (count >= buffer_.size() || offset + count > file_.size()) return file_.read_at(offset, to, count);
+  // Offsets come from files, so sums with them may overflow. A read from the end on throws.
+  if (count > file_.size() - std::min(offset, file_.size())) return file_.read_at(file_.size(), to, count);
+  if (count == 0 || count >= buffer_.size()) return file_.read_at(offset, to, count);
   if (offset < start_ || offset + count > start_ + filled_) {
     start_ = offset;
     filled_ = std::size_t(std::min<std::uint64_t>(buffer_.size(), file_.size() - offset));
