@@ -10,18 +10,6 @@ namespace {
 
 constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-int component_size(int component_type) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default: return 0;
-  }
-}
-
 int component_count(int type) {
   switch (type) {
     case TINYGLTF_TYPE_SCALAR: return 1;
@@ -86,7 +74,7 @@ void check_sparse(const Import& import, const tinygltf::Accessor& accessor, cons
       sparse.values.byteOffset < 0)
     import.fail(place, "sparse part is larger than the accessor or has a negative offset");
   const int index_type = sparse.indices.componentType;
-  const int index_size = component_size(index_type);
+  const int index_size = component_bytes(index_type);
   if (index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
     import.fail(place, "sparse indices must be unsigned integers");
@@ -101,7 +89,7 @@ void check_sparse(const Import& import, const tinygltf::Accessor& accessor, cons
 void check_accessor(const Import& import, std::size_t index) {
   const tinygltf::Accessor& accessor = import.model.accessors[index];
   const std::string place = place_of("accessors", index, accessor.name);
-  const int component = component_size(accessor.componentType), components = component_count(accessor.type);
+  const int component = component_bytes(accessor.componentType), components = component_count(accessor.type);
   if (component == 0)
     import.fail(place, "componentType " + std::to_string(accessor.componentType) + " is not one of glTF's");
   if (components == 0) import.fail(place, "type is not one of glTF's");
@@ -145,7 +133,7 @@ const unsigned char* view_bytes(const tinygltf::Model& model, int view_index, st
 
 /// Copies a sparse accessor densely and applies its replacements.
 void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::string& place, Elements& elements) {
-  const std::uint64_t size = std::uint64_t(component_size(accessor.componentType) * elements.components);
+  const std::uint64_t size = std::uint64_t(component_bytes(accessor.componentType) * elements.components);
   std::uint64_t bytes = 0;
   if (__builtin_mul_overflow(size, elements.count, &bytes)) bytes = kNoLimit;
   import.take_memory(bytes, place);
@@ -161,7 +149,7 @@ void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::s
     const unsigned char* values =
         view_bytes(import.model, sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset));
     for (std::uint64_t i = 0; i < std::uint64_t(sparse.count); ++i) {
-      const std::uint64_t target = read_index(indices + i * std::uint64_t(component_size(index_type)), index_type);
+      const std::uint64_t target = read_index(indices + i * std::uint64_t(component_bytes(index_type)), index_type);
       if (target >= elements.count)
         import.fail(place, "sparse index " + std::to_string(target) + " is beyond the accessor's " +
                                std::to_string(elements.count) + " elements");
@@ -186,7 +174,7 @@ Elements open_accessor(Import& import, int index, int components, const std::str
     import.fail(place, "accessor " + std::to_string(index) + " has another type than is needed here (" +
                            std::to_string(components) + " numbers per element)");
   if (accessor.bufferView != -1) {
-    const std::uint64_t size = std::uint64_t(component_size(accessor.componentType) * components);
+    const std::uint64_t size = std::uint64_t(component_bytes(accessor.componentType) * components);
     elements.first = view_bytes(import.model, accessor.bufferView, accessor.byteOffset);
     elements.stride = stride_of(import.model, accessor, size);
   }

@@ -2,6 +2,7 @@
 #include "lib/scene/gltf_json.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -68,6 +69,36 @@ class Counter final : public nlohmann::json_sax<Json> {
 // ---- types ----------------------------------------------------------------------------------------------
 
 enum class Type { boolean, string, number, numbers, index, indices, size, strings, index_map, object, objects };
+
+bool is_whole(Json& value, double limit) {
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    if (!(number >= 0 && number < 9e15 && number == std::floor(number))) return false;
+    value = std::uint64_t(number);
+  }
+  return value.is_number_unsigned() && double(value.get<std::uint64_t>()) <= limit;
+}
+bool is_index(Json& value) { return is_whole(value, 2147483647.0); }
+bool all_of(Json& values, bool (*test)(Json&)) { return std::all_of(values.begin(), values.end(), test); }
+
+/// What a property of a Type must be, in words and as a test, which makes whole numbers integers.
+struct TypeRule {
+  const char* words;
+  bool (*fits)(Json& value);
+};
+const std::array<TypeRule, 11> kTypes{
+    {{"true or false", [](Json& v) { return v.is_boolean(); }},
+     {"a string", [](Json& v) { return v.is_string(); }},
+     {"a number", [](Json& v) { return v.is_number(); }},
+     {"an array of numbers", [](Json& v) { return v.is_array() && all_of(v, [](Json& e) { return e.is_number(); }); }},
+     {"a whole number from 0 to 2147483647", is_index},
+     {"an array of whole numbers from 0 to 2147483647", [](Json& v) { return v.is_array() && all_of(v, is_index); }},
+     {"a whole number, 0 or more", [](Json& v) { return is_whole(v, 1e18); }},
+     {"an array of strings", [](Json& v) { return v.is_array() && all_of(v, [](Json& e) { return e.is_string(); }); }},
+     {"an object of whole numbers from 0 to 2147483647", [](Json& v) { return v.is_object() && all_of(v, is_index); }},
+     {"an object", [](Json& v) { return v.is_object(); }},
+     {"an array of objects",
+      [](Json& v) { return v.is_array() && all_of(v, [](Json& e) { return e.is_object(); }); }}}};
 
 struct Rule {
   std::string_view key;
@@ -192,60 +223,11 @@ const Rules kRoot{{"asset", Type::object, kRequired, &kAsset},
                   {"animations", Type::objects, false, &kAnimation},
                   {"extensions", Type::object, false, &kRootExtensions}};
 
-const char* describe(Type type) {
-  switch (type) {
-    case Type::boolean: return "true or false";
-    case Type::string: return "a string";
-    case Type::number: return "a number";
-    case Type::numbers: return "an array of numbers";
-    case Type::index: return "a whole number from 0 to 2147483647";
-    case Type::indices: return "an array of whole numbers from 0 to 2147483647";
-    case Type::size: return "a whole number, 0 or more";
-    case Type::strings: return "an array of strings";
-    case Type::index_map: return "an object of whole numbers from 0 to 2147483647";
-    case Type::object: return "an object";
-    case Type::objects: return "an array of objects";
-  }
-  return "";
-}
-
-bool is_whole(Json& value, double limit) {
-  if (value.is_number_float()) {
-    const double number = value.get<double>();
-    if (!(number >= 0 && number < 9e15 && number == std::floor(number))) return false;
-    value = std::uint64_t(number);
-  }
-  return value.is_number_unsigned() && double(value.get<std::uint64_t>()) <= limit;
-}
-
-bool is_index(Json& value) { return is_whole(value, 2147483647.0); }
-
-template <class Container, class Test>
-bool all_of(Container& container, Test test) {
-  return std::all_of(container.begin(), container.end(), test);
-}
-
-bool has_type(Json& value, Type type) {
-  switch (type) {
-    case Type::boolean: return value.is_boolean();
-    case Type::string: return value.is_string();
-    case Type::number: return value.is_number();
-    case Type::numbers: return value.is_array() && all_of(value, [](Json& v) { return v.is_number(); });
-    case Type::index: return is_index(value);
-    case Type::indices: return value.is_array() && all_of(value, is_index);
-    case Type::size: return is_whole(value, 1e18);
-    case Type::strings: return value.is_array() && all_of(value, [](Json& v) { return v.is_string(); });
-    case Type::index_map: return value.is_object() && all_of(value, is_index);
-    case Type::object: return value.is_object();
-    case Type::objects: return value.is_array() && all_of(value, [](Json& v) { return v.is_object(); });
-  }
-  return false;
-}
-
 void check_object(Json& object, const Rules& rules, const std::string& place, const std::string& file);
 
 void check_property(Json& value, const Rule& rule, const std::string& place, const std::string& file) {
-  if (!has_type(value, rule.type)) fail(file, place, std::string("must be ") + describe(rule.type));
+  const TypeRule& type = kTypes[std::size_t(rule.type)];
+  if (!type.fits(value)) fail(file, place, std::string("must be ") + type.words);
   if (rule.type == Type::object && rule.inside) check_object(value, *rule.inside, place, file);
   if (rule.type == Type::objects && rule.inside)
     for (std::size_t i = 0; i < value.size(); ++i)
@@ -258,7 +240,8 @@ void check_object(Json& object, const Rules& rules, const std::string& place, co
   for (const Rule& rule : rules) {
     const auto found = object.find(rule.key);
     if (found != object.end()) check_property(*found, rule, inside(rule.key), file);
-    else if (rule.required) fail(file, inside(rule.key), std::string("is missing; it must be ") + describe(rule.type));
+    else if (rule.required)
+      fail(file, inside(rule.key), std::string("is missing; it must be ") + kTypes[std::size_t(rule.type)].words);
   }
   const auto extensions = object.find("extensions");
   if (extensions == object.end()) return;

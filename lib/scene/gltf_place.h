@@ -13,6 +13,11 @@ namespace tempolux::gltf {
 /// and libraries in this form.
 std::string one_line(std::string text, std::size_t length);
 
+/// Bytes of a number of glTF's component type (5120 to 5126); 0 for any other type.
+constexpr int component_bytes(int type) {
+  return type == 5120 || type == 5121 ? 1 : type == 5122 || type == 5123 ? 2 : type == 5125 || type == 5126 ? 4 : 0;
+}
+
 /// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.
 std::string place_of(const char* array, std::size_t index, const std::string& name = {});
 

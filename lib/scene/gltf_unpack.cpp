@@ -142,7 +142,8 @@ class Unpacking {
     const std::string accessor_place = place_of("accessors", part.accessor);
     const std::uint64_t count = accessor["count"].get<std::uint64_t>();
     const int type = accessor["componentType"].get<int>();
-    const std::uint32_t size = component_bytes(type), components = components_of(accessor["type"].get<std::string>());
+    const std::uint32_t size = std::uint32_t(component_bytes(type)),
+                        components = components_of(accessor["type"].get<std::string>());
     if (size == 0 || components == 0) fail(accessor_place, "has a type that Draco does not pack");
     if (count == 0 || count > 0xffffffffu) fail(accessor_place, "count " + std::to_string(count) + " cannot be right");
     piece.unpacked_bytes += count * size * components;
@@ -156,12 +157,6 @@ class Unpacking {
     piece.settings[2] = std::uint32_t(count);
     for (const std::uint32_t setting : {std::uint32_t(part.id), std::uint32_t(type), components})
       piece.settings.push_back(setting);
-  }
-
-  static std::uint32_t component_bytes(int type) {
-    if (type == 5120 || type == 5121) return 1;
-    if (type == 5122 || type == 5123) return 2;
-    return type == 5125 || type == 5126 ? 4 : 0;
   }
 
   static std::uint32_t components_of(std::string_view type) {
