@@ -35,7 +35,7 @@ std::string digest_of(const Image& image) {
   return hasher.hex();
 }
 
-std::string channel_name(const std::string& layer, const char* component) {
+std::string layer_channel(const std::string& layer, const char* component) {
   return layer.empty() ? component : layer + "." + component;
 }
 
@@ -66,7 +66,7 @@ std::array<const std::vector<float>*, 3> Image::rgb(const std::string& layer) co
   std::array<const std::vector<float>*, 3> planes{};
   constexpr std::array components{"R", "G", "B"};
   for (std::size_t c = 0; c < 3; ++c) {
-    const Channel* channel = find(channel_name(layer, components[c]));
+    const Channel* channel = find(layer_channel(layer, components[c]));
     if (!channel || !channel->ids.empty()) {
       std::string known;
       for (const std::string& name : layers()) known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
@@ -85,8 +85,9 @@ std::vector<std::string> Image::layers() const {
     if (channel.name.size() > 2 && channel.name.ends_with(".R"))
       names.insert(channel.name.substr(0, channel.name.size() - 2));
   }
-  std::erase_if(
-      names, [&](const std::string& name) { return !find(channel_name(name, "G")) || !find(channel_name(name, "B")); });
+  std::erase_if(names, [&](const std::string& name) {
+    return !find(layer_channel(name, "G")) || !find(layer_channel(name, "B"));
+  });
   return {names.begin(), names.end()};
 }
 

@@ -48,7 +48,7 @@ std::vector<std::uint8_t> nonzero_pixels(const Image& image);
 /// channels, attributes and compression do not change it.
 std::string digest_of(const Image& image);
 /// Name of a layer's channel: "indirect.G"; for the layer "" the component alone.
-std::string channel_name(const std::string& layer, const char* component);
+std::string layer_channel(const std::string& layer, const char* component);
 /// "pixel (X, Y)" for messages; counted from the top left.
 std::string pixel_name(std::size_t pixel, int width);
 

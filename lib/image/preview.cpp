@@ -24,7 +24,7 @@ using Planes = std::vector<const std::vector<float>*>;
 Planes planes_of(const Image& image, const std::string& layer, std::initializer_list<const char*> names) {
   Planes planes;
   for (const char* name : names) {
-    const Channel* channel = image.find(channel_name(layer, name));
+    const Channel* channel = image.find(layer_channel(layer, name));
     if (!channel || channel->values.empty()) return {};
     planes.push_back(&channel->values);
   }
