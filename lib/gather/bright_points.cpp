@@ -8,33 +8,20 @@
 #include "lib/core/parallel_each.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/irradiance_points.h"
-#include "lib/transport/media.h"
 #include "lib/gather/reachable_area.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
+#include "lib/transport/media.h"
 
 namespace tempolux {
 namespace {
 
-/// Sites per point. Sites of a spot are drawn at random; with 16 of them the light of a point's area is known to a few
-/// per cent.
+/// Sites per point. Sites of a spot are drawn at random; the mean over 16 sites has an error of a few per cent of the
+/// point's light.
 constexpr double kSitesPerPoint = 16;
-/// In units of R: where the explicit share of light begins and where it reaches 1.
-constexpr float kFadeFrom = 4, kFadeTo = 6;
-/// The edge of the cells that group photons which no point represents is kBesideLamp spacings over this number.
-constexpr float kCellsPerReach = 8;
-
-/// Hash of a cube and of the axis to which the normal is closest.
-std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
-  std::uint64_t key = 0;
-  int axis = 0;
-  for (int a = 0; a < 3; ++a) {
-    key = mix64(
-        key ^ std::uint64_t(std::int64_t(std::floor(std::clamp(photon.place.position[a] * per_metre, -1e15f, 1e15f)))));
-    if (std::abs(photon.normal[a]) > std::abs(photon.normal[axis])) axis = a;
-  }
-  return mix64(key ^ std::uint64_t(2 * axis + (photon.normal[axis] > 0)));
-}
+/// Light is explicit if it is farther away than this many R. At this distance a disc of radius R fills 1/17 of what a
+/// Lambert lobe sees: at smaller distances many rays meet the spot.
+constexpr float kExplicitFrom = 4;
 
 }  // namespace
 
@@ -46,9 +33,9 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
       radius_(points.spacing() * std::sqrt(kInvPi)),
       lamp_reach_(kBesideLamp * points.spacing()) {
   high_.resize(points.size(), 0.0f);
-  // If a point's indirect light is not that of the hit, the gather ray continues and finds light that the point does
-  // not store. No share of that light may be sampled explicitly, so the high share becomes 0. Direct light of lamps
-  // close to a surface is divided separately (lamp_share).
+  // If indirect light around a point is not uniform, the gather ray continues and finds light that the point does not
+  // store. No share of that light may be sampled explicitly, so the high share becomes 0. Direct light of lamps close
+  // to a surface is divided separately (has_lamp_light).
   for (std::uint32_t i = 0; i < high_.size(); ++i)
     if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_uniform_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
@@ -72,8 +59,8 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   const double spacing = double(points.spacing());
-  // A point represents places up to kReach spacings away; the reach is doubled, because a site lies slightly off its
-  // surface. The pieces of a sphere's surfaces hold all surface within 3/4 of the sphere's radius.
+  // A point represents places up to kReach spacings away. The reach is doubled, because a site lies slightly above or
+  // below its surface. place_sites() covers all surface within 3/4 of the sphere's radius.
   const PhotonIndex index(bright);
   const float reach = 2 * PointLookup::kReach * points.spacing();
   const AimSphere around{
@@ -98,17 +85,18 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
 
 /// Places sites at photons of lamps.
 void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
-  std::unordered_map<std::uint64_t, std::uint32_t> cells;  // cells for places that no point represents
+  std::unordered_map<std::uint64_t, std::uint32_t> cells;  // number of each cell with photons that have no point
   for (const LampPhoton& photon : photons) {
     std::uint32_t spot = photon.point;
     if (spot == kNone)
       spot = std::uint32_t(high_.size()) +
-             cells.emplace(cell_of(photon, kCellsPerReach / lamp_reach_), std::uint32_t(cells.size())).first->second;
+             cells.emplace(points_.ask(photon.place.position, photon.normal).cell, std::uint32_t(cells.size()))
+                 .first->second;
     sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, spot, photon.lamp_distance});
   }
 }
 
-/// Joins the sites of each point into a spot.
+/// Joins the sites of each point, or cell, into a spot.
 void BrightPoints::gather_spots() {
   std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) {
     const bool lamp_a = a.lamp_distance > 0, lamp_b = b.lamp_distance > 0;
@@ -134,8 +122,8 @@ void BrightPoints::gather_spots() {
   point_tree_.emplace(spots);
 }
 
-/// The site at a place: none if the point that represents the place has no high part, or if a ray to the place meets
-/// another surface that coincides with it.
+/// The site at a place; none if the point that represents the place has no high part, or if another object coincides
+/// with the place.
 std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& place, float area) const {
   const float offset = Reach(tracer_).offset();
   Hit hit;
@@ -143,18 +131,17 @@ std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& p
     return std::nullopt;
   SurfacePoint there = tracer_.surface_point(hit);
   if (there.object != place.object) return std::nullopt;
-  const bool front = dot(there.normal_geometric, place.normal) > 0;
-  const Vec3 normal = front ? there.normal_geometric : -there.normal_geometric;
+  const Vec3 normal = face_forward(there.normal_geometric, place.normal);
   const PointLookup::Light* light = points_.find(there.position, normal);
   if (!light || !(high_[light->point] > 0)) return std::nullopt;
   const SurfaceMaterial material(tracer_.frame(), there);
-  const Bsdf bsdf(material, front);
+  const Bsdf bsdf(material, dot(there.normal_geometric, place.normal) > 0);
   if (!bsdf.has_diffuse()) return std::nullopt;
   return Site{there, normal, light->all * high_[light->point], bsdf, light->radius, area, light->point};
 }
 
-/// At points whose direct light varies around them, gather rays sample direct light at their hits. Sites there do the
-/// same.
+/// Gather rays sample direct light at hits whose point's direct light is not uniform. This function does the same at
+/// the sites with these indices.
 void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven,
                                  const BrightOptions& options) {
   std::vector<IrradiancePoint> sampled;
@@ -176,21 +163,14 @@ void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::ui
   }
 }
 
-float BrightPoints::explicit_share(float distance) const {
-  const float t = std::clamp((distance / radius_ - kFadeFrom) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
-/// w for a lamp's light: the radius R is replaced by the lamp's distance.
-float BrightPoints::lamp_share(float distance, float lamp_distance) {
-  const float t = std::clamp((distance / lamp_distance - kFadeFrom) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
+/// True if w(distance) = 1 for a spot of this radius R [m]: for a lamp's light, the distance of the lamp.
+bool BrightPoints::is_explicit(float distance, float radius) { return distance > kExplicitFrom * radius; }
 
 /// Explicit share of a site's light at a receiver `distance` m away.
 float BrightPoints::share(const Site& site, float distance, bool reads_close) const {
-  if (site.lamp_distance > 0) return lamp_share(distance, site.lamp_distance);
-  return explicit_share(distance) * (reads_close ? 1 : PointLookup::share_of_far(site.radius, distance));
+  if (site.lamp_distance > 0) return is_explicit(distance, site.lamp_distance);
+  if (!is_explicit(distance, radius_)) return 0;
+  return reads_close ? 1 : PointLookup::share_of_far(site.radius, distance);
 }
 
 Rgb BrightPoints::radiance(const Site& site, Vec3 wo) const {
@@ -202,7 +182,7 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
                                    GatherCounts& counts) const {
   const SurfacePoint& place = at.place;
   const Vec3 normal = at.normal;
-  const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
+  const Vec3 geometric = face_forward(place.normal_geometric, normal);
   std::optional<Frame> frame;
   Bsdf::Direction eye;
   if (at.seen_from) eye = at.coat->along(frame.emplace(normal).to_local(*at.seen_from));
@@ -240,8 +220,8 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const Rgbd e = power * (here * there / (d2 * d2));
     light.irradiance += e;
     if (frame) continue;
-    // E = P (n d) (-m d) / d^4 with d = y - x, so dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4,
-    // projected onto the plane.
+    // E = P (n d) (-m d) / d^4 with d = y - x, so dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4. The
+    // gradient is projected onto the tangent plane.
     const Vec3d along = (m - n * dot(m, n)) * here + (d - n * here) * (4 * here * there / d2);
     const Vec3d turn = cross(n, d) * there;  // (n_i x n) . g is the change of n . d
     for (int c = 0; c < 3; ++c) {

@@ -15,7 +15,7 @@
 
 namespace tempolux {
 
-/// Copies a record's place, light, radii and clearance to a record of a file, .irradcache or .radsamples.
+/// Copies a record's place, light, radii and clearance to a record of an .irradcache or .radsamples file.
 template <class FileRecord>
 void store_values(const IrradianceRecord& record, FileRecord& to) {
   to.position = array_of(record.position);
@@ -31,7 +31,7 @@ void store_values(const IrradianceRecord& record, FileRecord& to) {
   to.clearance_reach = record.clearance.reach;
   to.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(record.clearance.shares);
 }
-/// The record with the values of store_values(). A clearance of reach 0 was not measured.
+/// The inverse of store_values(). A clearance of reach 0 was not measured; the record is then valid without clearance.
 template <class FileRecord>
 IrradianceRecord stored_values(const FileRecord& from) {
   IrradianceRecord record;
@@ -50,14 +50,14 @@ IrradianceRecord stored_values(const FileRecord& from) {
   return record;
 }
 
-/// Points as file records: static or dynamic by the surface on which they lie (all surfaces of an object move
-/// together).
+/// Points as records of a file. Points on movers are in the set dynamic, all others in the set static.
 std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePoint> points, const SceneFrame& frame);
-/// Points of a file; `shift` (the file's origin minus the frame's) brings them into scene space.
+/// Points of a file. `shift` [m], the file's origin minus the frame's, brings them into scene space.
 std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointRecord> records, Vec3d shift);
 
-/// Records for a file with column_clearance, and with column_noise if their noise is known.
+/// Records of an irradiance cache as records of a file. Records on movers are in the set dynamic.
 std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame);
+/// Records of a file; `shift` as for points.
 std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCacheRecord> records, Vec3d shift);
 
 }  // namespace tempolux

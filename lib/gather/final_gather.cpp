@@ -6,8 +6,10 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/hemisphere.h"
 #include "lib/material/inside.h"
+#include "lib/material/seen_side.h"
 
 namespace tempolux {
+
 void GatherRays::clear() {
   rays.clear();
   keys.clear();
@@ -42,7 +44,7 @@ FinalGather FinalGather::with_seed(std::uint64_t seed) const {
 }
 
 void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record) const {
-  const Vec3 lit = dot(from.normal_geometric, record.normal) < 0 ? -from.normal_geometric : from.normal_geometric;
+  const Vec3 lit = face_forward(from.normal_geometric, record.normal);
   record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);
 }
 

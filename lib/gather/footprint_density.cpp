@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "lib/core/frame.h"
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/sampling.h"
 #include "lib/density/path_signs.h"
 #include "lib/density/photon_reach.h"
@@ -17,13 +17,13 @@ namespace tempolux {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-/// Times Reach::offset(): smallest radius of an ellipsoid whose height float positions resolve.
-constexpr float kThin = 64;
-constexpr float kLift = 1e-4f;    ///< share of a radius: largest error at the rim from the rounding of stored normals
+constexpr float kThin =
+    64;  ///< smallest radius of an ellipsoid whose height float positions resolve, over Reach::offset()
+constexpr float kLift = 1e-4f;    ///< largest error of height from the rounding of stored normals, over the distance
 constexpr int kMostHalvings = 6;  ///< of a footprint's radius, if hardly any of the footprint is surface
-constexpr std::size_t kLeavesAtOnce = 16;
-/// Probes that must arrive where a footprint is not a whole disc. The relative error 1 / sqrt(16) of the area of one
-/// footprint is small compared with the noise of the photons, because many footprints light a place.
+constexpr std::size_t kLeavesAtOnce = 16;  ///< leaves that a thread takes together
+/// Probes that must arrive if a footprint is not a whole disc. The area then has a relative error of 1 / sqrt(16). Many
+/// footprints light a place, so the errors average, and their mean is small compared with the noise of the photons.
 constexpr int kAreaProbes = 16;
 
 }  // namespace
@@ -48,32 +48,30 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photo
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   leaves_ = std::make_unique<Leaf[]>(leaves);
   extents_ = std::make_unique<std::atomic<Extent>[]>(index_.size());
-  parallel_chunks(leaves, kLeavesAtOnce, [&](std::size_t first, std::size_t last) {
+  parallel_each(leaves * kLeaf, kLeavesAtOnce * kLeaf, [&](std::size_t i) {
     thread_local NeighbourList found;
-    for (std::size_t i = first * kLeaf; i < last * kLeaf; ++i) {
-      Leaf& leaf = leaves_[i / kLeaf];
-      const std::size_t lane = i % kLeaf;
-      if (i >= index_.size()) {
-        leaf.x[lane] = kNaN;
-        continue;
-      }
-      const Vec3 position = index_.position(i);
-      const Vec3 n = vec_of(formats::decode_normal(photons.photons[index_.source(i)].normal));
-      const float radius = radius_of(i, n, found);
-      leaf.x[lane] = position.x, leaf.y[lane] = position.y, leaf.z[lane] = position.z;
-      leaf.nx[lane] = n.x, leaf.ny[lane] = n.y, leaf.nz[lane] = n.z;
-      leaf.inverse_r2[lane] = 1 / (radius * radius);
-      if (directed_) arriving_from_[i] = *photons.direction(index_.source(i));
-      const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
-      leaf.flat[lane] = flattening * flattening - 1;
+    Leaf& leaf = leaves_[i / kLeaf];
+    const std::size_t lane = i % kLeaf;
+    if (i >= index_.size()) {
+      leaf.x[lane] = kNaN;
+      return;
     }
+    const Vec3 position = index_.position(i);
+    const Vec3 n = vec_of(formats::decode_normal(photons.photons[index_.source(i)].normal));
+    const float radius = radius_of(i, n, found);
+    leaf.x[lane] = position.x, leaf.y[lane] = position.y, leaf.z[lane] = position.z;
+    leaf.nx[lane] = n.x, leaf.ny[lane] = n.y, leaf.nz[lane] = n.z;
+    leaf.inverse_r2[lane] = 1 / (radius * radius);
+    if (directed_) arriving_from_[i] = *photons.direction(index_.source(i));
+    const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
+    leaf.flat[lane] = flattening * flattening - 1;
   });
   build_tree();
 }
 
-/// Distance to the k-th neighbour.
+/// r_i [m] before it is halved.
 float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const {
-  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);  // the photon finds itself, too
+  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);  // one more, since the photon finds itself
   index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening}, wanted, found);
   const float radius =
       int(found.count()) < wanted ? options_.max_radius : std::sqrt(found.distance2()[found.farthest()]);
@@ -84,23 +82,21 @@ float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList
 void FootprintDensity::build_tree() {
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   std::vector<Box3> boxes(leaves);
-  parallel_chunks(leaves, kLeavesAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first * kLeaf; i < std::min(last * kLeaf, index_.size()); ++i) {
-      const Leaf& leaf = leaves_[i / kLeaf];
-      const std::size_t lane = i % kLeaf;
-      const float radius = outer_radius(std::uint32_t(i));
-      const auto half = [&](float n) {  // half extent of the ellipsoid's box
-        return radius * std::sqrt(std::max(0.0f, 1 - n * n + n * n / (leaf.flat[lane] + 1))) * 1.0001f + area_.offset();
-      };
-      const Vec3 middle = index_.position(i), halves{half(leaf.nx[lane]), half(leaf.ny[lane]), half(leaf.nz[lane])};
-      boxes[i / kLeaf].add(middle - halves);
-      boxes[i / kLeaf].add(middle + halves);
-    }
+  parallel_each(index_.size(), kLeavesAtOnce * kLeaf, [&](std::size_t i) {
+    const Leaf& leaf = leaves_[i / kLeaf];
+    const std::size_t lane = i % kLeaf;
+    const float radius = outer_radius(std::uint32_t(i));
+    const auto half = [&](float n) {  // half extent of the ellipsoid's box
+      return radius * std::sqrt(std::max(0.0f, 1 - n * n + n * n / (leaf.flat[lane] + 1))) * 1.0001f + area_.offset();
+    };
+    const Vec3 middle = index_.position(i), halves{half(leaf.nx[lane]), half(leaf.ny[lane]), half(leaf.nz[lane])};
+    boxes[i / kLeaf].add(middle - halves);
+    boxes[i / kLeaf].add(middle + halves);
   });
   tree_ = BoxTree(std::move(boxes));
 }
 
-/// Finds the footprints that cover a position.
+/// Finds the footprints that cover a position, before they are halved.
 void FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
   struct Entry {
     std::size_t level, node;
@@ -152,7 +148,8 @@ Vec3 FootprintDensity::normal_of(std::uint32_t photon) const {
   return {leaf.nx[lane], leaf.ny[lane], leaf.nz[lane]};
 }
 
-/// Measured by the first thread that asks. Other threads that ask meanwhile compute the same value.
+/// The extent of a footprint. The first thread that needs it measures it; another thread that needs it at the same time
+/// computes the same value.
 FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const {
   std::atomic<Extent>& known = extents_[photon];
   Extent extent = known.load(std::memory_order_relaxed);
@@ -163,8 +160,7 @@ FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const
   return extent;
 }
 
-/// Measures the area of a footprint. Makes the footprint smaller while it is mostly empty, as around a photon on a
-/// wire.
+/// Measures the extent of a footprint. Halves its radius while it is mostly empty, as around a photon on a wire.
 FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   const Vec3 position = index_.position(photon), normal = normal_of(photon);
   const PathRandom random(0x666f6f74ull, index_.source(photon));
@@ -180,11 +176,11 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   return Extent::of_area(2 * radius, 1 / (kPi * 4 * radius * radius));
 }
 
-/// A photon that lights the place if the place can be reached from it.
+/// A photon that lights a place if the place is reachable from it.
 struct FootprintDensity::Candidate {
   std::uint32_t photon;
   Rgbd irradiance;    ///< W/m^2
-  double importance;  ///< >= 0: sum of its channels
+  double importance;  ///< >= 0: sum of the channels' magnitudes
 };
 
 struct FootprintDensity::Sums {
@@ -195,8 +191,8 @@ struct FootprintDensity::Sums {
   }
 };
 
-/// Light of the candidates that reach a place, estimated from options_.asked of them. They are drawn in proportion to
-/// their importance, equally spaced along its running sum, whose total is `whole`.
+/// Light of the candidates from which a place is reachable, estimated from options_.asked of them. They are drawn in
+/// proportion to their importance, by equal steps along the running sum of importance, whose total is `whole`.
 FootprintDensity::Sums FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates,
                                                   double whole) const {
   const auto reaches = [&](std::uint32_t photon) {

@@ -19,19 +19,18 @@
 namespace tempolux {
 
 struct FootprintOptions {
-  int neighbours = 25;  ///< k, below kMaxNeighbours
-  /// m; 0: from the photons (photon_reach), such that one photon in twenty is farther from its neighbours
-  float max_radius = 0;
-  /// At most this many of the photons whose footprints cover a place are tested for reachability; 0: all. They are
-  /// drawn in proportion to their contribution. The estimate stays unbiased, and has no added noise where all photons
-  /// or none reach the place. Use it for estimates that a pixel averages.
+  int neighbours = 25;   ///< k, below kMaxNeighbours
+  float max_radius = 0;  ///< m; 0: photon_reach()
+  /// If more photons than this have footprints that cover a place, only this many are tested for reachability; 0: all
+  /// are tested. They are drawn in proportion to their contribution. The estimate stays unbiased, and has no added
+  /// noise where all photons or none reach the place. For estimates that a pixel averages.
   int asked = 0;
 };
 
 /// A surface that receives light. Normals are unit vectors on the lit side.
 struct LitSurface {
-  Vec3 geometric, smooth, shading;  ///< normal of the triangle; of its vertices; of a normal map
-  const Bsdf* bsdf;                 ///< scattering, because the Lambert lobe may lie under a coat; null: no coat
+  Vec3 geometric, smooth, shading;  ///< normal of the triangle; interpolated from its vertices; with the normal map
+  const Bsdf* bsdf;                 ///< the Bsdf if the Lambert lobe may lie under a coat; null: no coat
 
   LitSurface(Vec3 geometric_normal, Vec3 smooth_normal, Vec3 shading_normal, const Bsdf* scattering = nullptr)
       : geometric(geometric_normal), smooth(smooth_normal), shading(shading_normal), bsdf(scattering) {}
@@ -39,22 +38,22 @@ struct LitSurface {
   explicit LitSurface(Vec3 normal) : LitSurface(normal, normal, normal) {}
 };
 
-/// The share of a photon's flux that remains after a normal map and a coat, for light from direction wi (unit) at a
-/// triangle with this normal:
+/// The share of a photon's flux that a normal map and a coat let through, for light from direction wi (unit) that
+/// arrived at a triangle with this normal (unit, on the lit side):
 ///     R wi.n_shading / wi.normal x Bsdf::arrival_weight(R wi.n_shading)
-/// R is the rotation from the photon's normal to n_smooth. So light has the same angle to the surface at the estimate
-/// as at the photon, however the surface bends in between: without a map and a coat the share is 1, and no flux is
-/// gained or lost. On a plane it equals the factor in path tracing. 0 for light from behind the shading normal.
+/// R is the rotation from the photon's normal to at.smooth. So light has the same angle to the surface at the estimate
+/// as at the photon, even if the surface bends between the two: without a map and a coat the share is 1, and no flux is
+/// gained or lost. On a plane the share equals the factor in path tracing. 0 for light from behind the shading normal.
 float received_share(Vec3 wi, Vec3 normal, const LitSurface& at);
 
 /// Caustic light at a place.
 struct FootprintLight {
   Rgb irradiance{0.0f};  ///< W/m^2; negative only if photons have negative flux
   Rgb noise{0.0f};       ///< W/m^2: the same sum with the signs of paths (path_signs.h)
-  /// m: no footprint within this distance is narrower than four times the distance, so light changes by a few per cent
-  /// within it. 0 if no footprint covers the place. The radii of two photons differ by at most their distance, because
-  /// both reach to a k-th neighbour. So with m = max over covering photons of (r_i - d_i), every footprint that reaches
-  /// within m / 9 of the place is wider than 4 m / 9.
+  /// m: a distance within which light changes by a few per cent, because all footprints that reach there have radii of
+  /// at least four times the distance. 0 if no footprint covers the place. Proof: the radii of two photons differ by at
+  /// most the distance of the photons, because each reaches to its k-th neighbour. Let m be the maximum of r_i - d_i
+  /// over the covering photons. Then each footprint that reaches within m / 9 of the place has a radius above 4 m / 9.
   float alike_within = 0;
 };
 
@@ -64,27 +63,27 @@ struct FootprintLight {
 ///     1969]
 ///
 /// - s_i: received_share at x (normal map and coat) if photons store directions, else 1.
-/// - d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening around the photon.
+/// - d_i [m]: distance between photon and x in the metric of an ellipsoid with the axes r_i, r_i and r_i / kFlattening.
 /// - r_i [m]: distance to the photon's k-th neighbour, limited to the range from Reach::offset() to max_radius. It is
 /// halved until enough of the ellipsoid is surface, which matters on wires.
-/// - A_i [m^2]: area reachable from the photon, weighted by K (Reach, which also decides whether x is reachable).
+/// - A_i [m^2]: area reachable from the photon, weighted by K. Reach decides for both area and x what is reachable.
 ///
-/// The light of a photon is spread over exactly the reachable surface. So the integral of E equals the flux, also at
-/// walls, edges and steps. Footprints smaller than 64 Reach::offset(), in which float positions do not resolve
+/// The light of a photon is distributed over exactly the reachable surface. So the integral of E equals the flux, also
+/// at walls, edges and steps. Footprints smaller than 64 Reach::offset(), in which float positions do not resolve
 /// heights, count as whole discs.
 ///
 /// The radius belongs to the photon and not to x [Breiman, Meisel & Purcell 1977]. The k nearest photons of x would
 /// give too much light: their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 is proportional to
-/// 1 / E. Around a spot each x would reach as far as the spot, and the integral of the estimates, k / (pi d^2), would
-/// be bounded by max_radius only. For a disc of 1000 photons, 25 nearest photons give 8 to 12 % too much light, for
-/// 5000 photons 4 %. With r_i in proportion to 1 / sqrt(E) at the photon, the error is of fourth order in r [Abramson
-/// 1982].
+/// 1 / E. The disc of each x around a spot would reach the spot, and only max_radius would bound the integral of the
+/// estimates. For a disc of 1000 photons, 25 nearest photons give 8 to 12 % too much light, for 5000 photons 4 %. With
+/// r_i in proportion to 1 / sqrt(E) at the photon, the error is of fourth order in r [Abramson 1982].
 ///
 /// Stratified photons (a mirror keeps the stratification of Halton's sequence) and independent photons have the same
 /// mean, so the formula has no k - 1 or k - 1/2. Thread-safe; same values for any number of threads.
 class FootprintDensity {
  public:
-  /// Uses the photons of these kinds (kind_bit), moved by `shift` [m] into scene space.
+  /// Uses the photons of these kinds (kind_bit), moved by `shift` [m] into scene space. `tracer` must outlive this
+  /// object.
   FootprintDensity(const Tracer& tracer, const PhotonView& photons, const FootprintOptions& options,
                    std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
@@ -94,7 +93,7 @@ class FootprintDensity {
 
   /// True if photons store directions, so that the shading normal of the surface matters.
   bool directed() const { return directed_; }
-  /// The light at a place on the lit side of a surface.
+  /// The light at a place (m, scene space) on the lit side of a surface.
   FootprintLight estimate(Vec3 position, const LitSurface& surface) const;
 
  private:
@@ -104,7 +103,7 @@ class FootprintDensity {
     float inverse_r2[kLeaf];  ///< 1/m^2
     float flat[kLeaf];        ///< (radius / height)^2 - 1 of the ellipsoid
   };
-  /// Computed when a footprint is first needed, because most of a map's footprints are never seen.
+  /// Radius and area of a footprint. Measured when the footprint is first needed, because most footprints never are.
   class Extent {
    public:
     Extent() = default;
@@ -118,9 +117,8 @@ class FootprintDensity {
 
    private:
     Extent(float radius, float signed_inverse) : radius_(radius), signed_inverse_(signed_inverse) {}
-    float radius_ = 0,
-          /// Eight bytes, so that an atomic Extent needs no lock; a negative sign means whole_disc().
-        signed_inverse_ = 0;
+    float radius_ = 0;
+    float signed_inverse_ = 0;  ///< negative: whole_disc(); an Extent has eight bytes, so that an atomic needs no lock
   };
   struct Covering {
     std::uint32_t photon;
@@ -142,9 +140,9 @@ class FootprintDensity {
   ReachableArea area_;
   PhotonIndex index_;
   bool directed_ = false;
-  std::vector<std::int8_t> signs_;   ///< in the order of the index
+  std::vector<std::int8_t> signs_;   ///< path_signs()
   std::vector<Vec3> arriving_from_;  ///< wi in the order of the index, if directed
-  std::unique_ptr<Leaf[]> leaves_;   ///< in the order of the index; unused places hold NaN, which covers nothing
+  std::unique_ptr<Leaf[]> leaves_;   ///< in the order of the index; unused places hold NaN, which covers no place
   BoxTree tree_;                     ///< over the boxes of footprints
   std::unique_ptr<std::atomic<Extent>[]> extents_;
 };

@@ -6,14 +6,15 @@
 
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "lib/material/seen_side.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kTile = 4;  ///< sectors followed side by side: two rings of them form a packet of rays
+constexpr int kTile = 4;  ///< sectors followed together: two rings of four cells form a packet of rays
 
-/// Step between successive rays of a cell, modulo 1: any number of rays is spread uniformly over the cell [R2 of
-/// Roberts 2018, shifted].
+/// Step between successive rays of a cell, modulo 1: any number of rays fills the cell uniformly [R2 of Roberts 2018,
+/// with a random start].
 constexpr Vec2 kStep{0.7548777f, 0.5698403f};
 float frac(float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); }
 
@@ -39,7 +40,7 @@ std::uint64_t gather_key(Vec3 p, Vec3 n, std::uint64_t seed) {
 GatherDirections::GatherDirections(const SurfacePoint& from, Vec3 normal, int rings, int sectors, std::uint64_t key)
     : from_(from),
       frame_(normal),
-      geometric_(dot(from.normal_geometric, normal) < 0 ? -from.normal_geometric : from.normal_geometric),
+      geometric_(face_forward(from.normal_geometric, normal)),
       rings_(rings),
       sectors_(sectors),
       key_(key) {}

@@ -9,11 +9,11 @@
 
 namespace tempolux {
 
-/// Cells of equal weight over a hemisphere, with index j sectors + k. Ring j holds sin^2 of the angle to the normal in
-/// [j, j+1) / rings; sector k holds azimuths in [k, k+1) 2 pi / sectors.
+/// Cells of equal weight over a hemisphere. Cell number j sectors + k holds directions of ring j, with sin^2 of the
+/// angle to the normal in [j, j+1) / rings, and of sector k, with azimuths in [k, k+1) 2 pi / sectors.
 struct GatherStrata {
   int rings = 0, sectors = 0;
-  /// The order in which cells are followed: neighbours in the order are neighbours on the hemisphere, so that their
+  /// The order in which rays are followed: cells that follow each other are neighbours on the hemisphere, so that their
   /// rays visit the same parts of the scene.
   std::vector<std::uint32_t> order;
 
@@ -24,19 +24,19 @@ struct GatherStrata {
   std::size_t cells() const { return order.size(); }
 };
 
-/// Key of the random numbers of a place, from its position and normal to the bit: so a record does not depend on
-/// others.
+/// Key of the random numbers of a place: a hash of seed, position and normal, so that a record does not depend on other
+/// records.
 std::uint64_t gather_key(Vec3 position, Vec3 normal, std::uint64_t seed);
 
-/// The rays of one place. A cell has any number of rays, numbered and spread over the cell. Each of them can be
-/// computed again from key, cell and number.
+/// The gather rays of one place. A cell has any number of rays, which are numbered and fill the cell uniformly. A ray
+/// follows from key, cell and number, so it can be computed again at any time.
 class GatherDirections {
  public:
-  /// normal: unit, on the lit side, the axis of the hemisphere. `from` may be seen from either side.
+  /// normal: unit, on the lit side, the axis of the hemisphere. The normals of `from` may point to either side.
   GatherDirections(const SurfacePoint& from, Vec3 normal, int rings, int sectors, std::uint64_t key);
 
   const Frame& frame() const { return frame_; }
-  /// Computes the draw-th ray of a cell and the key of the random numbers at its hit. Returns false if the ray would
+  /// Computes ray number `draw` of a cell and the key of the random numbers at its hit. Returns false if the ray would
   /// start below the surface, from where no light arrives.
   bool aim(std::uint32_t cell, std::uint32_t draw, Ray& ray, std::uint64_t& ray_key) const;
 

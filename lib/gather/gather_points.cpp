@@ -13,16 +13,16 @@
 namespace tempolux {
 namespace {
 
-/// For each point, the share in [0, 1] of its irradiance (all kinds; sum of the channels) that comes from the photons
-/// `high`, by the same density estimate as estimate_points. `whole`: points estimated from all photons. The two
-/// densities use different discs, so the share is only an estimate. Light sampled with it stays unbiased, because
-/// BrightPoints divides light exactly for any shares. 0 at a point without light.
+/// For each point of `whole`, the share in [0, 1] of its irradiance (all kinds; sum of the channels) that comes from
+/// the photons `high`, by the density estimate of estimate_points(). `whole`: points estimated from all photons. The
+/// two estimates use different discs, so the share has an error. Light that is divided by the shares stays unbiased,
+/// because BrightPoints divides light exactly for any shares. 0 at a point without light.
 std::vector<float> shares_of_photons(const Tracer& tracer, const Lights& lights, const formats::PhotonMap& high,
                                      PointOptions options, std::span<const IrradiancePoint> whole) {
   std::vector<float> shares(whole.size(), 0.0f);
   if (high.photons.empty()) return shares;
   std::vector<IrradiancePoint> part(whole.begin(), whole.end());
-  options.light_samples = 1;  // neither part holds direct light, and this estimate of it is not read
+  options.light_samples = 1;  // photons bring no direct light to the points, and the samples of it are not read
   estimate_points(tracer, lights, high, shift_of(high.header.origin, tracer.frame()), options, part);
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const float all = channel_sum(whole[i].direct) + channel_sum(whole[i].caustic) + channel_sum(whole[i].indirect);
@@ -77,23 +77,23 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
   const PlacedPoints placed = place_points(frame, options);
   const auto own_points = std::ranges::find_if(placed.points, [&](const auto& p) { return moving.contains(p.object); });
   const auto static_count = std::size_t(own_points - placed.points.begin());
-  if (points.points.empty()) points.spacing = placed.spacing;  // nothing stands still: any spacing fits
+  if (points.points.empty()) points.spacing = placed.spacing;  // without static surfaces any spacing fits
   if (static_count != points.points.size() || placed.spacing != points.spacing)
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
                      std::to_string(points.points.size()) + ", not " + std::to_string(static_count) +
                      "); give the options they were made with, --importance included");
-  // Positions and normals as placed: a file rounds normals, which would change the light samples.
+  // A file rounds normals, which would change the light samples, so positions and normals are those of place_points().
   for (std::size_t i = 0; i < static_count; ++i) {
     points.points[i].position = placed.points[i].position;
     points.points[i].normal = placed.points[i].normal;
   }
-  // Static points that no mover shadows keep their light samples, so the guide must be that of the static scene.
+  // Points that no mover shadows keep the light samples of the static scene, so the guide must be that of the static
+  // scene.
   const Lights lights = guided_lights(static_tracer, unguided, points.points);
-  const Vec3d static_shift = shift_of(light.fixed.header.origin, frame),
-              dynamic_shift = shift_of(light.moved.header.origin, frame);
-  const PointUpdateCounts counts = update_points(
-      {whole, static_tracer, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
-  // Photons on movers are in the dynamic map only.
+  const Vec3d dynamic_shift = shift_of(light.moved.header.origin, frame);
+  const PhotonMaps maps{light.fixed, light.moved, shift_of(light.fixed.header.origin, frame), dynamic_shift};
+  const PointUpdateCounts counts = update_points({whole, static_tracer, lights, maps}, options, points.points);
+  // Only the dynamic map has photons on movers.
   formats::PhotonBlock on_movers;
   for (std::size_t i = 0; i < light.moved.photons.size(); ++i)
     if (moving.contains(light.moved.photons[i].object)) append(light.moved, i, light.moved.photons[i], on_movers);

@@ -12,7 +12,7 @@ namespace {
 /// Integral of tan over a ring's part of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
 double ring_integral(double s) { return std::asin(std::sqrt(s)) - std::sqrt(s * (1 - s)); }
 
-/// Unit vector in the tangent plane, at the end of `k` of `count` sectors.
+/// Unit vector in the tangent plane with the azimuth 2 pi k / count.
 Vec3d azimuth(double k, double count) {
   const double phi = 2 * M_PI * k / count;
   return {std::cos(phi), std::sin(phi), 0};
@@ -62,7 +62,7 @@ void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, Irradian
 
 void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& record) const {
   const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
-  // Sums by ring and sector; the sectors of a ring lie side by side.
+  // Sums over rings, by channel and sector.
   thread_local std::vector<double> sums;
   sums.assign(6 * N, 0.0);
   double* const along[3] = {&sums[0], &sums[N], &sums[2 * N]};

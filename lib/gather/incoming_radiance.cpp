@@ -17,7 +17,7 @@
 namespace tempolux {
 namespace {
 
-/// Largest number of events of one ray. Russian roulette ends all but 4e-12 of the rays before.
+/// Largest number of events of one ray. Russian roulette ends all but the share .95^512 = 4e-12 of the rays before.
 constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
 /// Offset that separates the random numbers of media from those of any depth.
@@ -29,32 +29,31 @@ constexpr std::size_t kAtOnce = 32;  ///< rays that are processed together
 /// The surface at the end of a ray.
 struct IncomingRadiance::Met {
   SurfacePoint hit;
-  Vec3 wo, geometric;            ///< normal on the side of wo
+  Vec3 wo;                       ///< unit, towards the start of the ray
+  Vec3 geometric;                ///< geometric normal on the side of wo
   float distance = INFINITY;     ///< m: length of the path since the start of the gather ray
-  float leg = INFINITY;          ///< m: length of its last straight part
+  float leg = INFINITY;          ///< m: length of the path's last straight part
   const Bsdf* bsdf = nullptr;    ///< null: the ray met no surface
   std::optional<Bsdf> textured;  ///< storage for a Bsdf of a material with textures
 };
 
-/// A gather ray or a ray that continues it from a hit, and the use of the radiance along it. All rays of one depth are
-/// followed together.
+/// A gather ray, or a ray that continues it from a hit. All rays of one depth are followed together.
 struct IncomingRadiance::Further {
   Ray ray;
   std::uint64_t key = 0;
-  Rgb weight{0.0f};
+  Rgb weight{0.0f};    ///< factor of the radiance along this ray in that of the gather ray
   std::size_t of = 0;  ///< index of the gather ray
-  /// The ray follows events S, so lights that it meets are caustic light of its starting point, which no point has
-  /// stored.
+  /// True if lights that the ray meets after events S count: they are caustic light of the ray's start, which no point
+  /// has stored.
   bool sees_lamps = false;
-  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: scattered by a surface, or reflected since
-  /// Width of the lobe that sent the ray, if the bright points were sampled explicitly for this lobe at the ray's start
-  /// (BrightPoints::lobe_width): the ray's hit then contributes the remaining share alone. 0: not sampled.
+  float phase = 0;  ///< pdf [1/sr] with which a medium scattered the ray; 0: a surface scattered the path last
+  /// Width of the lobe that sent the ray (BrightPoints::lobe_width), if bright points were sampled explicitly for this
+  /// lobe at the ray's start: the ray's hit then contributes only the remaining share. 0: not sampled.
   float sampled_lobe = 0;
-  /// Events S have happened since the ray's start. A pane that is passed straight is none.
-  bool specular = false;
-  float leg = 0;  ///< m: length of the ray's last straight part before the pane that the ray has passed; else 0
+  bool specular = false;  ///< true if events S have happened since the ray's start; passing a pane straight is none
+  float leg = 0;          ///< m: length of the straight part that ends at the pane that the ray has passed; else 0
 
-  /// The ray that goes on straight behind a pane. `before`: length of the part that ends at the pane [m].
+  /// The ray that continues straight behind a pane. `before` [m]: length of the straight part that ends at the pane.
   Further behind_pane(Rgb passed, float before) const {
     Further after = *this;
     after.key = mix64(key + 2);
@@ -62,7 +61,7 @@ struct IncomingRadiance::Further {
     after.leg = before;
     return after;
   }
-  /// The ray after another event S. `lobe`: its sampled_lobe.
+  /// The ray after another event S. `lobe`: sampled_lobe of the new ray.
   Further after_specular(Rgb scattered, float lobe) const {
     Further after = behind_pane(scattered, 0);
     after.sampled_lobe = lobe;
@@ -73,10 +72,10 @@ struct IncomingRadiance::Further {
   LastScatter scattering() const { return {phase > 0, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
 
-/// Where the results are stored.
+/// The results to which hits add.
 struct IncomingRadiance::Gathered {
   GatherCounts& counts;
-  std::vector<Further>& further;
+  std::vector<Further>& further;      ///< rays of the next depth
   std::span<RadianceSource> sources;  ///< by gather ray; may be empty
 
   RadianceSource* source_of(const Further& from) const { return sources.empty() ? nullptr : &sources[from.of]; }
@@ -96,8 +95,8 @@ Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
   return *met.bsdf;
 }
 
-/// Fills in the rest of `met` if met.hit is known. Evaluates the textures of the material at this hit; a normal map
-/// bends the normal.
+/// Fills in the rest of `met` if met.hit is known. `leg` [m]: length of the last straight part; `before` [m]: length of
+/// the path before that part. Evaluates the material's textures at the hit; a normal map changes met.hit.normal.
 inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
@@ -111,9 +110,9 @@ inline void IncomingRadiance::meet(Vec3 wo, float leg, float before, Met& met) c
   met.distance = before + leg;
 }
 
-/// Calls take(i, met, point) for each ray that meets a surface, in order; point: the point that represents the hit, or
-/// nullptr. Calls take_medium(i, collision, distance) for rays that a medium scatters before, with random numbers of
-/// key(i), and miss(i) for rays that leave the scene.
+/// Calls take(i, met, point) for each ray i that meets a surface, where `point` is the point that represents the hit,
+/// or nullptr. Calls take_medium(i, collision, distance) for rays that a medium scatters before they meet a surface,
+/// with random numbers of key(i), and miss(i) for rays that leave the scene.
 template <class Take, class Key, class TakeMedium, class Miss>
 void IncomingRadiance::follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take, const Key& key,
                               const TakeMedium& take_medium, const Miss& miss) const {
@@ -185,7 +184,7 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
           if (depth == 0) distance[i] = way;
           radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
         },
-        [&](std::size_t i) {  // a surface samples the environment itself where it sends the ray
+        [&](std::size_t i) {  // rays of surfaces do not count the environment: surfaces sample it directly
           const Further& from = now[i];
           if (from.phase > 0 && lights_.has_environment())
             radiance[from.of] += from.weight * weighed_environment(lights_, from.ray.direction, from.scattering());
@@ -193,12 +192,9 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   }
 }
 
-/// Threshold in [1/2, 3/2] for all decisions on close hits; its randomness avoids a visible border.
-inline float IncomingRadiance::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
-
-/// Radiance that the surface at a ray's end reflects, without emission. The Lambert lobe uses the point that represents
-/// the hit. If no point does, if the point's indirect light is not that of the hit, or if a first hit is close, the ray
-/// continues and `to.further` receives it. The other lobes are followed along one sampled direction.
+/// Radiance [W/m^2/sr] that the surface at a ray's end reflects, without emission. The Lambert lobe reads the point
+/// that represents the hit. If no point does, if indirect light around the point is not uniform, or if a first hit is
+/// close, the ray continues, and `to.further` receives it. The other lobes are followed along one sampled direction.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
   const Bsdf& bsdf = *met.bsdf;
@@ -215,7 +211,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
     const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
-    // Most hits are clearly not close: they need no random number.
+    // Most hits are not close whatever the random number is, so the first test needs none.
     const bool near = point && depth == 0 && PointLookup::is_near(*point, met.distance, 1) &&
                       PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather));
     if (point && !near && points_.is_uniform_indirect(*point)) {
@@ -223,8 +219,13 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       const bool even = lights_.empty() || points_.is_uniform(*point);
       if (source) source->partial |= !even;
       const float remaining = remaining_share(met, point, from);
-      result = scale * (even ? point->all : beside_edge(met, *point, from.sampled_lobe, random, to.counts)) * remaining;
-      if (source) source->noise += from.weight * scale * points_.point(*point).noise * remaining;
+      const IrradiancePoint& stored = points_.point(*point);
+      const Rgb light =
+          even ? point->all
+               : stored.indirect + stored.caustic +
+                     sampled_light(met, SeenSide(met.hit, met.wo), point, from.sampled_lobe, random, to.counts);
+      result = scale * light * remaining;
+      if (source) source->noise += from.weight * scale * stored.noise * remaining;
     } else {
       const Rgb kept = scale * (near ? 1.0f : remaining_share(met, point, from));
       result = kept * scattered(met, point, from, kept, random, depth, to);
@@ -232,14 +233,14 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
     }
   }
   if (!specular || depth >= kDeepest) return result;
-  // The other lobes: one sampled direction, with Russian roulette on its weight. The Lambert lobe was handled above.
+  // The other lobes: one sampled direction, with Russian roulette on its weight.
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
   const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
   const Bsdf::Direction wo = bsdf.along(side->wo_local);
   const float choice = random.get1(2, Purpose::lobe);
   const bool sampled =
       bright_ && !(material.transmission > 0) && !bsdf.specular_is_delta() && !bsdf.draws_diffuse(wo, choice);
-  if (sampled) {  // event S is drawn with this probability
+  if (sampled) {  // event S is drawn with the probability by which the light is divided
     const BrightLight light = bright_->arriving({met.hit, side->normal, &bsdf, true, met.wo}, 1, random, to.counts);
     result += Rgb(light.irradiance / double(1 - bsdf.fork_probability(wo)));
     if (source) source->partial = true;
@@ -258,8 +259,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
                                                    solid && front == next.transmitted ? &material : nullptr);
 }
 
-/// Radiance along a ray that continues after an event S or behind a pane at `start`. `distance`: length of the path so
-/// far [m]. The ray may be inside solid glass.
+/// Radiance [W/m^2/sr] along a ray that continues from `start` after an event S or behind a pane. `distance` [m]:
+/// length of the path before `start`. `inside`: material of the solid glass that the ray crosses, or null.
 Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 travel, float distance, Further from,
                                               int depth, const Gathered& to, const MaterialValues* inside) const {
   Hit hit;
@@ -289,9 +290,9 @@ Rgb IncomingRadiance::radiance_after_specular(const SurfacePoint& start, Vec3 tr
   return left * (emitted + reflected(met, point, from, depth, to));
 }
 
-/// Radiance that a medium scatters back along a ray from its collision, for light of one light sample. `to.further`
-/// receives the ray that continues, which also counts lights that it meets, weighted by MIS, and lights that it sees by
-/// events S, because no point holds their light here.
+/// Radiance [W/m^2/sr] that a medium scatters back along a ray at its collision, from one light sample. `to.further`
+/// receives the ray that continues. This ray also counts lights that it meets, weighted by MIS, and lights that it sees
+/// by events S, because no point holds their light at the collision.
 Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const {
   if (RadianceSource* const source = to.source_of(from)) source->partial = source->mover = true;
   const PathRandom random(from.key, kMediaNumbers + 1);
@@ -312,25 +313,26 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   return light;
 }
 
-/// Irradiance at a hit, without the light along the ray that continues, which `to.further` receives. Caustic light is
-/// that of the point that represents the hit, if there is one. Direct light is also the point's if the hit is farther
-/// away than about the spacing of the points, to which their direct light is accurate; otherwise it is a light sample.
-/// Without a point, the ray that continues finds all but direct light.
+/// Irradiance [W/m^2] at a hit from which the ray continues, without the light along that ray, which `to.further`
+/// receives. Caustic light is that of the point that represents the hit. Direct light is also that of the point if the
+/// hit is farther away than about a spacing, the distance over which the point's direct light is accurate; otherwise it
+/// is a light sample. If no point represents the hit, the ray that continues finds all light except direct light.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                                 const PathRandom& random, int depth, const Gathered& to) const {
   ++(point ? to.counts.near_hits : to.counts.unanswered);
   const SeenSide side(met.hit, met.wo);
   Rgb irradiance{0.0f};
   if (point) irradiance = points_.point(*point).caustic;
-  if (point && points_.is_uniform(*point) && met.distance >= points_.spacing() * threshold(random))
+  if (point && points_.is_uniform(*point) &&
+      met.distance >= points_.spacing() * (0.5f + random.get1(0, Purpose::gather)))
     irradiance += points_.point(*point).direct;
   else irradiance += sampled_light(met, side, point, from.sampled_lobe, random, to.counts);
   if (bright_) {
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
   }
-  // Each hit has its own random numbers, so the errors of neighbouring cells are independent. Hemisphere::noise assumes
-  // this when it estimates a record's variance from the differences of neighbouring cells.
+  // Each hit has its own random numbers, so that the errors of neighbouring cells are independent: Hemisphere::noise
+  // estimates a record's variance from the differences of neighbouring cells.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
@@ -340,28 +342,26 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   return irradiance;
 }
 
-/// The share that the ray contributes of the light at its hit, which `point` represents; 1 if no point does.
+/// The share that the ray contributes of the light at its hit. `point` represents the hit; 1 if it is nullptr.
 inline float IncomingRadiance::remaining_share(const Met& met, const PointLookup::Light* point,
                                                const Further& from) const {
   return from.sampled_lobe > 0 && point ? bright_->remaining_share(*point, met.leg * from.sampled_lobe) : 1.0f;
 }
 
-/// Direct irradiance at a hit from one sample of the directional lights, if there are any, and one of all others. If
-/// one sample chose between them, few samples of a room would find its window and its lamps, because a sun counts as
-/// unblocked in the choice. point: represents the hit, or nullptr. sampled_lobe: Further::sampled_lobe, for the light
-/// of close lamps (BrightPoints::remaining_lamp_share).
+/// Direct irradiance [W/m^2] at a hit, from one sample of the directional lights, if there are any, and one sample of
+/// all other lights. If one sample chose among all lights, few samples in a room would choose its window or its lamps,
+/// because the choice does not know that the sun is blocked. `point` represents the hit, or is nullptr. sampled_lobe:
+/// Further::sampled_lobe, which decides whether light of close lamps is left out (BrightPoints::has_lamp_light).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point,
                                     float sampled_lobe, const PathRandom& random, GatherCounts& counts) const {
   const Receiver at{met.hit, side.normal_geometric, side.normal, met.bsdf->has_specular() ? met.bsdf : nullptr};
   Rgb sum{0.0f};
   const auto add = [&](const DirectSample& direct) {
-    const float share = sampled_lobe > 0 && !direct.light.distant
-                            ? bright_->remaining_lamp_share(point, met.leg * sampled_lobe,
-                                                            length(direct.light.position - met.hit.position))
-                            : 1.0f;
-    if (!(share > 0)) return;
+    if (sampled_lobe > 0 && !direct.light.distant &&
+        bright_->has_lamp_light(point, met.leg * sampled_lobe, length(direct.light.position - met.hit.position)))
+      return;
     ++counts.shadow_rays;
-    sum += direct.irradiance * (transmittance(tracer_, direct.shadow, {random, 1, way_shadow}) * share);
+    sum += direct.irradiance * transmittance(tracer_, direct.shadow, {random, 1, way_shadow});
   };
   if (lights_.empty()) return sum;
   DirectSample direct;
@@ -373,15 +373,6 @@ Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const 
   if (sample_sun(lights_, at, random.get1(1, Purpose::sun), direct)) add(direct);
   if (sample_other_than_suns(lights_, at, u, direct)) add(direct);
   return sum;
-}
-
-/// Irradiance at a hit beside the edge of a shadow. Indirect and caustic light are those of the point; direct light
-/// changes within the point's area, so the hit samples direct light itself.
-Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, float sampled_lobe,
-                                  const PathRandom& random, GatherCounts& counts) const {
-  const IrradiancePoint& point = points_.point(light);
-  return point.indirect + point.caustic +
-         sampled_light(met, SeenSide(met.hit, met.wo), &light, sampled_lobe, random, counts);
 }
 
 }  // namespace tempolux

@@ -15,11 +15,15 @@
 
 namespace tempolux {
 
-/// near_hits: rays that continued although a point represents the hit, because the hit is close or the point's indirect
-/// light is not that of the hit. unanswered: rays that continued because no point represents the hit.
 struct GatherCounts {
-  std::uint64_t rays = 0, distance_rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
-  /// Records that were gathered twice: their variance, and the mean square of their noise (place_records.h).
+  std::uint64_t rays = 0;           ///< gather rays and rays that continue them
+  std::uint64_t distance_rays = 0;  ///< rays of FinalGather::distance()
+  std::uint64_t shadow_rays = 0, points_read = 0;
+  /// Rays that continued from a hit although a point represents it: the hit is close, or indirect light around the
+  /// point is not uniform.
+  std::uint64_t near_hits = 0;
+  std::uint64_t unanswered = 0;  ///< rays that continued because no point represents the hit
+  /// Sums over the records that were gathered twice: variance, and square of their noise (place_records.h).
   double twice_variance = 0, twice_noise = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
     rays += o.rays;
@@ -34,35 +38,35 @@ struct GatherCounts {
   }
 };
 
-/// What the radiance along a ray was computed from, for callers that store it.
+/// The origin of the radiance along a ray, for callers that keep the radiance.
 struct RadianceSource {
-  /// The irradiance point that represents the ray's first hit. kNone if no point does, or the hit has no Lambert lobe.
-  /// If the first hit is close, the ray continues to a second point. `point` is the first hit's even then, because the
-  /// choice between the two must not depend on their light (docs/methods/temporal.md).
+  /// The irradiance point that represents the ray's first hit; kNone if no point does, or if the hit has no Lambert
+  /// lobe. If the first hit is close and the ray continues to a second point, `point` is still that of the first hit:
+  /// the choice between the two must not depend on their light (docs/methods/temporal.md).
   std::uint32_t point = kNone;
-  bool partial = false;  ///< the radiance is more than this point's light times a constant
-  bool mover = false;    ///< the path meets a surface that moves in the segment
-  Rgb noise{0.0f};       ///< W/m^2/sr: noise that the radiance has from IrradiancePoint::noise
+  bool partial = false;  ///< true if the radiance is not the light of this point times a constant
+  bool mover = false;    ///< true if the path meets a surface that moves in the segment, or a medium
+  Rgb noise{0.0f};       ///< W/m^2/sr: the part of the radiance's noise that comes from IrradiancePoint::noise
 };
 
 struct MediumPoint;  // lib/transport/media.h
 class BrightPoints;  // lib/gather/bright_points.h
 
-/// Follows gather rays to their hits. Emission on the way does not count. Events S are followed. At the first Lambert
-/// lobe the point that represents the hit is read; if no point does or the first hit is close, the path continues.
-/// Media on the way attenuate and scatter. Thread-safe.
+/// Follows gather rays. Emission that they meet does not count. Events S are followed. At the first Lambert lobe the
+/// point that represents the hit is read; if no point represents it or the first hit is close, the path continues.
+/// Media attenuate and scatter. Thread-safe.
 class IncomingRadiance {
  public:
-  /// bright: points whose high part is sampled explicitly, so that rays contribute the rest
-  /// (BrightPoints::remaining_share); may be null.
+  /// bright: points whose high part is sampled explicitly, so that rays contribute the remaining share; may be null.
+  /// All arguments must outlive this object.
   IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                    const BrightPoints* bright = nullptr);
 
-  /// Computes the radiance [W/m^2/sr] that arrives along rays and counts as indirect light at their starts, and the
-  /// distance to each ray's first hit in m (infinity: none). keys: one random key per ray. Fastest if successive rays
-  /// leave one place in similar directions. All spans have the same length, except that `sources` may be empty. For
-  /// rays that start in a medium, lights seen by events S count, too, because no point holds their light.
   enum class Start : std::uint8_t { surface, medium };
+  /// Computes the radiance [W/m^2/sr] that arrives along rays and counts as indirect light at their starts, and the
+  /// distance to each ray's first hit [m] (infinity: none). keys: one random key per ray. Fastest if successive rays
+  /// start at one place in similar directions. All spans have the same length, except that `sources` may be empty. If
+  /// rays start in a medium, lights seen by events S count, too, because no point holds their light.
   void operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
                   std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources = {},
                   Start start = Start::surface) const;
@@ -85,9 +89,6 @@ class IncomingRadiance {
                               const Gathered& to, const MaterialValues* inside) const;
   Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                 const PathRandom& random, int depth, const Gathered& to) const;
-  static float threshold(const PathRandom& random);
-  Rgb beside_edge(const Met& met, const PointLookup::Light& light, float sampled_lobe, const PathRandom& random,
-                  GatherCounts& counts) const;
   Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, float sampled_lobe,
                     const PathRandom& random, GatherCounts& counts) const;
 

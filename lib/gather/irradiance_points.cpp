@@ -15,6 +15,7 @@
 #include "lib/density/morton.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/inside.h"
+#include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
 #include "lib/trace/solid_around.h"
 #include "lib/transport/direct_light.h"
@@ -36,30 +37,27 @@ constexpr std::uint32_t kMostSites = 1u << 30;  ///< per side of a surface
 
 using Areas = ParallelArray<double>;
 
-/// Area of each of a surface's triangles [m^2].
-Areas triangle_areas(const Surface& surface) {
-  const auto& triangles = surface.primitive->triangles;
-  Areas areas(triangles.size());
-  parallel_each(triangles.size(), 1 << 14, [&](std::size_t i) { areas[i] = triangle_area(surface, triangles[i]); });
-  return areas;
-}
-
-/// The triangles of a surface, or the pieces of them over which points are spread.
+/// The triangles of a surface, or the pieces of triangles, on which points are placed.
 struct Ground {
   std::vector<TrianglePiece> pieces;  ///< empty: all triangles
   Areas areas;                        ///< of each triangle or piece, m^2
 };
 
 Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
-  if (region.empty()) return {{}, triangle_areas(surface)};
+  if (region.empty()) {
+    const auto& triangles = surface.primitive->triangles;
+    Areas areas(triangles.size());
+    parallel_each(triangles.size(), 1 << 14, [&](std::size_t i) { areas[i] = triangle_area(surface, triangles[i]); });
+    return {{}, std::move(areas)};
+  }
   std::vector<TrianglePiece> pieces = pieces_in(surface, region);
   Areas areas(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) areas[i] = pieces[i].area;
   return {std::move(pieces), std::move(areas)};
 }
 
-/// A uniform random point on one side of the ground (`back`: the side that the triangles' normals point away from).
-/// `ground.areas` holds running sums: u.x chooses the piece by area and the first barycentric coordinate, u.y the
+/// A uniform random point on one side of the ground (`back`: the side from which the triangles' normals point away).
+/// `ground.areas` must hold running sums: u.x chooses the piece by area and the first barycentric coordinate, u.y the
 /// second. The normal is 0 if the triangle has no area.
 IrradiancePoint point_on(const Surface& surface, Ground& ground, Vec2 u, bool back) {
   const std::vector<TrianglePiece>& pieces = ground.pieces;
@@ -89,7 +87,7 @@ double add_up(Ground& ground) {
   return areas.empty() ? 0 : areas.back();
 }
 
-/// Points on one side of a surface.
+/// One side of a surface, on which `count` points are placed.
 struct SideOfSurface {
   const Surface& surface;
   Ground& ground;  ///< with running sums of areas
@@ -97,8 +95,8 @@ struct SideOfSurface {
   bool back;
 };
 
-/// The points of a scrambled Sobol sequence, uniform by area, that have a normal and that `wanted` accepts. `key`: of
-/// the sequence.
+/// The points of a scrambled Sobol sequence on a side, uniform by area, that have a normal and that `wanted` accepts.
+/// `key`: of the sequence.
 template <class Wanted>
 std::vector<IrradiancePoint> spread(const SideOfSurface& side, std::uint64_t key, const Wanted& wanted) {
   return parallel_found<IrradiancePoint>(side.count, 4096, [&](std::size_t i, std::vector<IrradiancePoint>& found) {
@@ -108,7 +106,7 @@ std::vector<IrradiancePoint> spread(const SideOfSurface& side, std::uint64_t key
   });
 }
 
-/// The spheres in which points are spread: some of the spheres around what cameras see; empty: everywhere. They are
+/// The spheres in which points are placed: some of the spheres around what cameras see; empty: everywhere. They are
 /// chosen by the area of static surfaces, or of movers if no static surface lies in the spheres.
 std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const AimSphere> seen) {
   if (seen.empty()) return {};
@@ -124,15 +122,14 @@ std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const
   return spheres_with_points(seen, stands ? standing : moving);
 }
 
-/// True if there are Lambert lobes under a coat that reflects: light must then be weighted by its direction.
+/// True if a material has a Lambert lobe under a coat: light must then be weighted by its direction.
 bool any_coated(const SceneFrame& frame) {
   return std::any_of(frame.materials.begin(), frame.materials.end(),
                      [](const Material& m) { return lobes_of(m).lambert && lobes_of(m).specular; });
 }
 
-/// True if shading normals differ from the triangles' by more than half a degree anywhere.
+/// True if a shading normal differs from the normal of its triangle by more than half a degree.
 bool any_bent(const SceneFrame& frame) {
-  constexpr float kBent = 0.99996f;
   return std::any_of(frame.surfaces.begin(), frame.surfaces.end(), [&](const Surface& surface) {
     const Material& material = frame.materials[surface.material];
     if (!may_have_lambert(material)) return false;
@@ -148,27 +145,26 @@ bool any_bent(const SceneFrame& frame) {
   });
 }
 
-/// Scattering at a point: the shading normal on the point's side, and the Bsdf if the Lambert lobe lies under a coat.
+/// How the surface scatters at a point.
 struct Scattering {
-  Vec3 normal, smooth;  ///< smooth: without a normal map
-  std::optional<Bsdf> coat;
+  Vec3 normal, smooth;       ///< shading normal on the point's side, with and without the normal map
+  std::optional<Bsdf> coat;  ///< the Bsdf if the Lambert lobe lies under a coat
 
   LitSurface lit(Vec3 geometric) const { return {geometric, smooth, normal, coat ? &*coat : nullptr}; }
 };
 
 Scattering plain(const IrradiancePoint& point) { return {point.normal, point.normal, {}}; }
 
-/// plain() if the point's surface is not found.
+/// Scattering at a point; plain() if no ray finds the point's surface.
 Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
   Hit hit;
   if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
     return plain(point);
   SurfacePoint there = tracer.surface_point(hit);
-  const auto on_its_side = [&](Vec3 normal) { return dot(normal, point.normal) < 0 ? -normal : normal; };
-  const Vec3 smooth = on_its_side(there.normal);
+  const Vec3 smooth = face_forward(there.normal, point.normal);
   const SurfaceMaterial material(tracer.frame(), there);
   const Bsdf bsdf(material, dot(there.normal_geometric, point.normal) > 0);
-  Scattering found{on_its_side(there.normal), smooth, {}};
+  Scattering found{face_forward(there.normal, point.normal), smooth, {}};
   if (bsdf.has_diffuse() && bsdf.has_specular()) found.coat = bsdf;
   return found;
 }
@@ -182,7 +178,7 @@ struct DirectLight {
   SolidAround around{tracer};
   bool looks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
 
-  /// How the surface scatters; plain() if no surface of the scene needs more.
+  /// Scattering at a point; plain() without a ray if all surfaces of the scene are flat and have no coat.
   Scattering scattering(const IrradiancePoint& point) const {
     return looks ? scattering_at(tracer, point, offset) : plain(point);
   }
@@ -199,7 +195,8 @@ struct DirectLight {
     });
     return Rgb(sum / double(samples));
   }
-  /// Calls each(sample, random bits for media on its path) for the stratified light samples that can light the point.
+  /// Calls each(sample, random bits for media on the shadow ray) for those of the stratified light samples that can
+  /// light the point.
   template <class Each>
   void for_samples(const IrradiancePoint& point, const Scattering& scattering, const PathRandom& random,
                    const Each& each) const {
@@ -221,8 +218,8 @@ std::vector<std::uint32_t> all_of(std::span<const IrradiancePoint> points) {
   return all;
 }
 
-/// Sorts points by position, so that successive look-ups and rays find their data in the cache. `which`: indices of
-/// points.
+/// Orders the points with the indices `which` by position, so that successive look-ups and rays find their data in the
+/// processor's cache.
 std::vector<std::uint32_t> in_space(const std::vector<IrradiancePoint>& points, std::span<const std::uint32_t> which) {
   std::vector<Vec3> positions;
   for (const std::uint32_t i : which) positions.push_back(points[i].position);
@@ -231,7 +228,7 @@ std::vector<std::uint32_t> in_space(const std::vector<IrradiancePoint>& points, 
   return order;
 }
 
-/// Box around all lights, in scene space; empty if there are distant lights.
+/// Box around all lights, in scene space; none if there are distant lights.
 std::optional<Box3> box_of_lights(const SceneFrame& frame) {
   if (frame.environment) return std::nullopt;
   Box3 box;
@@ -309,7 +306,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which,
                      std::vector<IrradiancePoint>& points) {
-  // Where photons were not aimed they are far apart, and their spacing says nothing about the places with points.
+  // Photons far from the points were not aimed and are far apart, so only photons in the region determine the radius.
   std::function<bool(Vec3)> where;
   if (const std::vector<AimSphere> region = region_of_points(tracer.frame(), options.seen); !region.empty())
     where = [region](Vec3 place) {
@@ -328,10 +325,11 @@ void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonVie
     const Scattering scattering = direct.scattering(point);
     point.direct = direct.at(point, scattering, random);
     const FootprintLight light = caustic.estimate(point.position, scattering.lit(point.normal));
-    Rgb noise{0.0f};
-    point.indirect = indirect.estimate(point, random, point.radius, &noise);
+    const PointDensity::Estimate rest = indirect.estimate(point, random);
+    point.indirect = rest.irradiance;
+    point.radius = rest.radius;
     point.caustic = light.irradiance;
-    point.noise = light.noise + noise;
+    point.noise = light.noise + rest.noise;
   });
 }
 

@@ -1,4 +1,4 @@
-// lib/gather/irradiance_points.h -- spreads irradiance points over the surfaces and estimates their light.
+// lib/gather/irradiance_points.h -- places irradiance points on the surfaces and estimates their light.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +19,15 @@ namespace tempolux {
 
 struct PointOptions {
   std::uint64_t seed = 0;
-  /// Number of points on the front sides of the static surfaces, summed over these surfaces; if no surface is static,
-  /// summed over all surfaces. The back sides get the same number. Movers get the same number per area, and every
-  /// surface gets at least one point.
+  /// Number of points on the front sides of all static surfaces together (of all surfaces if none is static). The back
+  /// sides get the same number. Movers get the same number per area, and every surface gets at least one point.
   std::uint32_t count = 20000;
-  /// Spheres around what cameras see, in scene space: points lie in these only. Empty: on all surfaces.
+  /// Spheres around what cameras see, in scene space: points lie only in these. Empty: points lie on all surfaces.
   std::vector<AimSphere> seen = {};
   int neighbours = 50;    ///< k of the density estimates
-  float max_radius = 0;   ///< m; 0: from the photons' spacing
+  float max_radius = 0;   ///< m; 0: from the photons (FootprintOptions, DensityOptions)
   int light_samples = 4;  ///< shadow rays per point for direct light
-  int area_probes = 32;   ///< probes that must arrive in a disc that walls or edges cut
+  int area_probes = 32;   ///< DensityOptions::area_probes
 };
 
 struct PlacedPoints {
@@ -37,10 +36,10 @@ struct PlacedPoints {
   float spacing = 1;
 };
 
-/// Places points uniformly by area on both sides of every surface with a Lambert lobe, without irradiance yet. With
-/// options.seen, only surfaces in those spheres (spheres_with_points) get points. The points of a surface depend on
-/// that surface, the seed, the spheres and the spacing alone, and the spacing depends on the static area. Points on
-/// static surfaces come first: they have the same positions and indices in every frame of a segment. Points on movers
+/// Places points uniformly by area on both sides of every surface with a Lambert lobe, without irradiance. With
+/// options.seen, only surfaces inside those spheres (spheres_with_points) get points. The points of a surface depend
+/// only on that surface, the seed, the spheres and the spacing, and the spacing depends on the static area. Points on
+/// static surfaces come first: they have the same positions and indices in all frames of a segment. Points on movers
 /// move with their triangles.
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 
@@ -51,14 +50,14 @@ struct PlacedSite {
 };
 
 /// Places that are uniform by area on both sides of the surfaces that have a Lambert lobe and belong to one of
-/// `objects` (id.object, ascending). The places lie within the sphere `around` or slightly outside (pieces_in). Each
-/// represents at most `area` [m^2]; the areas of a side add up to the surface's area. Returns only places inside the
-/// sphere that `wanted` accepts; `wanted` is called from many threads.
+/// `objects` (id.object, ascending). The places lie inside the sphere `around` or slightly outside (pieces_in). Each
+/// place represents at most `area` [m^2]; the areas of all places on a side add up to the area of that part of the
+/// surface. Returns only the places that `wanted` accepts; `wanted` is called from many threads.
 std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects,
                                     const AimSphere& around, double area, std::uint64_t seed,
                                     const std::function<bool(Vec3)>& wanted);
 
-/// The place of a point as a start of rays that begin `offset` m above the surface; the shading normal is the point's.
+/// The place of a point as a start of rays, which begin `offset` [m] above the surface. Both normals are the point's.
 inline SurfacePoint surface_of(const IrradiancePoint& point, float offset) {
   SurfacePoint surface{};
   surface.position = point.position;
@@ -67,25 +66,25 @@ inline SurfacePoint surface_of(const IrradiancePoint& point, float offset) {
   return surface;
 }
 
-/// Estimates the irradiance of all points. Direct light: by light sampling with stratified shadow rays, the shading
-/// normal at the point, and times Bsdf::arrival_weight under a coat. Caustic and indirect light: by the density of the
-/// photons of that kind (FootprintDensity, PointDensity); caustic light also with the shading normal if the photons
-/// store directions. Normal maps are read at their finest level, because points represent the hits of gather rays.
-///
-/// photon_shift is added to the photons' positions: the scene's space minus theirs. Same results for any number of
-/// threads.
+/// Estimates the irradiance of all points.
+/// - Direct light: by light sampling with stratified shadow rays and the shading normal at the point, times
+/// Bsdf::arrival_weight under a coat.
+/// - Caustic light: by FootprintDensity, with the shading normal if the photons store directions.
+/// - Indirect light: by PointDensity.
+/// Normal maps are read at their finest level, because points represent the hits of gather rays. photon_shift [m] is
+/// added to the photons' positions and brings them into scene space. Same results for any number of threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::vector<IrradiancePoint>& points);
 
-/// Estimates only the points with these indices; the result for each is the same as among all.
+/// Estimates only the points with these indices, with the same results as if all points were estimated.
 void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which,
                      std::vector<IrradiancePoint>& points);
-/// Estimates the caustic light of all points by this density, as estimate_points does.
+/// Estimates the caustic light of all points as estimate_points() does, with this density.
 void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std::vector<IrradiancePoint>& points);
-/// Samples direct light again, as estimate_points does, at points with a shadow ray that meets a box of `watch`, or at
-/// all points if `watch` is nullptr. The other points keep their light, because their light samples meet the same
-/// surfaces. Returns the number of points sampled.
+/// Samples direct light again, as estimate_points() does, at points with a shadow ray that meets a box of `watch`, or
+/// at all points if `watch` is nullptr. The other points keep their light, because their shadow rays meet the same
+/// surfaces as before. Returns the number of points sampled.
 std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch,
                           const PointOptions& options, std::vector<IrradiancePoint>& points);
 /// Random numbers of a point, keyed by its index.

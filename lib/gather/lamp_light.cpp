@@ -2,21 +2,22 @@
 
 #include <optional>
 
-#include "lib/core/parallel.h"
+#include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
 #include "lib/core/sobol.h"
-#include "lib/transport/media.h"
+#include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
+#include "lib/transport/media.h"
 
 namespace tempolux {
 namespace {
 
 constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;  ///< limits of the number of emitted photons
-constexpr std::size_t kEnough = 1 << 10;                   ///< photons that must land: their flux is then known to 3 %
+constexpr std::size_t kEnough = 1 << 10;  ///< photons that must land: the relative error of their sum is then 3 %
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
-/// Where a photon lands, if it meets a Lambert lobe within `reach` m, maybe behind panes. Its flux is that of a map
-/// with a single photon.
+/// Where a photon lands, if it meets a Lambert lobe within `reach` [m]. It may pass panes on its way. Its flux [W] is
+/// that of the only photon of a map.
 std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission,
                                  float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;
@@ -43,8 +44,7 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   const Bsdf bsdf(material, front);
   if (!bsdf.has_diffuse()) return std::nullopt;
   const Vec3 normal = front ? place.normal_geometric : -place.normal_geometric;
-  const float cosine = dot(wi, dot(place.normal, normal) < 0 ? -place.normal : place.normal),
-              geometric = dot(wi, normal);
+  const float cosine = dot(wi, face_forward(place.normal, normal)), geometric = dot(wi, normal);
   const float distance = length(place.position - emission.origin);
   if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
   const PointLookup::Light* const point = points.find(place.position, normal);
@@ -62,22 +62,19 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
 std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points,
                                              std::uint64_t seed) {
   if (!(points.spacing() > 0) || !lights.has_placed()) return {};
-  constexpr std::size_t kChunk = 1024;
   const std::uint64_t key = mix64(seed ^ kKey);
   const float reach = kBesideLamp * points.spacing();
   std::vector<LampPhoton> all;
   std::size_t done = 0;
   for (std::size_t wanted = kFewest; wanted <= kMost; wanted *= 2) {
-    std::vector<std::vector<LampPhoton>> found((wanted - done) / kChunk);
-    parallel_chunks(wanted - done, kChunk, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = done + first; i < done + last; ++i) {
-        const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
-        const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
-        if (std::optional<LampPhoton> photon = landed(tracer, points, emission, reach, PathRandom(key, i)))
-          found[first / kChunk].push_back(*photon);
-      }
-    });
-    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    const auto more =
+        parallel_found<LampPhoton>(wanted - done, 1024, [&](std::size_t j, std::vector<LampPhoton>& found) {
+          const std::size_t i = done + j;
+          const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
+          const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
+          if (const auto photon = landed(tracer, points, emission, reach, PathRandom(key, i))) found.push_back(*photon);
+        });
+    all.insert(all.end(), more.begin(), more.end());
     done = wanted;
     if (all.empty() || all.size() >= kEnough) break;
   }

@@ -11,18 +11,21 @@
 namespace tempolux {
 namespace {
 
-constexpr float kLeastShare = 0.01f;  ///< of the mean irradiance: as a divisor, darker light counts as this much
+/// As a divisor, irradiance counts as at least this share of the records' mean. If the mean is shown as 18 % grey,
+/// light of 1 % of the mean has 6 codes in sRGB, and a change of it by `low`, 6 %, is a third of a code.
+constexpr float kLeastShare = 0.01f;
 
-/// A record counts as influenced from this share of the lower threshold on: sums of floats lose less by rounding.
+/// A record counts as influenced above this share of the lower threshold. The remaining .1 % is more than the rounding
+/// errors of sums of floats.
 constexpr float kBelow = 0.999f;
 
-/// The least weight above 0. Tools count denormal numbers as 0, so denorm_min() would be no weight.
+/// The smallest normal number: tools count denormal numbers as 0, so a smaller weight would be no weight.
 constexpr float kAnyWeight = std::numeric_limits<float>::min();
 
-/// Dynamic photons are searched in a disc this much wider than the disc of k static photons. With k = 50 and an
-/// influence of .06, the lower threshold, the wide disc holds .06 x 50 x 7^2 = 150 dynamic photons. Their standard
-/// deviation is sqrt(150) / (50 x 7^2) = .5 % of the static light, about the noise of gather rays. The narrow disc
-/// would hold 3 photons with a standard deviation of 3.5 %, which a viewer sees as flicker (docs/methods/dynamic.md).
+/// Radius of the disc of dynamic photons, over the radius of the disc of k static photons. With k = 50 and an influence
+/// of .06, the lower threshold, the wide disc holds .06 x 50 x 7^2 = 150 dynamic photons. Their standard deviation is
+/// sqrt(150) / (50 x 7^2) = .5 % of the static light, about the noise of gather rays. The narrow disc would hold 3
+/// photons with a standard deviation of 3.5 %, which a viewer sees as flicker (docs/methods/dynamic.md).
 constexpr float kWider = 7;
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {

@@ -15,7 +15,8 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kAtOnce = 1024;  ///< photons, or elements, per piece of parallel work
-/// Low bits, of 16, that are dropped from the normal of a joined element: 64 directions remain.
+/// Low bits that are dropped from each coordinate (of 16 bits) of a normal when elements are joined: 64 directions
+/// remain, about kSameWay apart.
 constexpr int kNormalBits = 13;
 constexpr float kReach = 3;  ///< radius at which a Gaussian is cut, in standard deviations
 
@@ -31,13 +32,13 @@ Corners corners_of(const SceneFrame& frame, std::uint32_t surface, std::uint32_t
   return {s.position(index[0]), s.position(index[1]), s.position(index[2])};
 }
 
-/// An element with its flux to be filtered.
+/// An element, or several joined ones, whose flux is filtered.
 struct Sample {
   Vec3 position, normal;
   Rgbd flux{0.0};  ///< W
   float area = 0;
-  float width = 0;          ///< m: width of the filter around it
-  std::uint32_t group = 0;  ///< samples share light only within a group: a material, inside or outside of solids
+  float width = 0;          ///< m: width of the filter around the sample
+  std::uint32_t group = 0;  ///< a material, inside or outside of solids: samples share light only within a group
   double squares = 0;       ///< W^2: variance of the flux's luminance
 };
 
@@ -48,7 +49,7 @@ struct Smoothed {
   std::vector<double> variance;  ///< (W/m^2)^2
 };
 
-/// Finds samples by group and place, in cubes that are as wide as the filter.
+/// Finds samples by group and place, in cubes that are as wide as the filter's reach.
 class Neighbours {
  public:
   Neighbours(const std::vector<Sample>& samples, float reach) : per_m_(1 / reach) {
@@ -83,7 +84,7 @@ class Neighbours {
   std::unordered_map<Cube, std::vector<std::uint32_t>, Hash> cubes_;
 };
 
-/// Weight of a neighbour of the same group from its position alone; 0: it does not count.
+/// Weight of neighbour b, of the same group, in the filter around a; 0 if b does not count.
 float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   const float width = a.width;
   const Vec3 d = b.position - a.position;
@@ -94,7 +95,7 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of all samples with a width: flux over area under the kernel.
+/// Irradiance of all samples whose width is above 0: flux over area under the kernel.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
             Smoothed& result) {
   parallel_each(samples.size(), kAtOnce, [&](std::size_t i) {
@@ -114,12 +115,12 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
   });
 }
 
-/// Elements that are joined because the filter does not resolve them: those in one cube of this edge [m] with the
-/// same orientation and group.
+/// Elements joined into fewer samples, because the filter does not resolve them.
 struct Joined {
   std::vector<Sample> cubes;
   std::vector<std::uint32_t> of;  ///< by element: the index of its cube
 };
+/// Joins elements in one cube of this edge [m] that have the same orientation and group.
 Joined join(const std::vector<Sample>& samples, float edge) {
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;
   Joined joined;
@@ -147,8 +148,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
   return joined;
 }
 
-/// Smooths each sample with its own width; samples whose widths are within a factor of two are processed together.
-/// Small elements are joined first, so that the cost depends on the widths and not on the number of triangles.
+/// Smooths each sample with its own width. Samples whose widths are within a factor of two are processed together.
+/// Small elements are joined first, so that the cost depends on the widths and not on the number of elements.
 void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Smoothed& result) {
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -178,7 +179,7 @@ Smoothed gaussian_of(const std::vector<Sample>& samples, double width) {
   return result;
 }
 
-/// Scales the result so that each object keeps its flux from before smoothing, by channel.
+/// Scales the irradiance so that each object keeps the flux of each channel that it had before smoothing.
 void put_right(const std::vector<Sample>& samples, const std::vector<formats::MeshElement>& elements,
                std::vector<Rgbd>& irradiance) {
   std::map<std::uint16_t, std::pair<Rgbd, Rgbd>> flux;  // before, after
@@ -195,13 +196,14 @@ void put_right(const std::vector<Sample>& samples, const std::vector<formats::Me
 
 /// Share of a band that is kept: signal / (signal + noise) [Wiener]. A band is light filtered by a Gaussian of
 /// deviation s minus light filtered by a Gaussian of deviation 2 s. `mean_square`: the band's mean square. `variance`:
-/// the variance v of the light filtered with s. White noise of density q, filtered once with s and once with t, has the
-/// covariance q / (2 pi (s^2 + t^2)). With t = s this is v, so the noise in the band is v (1 + 1/4 - 2 x 2/5) = .45 v.
+/// the variance v of the light filtered with s. White noise of density q that is filtered with s and with t has the
+/// covariance q / (2 pi (s^2 + t^2)). For t = s this is v, so the noise in the band is v (1 + 1/4 - 2 x 2/5) = .45 v.
 double kept_share(double mean_square, double variance) {
   return mean_square > 0 ? std::max(0.0, 1 - 0.45 * variance / mean_square) : 0;
 }
 
-/// True if the first surface above the place shows its back: the place is inside a solid, where no light arrives.
+/// True if a ray from the place along its normal meets the back of a surface: the place is inside a solid, where no
+/// light arrives.
 bool inside_solid(const Tracer& tracer, Vec3 place, Vec3 normal) {
   const float above = max_component(abs(place)) * 0x1p-18f;  // the largest rounding error
   Hit hit;
@@ -282,7 +284,7 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
   parallel_each(photons.size(), kAtOnce, [&](std::size_t i) {
     const formats::Photon& photon = photons[i];
     const Vec3 normal = vec_of(formats::decode_normal(photon.normal)), position = vec_of(photon.position) + offset;
-    // start of the ray above the surface: the largest rounding error, or a thousandth of a cell
+    // m: height at which the ray starts. Above the largest rounding error, and at least a thousandth of a cell.
     const float above = std::max(float(cuts_.cell()) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
     Hit hit;
     if (!tracer_.intersect({position + normal * above, -normal, 0, 2 * above}, hit)) return;
@@ -405,7 +407,7 @@ void smooth_by_scales(const Tracer& tracer, const MeshFlux& flux, double width, 
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double a = kept_share(squares.light[i].r, fine.variance[i]),
                  b = std::max(a, kept_share(squares.light[i].g, middle.variance[i]));
-    // a convex sum, so that no light becomes negative by rounding
+    // Written as a convex sum, so that rounding makes no light negative.
     light[i] = coarse.light[i] * (1 - b) + middle.light[i] * (b - a) + fine.light[i] * a;
     samples[i].flux = flux.mean[i];
   }

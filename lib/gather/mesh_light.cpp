@@ -14,17 +14,17 @@ namespace {
 
 constexpr float kSamePlace = 1e-3f;  ///< share of a cell: corners closer than this coincide
 
-/// A key for each side: 32 bits of surface, 31 of triangle, one of side.
+/// The key of a side of a triangle: 32 bits of surface, 31 of triangle, one of side.
 std::uint64_t key(std::uint32_t surface, std::uint32_t triangle, std::uint32_t side) {
   return std::uint64_t(surface) << 32 | std::uint64_t(triangle & 0x7fffffffu) << 1 | side;
 }
 
-/// Index of a corner among those of its side.
+/// Index of a corner among the corners of its side, whose edges are cut into n parts.
 std::uint32_t corner(std::uint32_t n, std::uint32_t column, std::uint32_t row) {
   return row * (n + 1) - row * (row - 1) / 2 + column;
 }
 
-/// Column and row of the corners of a cell.
+/// Columns and rows of the three corners of a cell.
 std::array<std::array<std::uint32_t, 2>, 3> corners_of(const formats::MeshPlace& p) {
   if (p.tip) return {{{p.column + 1, p.row}, {p.column, p.row + 1}, {p.column + 1, p.row + 1}}};
   return {{{p.column, p.row}, {p.column + 1, p.row}, {p.column, p.row + 1}}};

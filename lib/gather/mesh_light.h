@@ -1,7 +1,7 @@
 // lib/gather/mesh_light.h -- reads a light texture at hits.
 #pragma once
 
-#include <tuple>
+#include <compare>
 #include <unordered_map>
 #include <vector>
 
@@ -12,16 +12,16 @@
 
 namespace tempolux {
 
-/// Irradiance [W/m^2] of a .meshirrad file where a ray meets a surface. Thread-safe.
+/// Irradiance [W/m^2] of a .meshirrad file at hits. Thread-safe.
 ///
-/// The value at a corner is the mean, weighted by area, over the elements that meet there, face the same way (normals
-/// within 30 degrees) and have the same material. Within an element the value is linear between its corners. So edges
-/// between elements are invisible, and uniform light stays uniform.
+/// Each element has a value at each of its corners: the mean, weighted by area, over the elements that meet there, face
+/// the same way (kSameWay) and have the same material. Within an element the irradiance is linear between the corners.
+/// So edges between elements are invisible, and uniform light stays uniform.
 class MeshLight {
  public:
   /// `frame`: the frame of the file.
   MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame);
-  /// Irradiance at the hit, on the side to which `geometric` (unit) points. 0 where the file has no element.
+  /// Irradiance at the hit, on the side to which `geometric` (unit) points. 0 if the file has no element there.
   Rgb irradiance(const SurfacePoint& hit, Vec3 geometric) const;
   std::size_t size() const { return size_; }
 
@@ -34,9 +34,7 @@ class MeshLight {
   struct Meeting {
     std::uint64_t place = 0;                ///< hash of the position
     std::uint32_t element = 0, corner = 0;  ///< corner: index into corners_
-    bool operator<(const Meeting& o) const {
-      return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner);
-    }
+    auto operator<=>(const Meeting&) const = default;
   };
   void join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements, const SceneFrame& frame);
 

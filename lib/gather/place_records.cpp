@@ -10,9 +10,9 @@
 namespace tempolux {
 namespace {
 
-constexpr int kCoarsest = 16;
+constexpr int kCoarsest = 16;  ///< pixels: stride of the first lattice
 
-/// Pixels of the lattice of `stride` that are on no coarser one, row by row.
+/// Pixels of the lattice of this stride that are on no coarser lattice, row by row.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
   std::vector<std::size_t> pixels;
   for (int y = 0; y < height; y += stride)
@@ -30,7 +30,7 @@ struct Glimpse {
   std::uint32_t object = 0;
   bool any = false, by_choice = false;
 
-  /// True if another surface may lie between the centres of these two neighbouring pixels.
+  /// True if an edge may lie between the centres of these two neighbouring pixels.
   bool parted_from(const Glimpse& o) const {
     if (any != o.any || object != o.object) return true;
     if (!any) return false;
@@ -56,10 +56,10 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
   return pixels;
 }
 
-/// Adds a record that was gathered twice to `counts`. Squared errors are weighted as a viewer sees them: the squared
-/// slope of the sRGB curve is proportional to level^(-7/6). Errors of gradients are left out: the noise estimated
-/// with them, at the mean distance of interpolation, was 1.12 times the difference of two seeds in a hut's picture,
-/// and 1.02 times without them.
+/// Adds the variance and the noise of a record that was gathered twice to `counts`. Both are weighted as a viewer sees
+/// errors: by the squared slope of the sRGB curve, which is proportional to level^(-7/6). Errors of gradients do not
+/// count: with them, at the mean distance of interpolation, the estimated noise of a hut's picture was 1.12 times the
+/// difference of two seeds, and 1.02 times without them.
 void compare(const IrradianceRecord& once, const IrradianceRecord& again, GatherCounts& counts) {
   const Rgbd a(once.irradiance), b(again.irradiance), n(once.noise), m(again.noise);
   const double level = channel_mean(a + b);
@@ -69,7 +69,7 @@ void compare(const IrradianceRecord& once, const IrradianceRecord& again, Gather
   counts.twice_noise += seen * channel_mean(n * n + m * m);
 }
 
-/// Adds records at points that none covers yet.
+/// Adds records at points that are not yet covered.
 class Placement {
  public:
   Placement(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
@@ -82,11 +82,11 @@ class Placement {
         counts_(counts),
         source_(picture.source) {}
 
-  /// Covers the points of `pixels`, in a fixed shuffled order. look(pixel) is where to look, note(pixel, seen)
-  /// receives the seen point. checked: every fourth point is gathered twice.
+  /// Covers the points of `pixels`, in a fixed shuffled order. look(pixel) returns the raster position of a pixel;
+  /// note(pixel, seen) receives its point. checked: every fourth point is gathered twice.
   template <class LookAt, class Note>
   void cover(const std::vector<std::size_t>& pixels, bool checked, const LookAt& look, const Note& note) {
-    // A covered point stays covered, so only uncovered points are sorted and tested again, batch by batch.
+    // A covered point stays covered, so only points that are open here are sorted and tested again, batch by batch.
     std::vector<Open> open = parallel_found<Open>(pixels.size(), 1024, [&](std::size_t i, std::vector<Open>& found) {
       const std::optional<SeenPoint> seen = view_(look(pixels[i]));
       if (!seen) return;
@@ -136,7 +136,7 @@ class Placement {
       }
   }
 
-  static constexpr std::size_t kCheckedOneIn = 4;
+  static constexpr std::size_t kCheckedOneIn = 4;  ///< one record in this many is gathered twice
   const FinalGather& gather_;
   const FinalGather again_;
   const PixelView& view_;
@@ -161,8 +161,7 @@ float radius_of(const IrradianceRecord& record, float footprint, const Placement
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   record.radius = radius_of(record, footprint, options);
   record.radius_unclamped = radius_by_distances(record, footprint, options);
-  // In double, sums of gradients stay finite for light of any strength, and light scaled by a power of two keeps the
-  // same share of its gradients.
+  // The sums are in double, so that they stay finite for light of any strength.
   double kept = std::min(1.0, double(record.radius_unclamped) / double(record.radius)), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
   const double e = channel_sum(Rgbd(record.irradiance)), over = kept * slope * double(record.radius);

@@ -12,12 +12,12 @@
 namespace tempolux {
 
 struct PlacementOptions {
-  float error_bound = 0.2f;  ///< radius of a record over the harmonic mean distance of what it sees
-  float min_radius_px = 4;   ///< a record's radius is at least this many pixels
-  /// Radius in pixels where all rays miss, so that no distance limits it. Mitsuba and PBRT limit all radii to 7 and 6
-  /// times the least.
+  float error_bound = 0.2f;  ///< radius of a record over the harmonic mean distance of the surfaces around it
+  float min_radius_px = 4;   ///< smallest radius of a record, in pixels
+  /// Radius in pixels if all rays miss, so that no distance limits the radius. Mitsuba and PBRT limit all radii to 7
+  /// and 6 times the smallest radius.
   float unseen_radius_px = 32;
-  /// Sum of weights at which a place counts as covered; a record has the weight 1 at its own place.
+  /// A place is covered if the records' weights add up to this. A record has the weight 1 at its own place.
   float min_weight = 0.9f;
 };
 
@@ -25,30 +25,33 @@ struct PlacementOptions {
 struct SeenPoint {
   SurfacePoint surface;
   Vec3 normal;             ///< shading normal on the side seen
-  float footprint = 0;     ///< m: size of a pixel there
-  bool by_choice = false;  ///< the path has passed a surface at which it chose one of several directions
-  /// The path's throughput [1] from the point to the camera: what mirrors and glass leave, divided by the probabilities
-  /// of the branches. With Look::random the mean of passed times the point's radiance is what the camera receives.
+  float footprint = 0;     ///< m: size of a pixel at the point
+  bool by_choice = false;  ///< true if the path chose one of several directions at a surface
+  /// The path's throughput [1] between point and camera: transmittance and reflectance on the path, divided by the
+  /// probabilities of the chosen branches. With Look::random the mean of passed x (radiance of the point) is the
+  /// radiance that the camera receives.
   Rgb passed{1.0f};
 };
 
-/// A raster position of a picture. Where the path forks (glass, gloss), `random` chooses the branch. Without `random`
-/// the likelier branch is taken.
+/// A raster position of a picture, in pixels. Where the path forks (glass, gloss), `random` chooses the branch; without
+/// `random` the path takes the more probable branch.
 struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;
 };
-/// What a raster position sees. Empty where no indirect light is needed. Thread-safe.
+/// Finds the point that a raster position sees; none if no indirect light is needed there. Must be thread-safe.
 using PixelView = std::function<std::optional<SeenPoint>(const Look&)>;
 
 /// Makes records in place of FinalGather::gather, for callers that keep the gathered radiance.
 struct RecordSource {
-  /// Makes a record with its limited radius and its clearance. slot: index below kPlacedTogether among the records that
-  /// are gathered in parallel.
+  /// Makes a record with its limited radius and its clearance. `slot`: number, below kPlacedTogether, of the record
+  /// among those that are gathered in parallel.
   std::function<IrradianceRecord(const SeenPoint&, std::size_t slot, GatherCounts&)> gather;
   /// Called when the record of a slot has been added to the store; may be empty.
   std::function<void(std::size_t slot)> added = {};
 };
+/// Places of a batch. Records of one batch do not cover each other's places. Half and twice the value change the seen
+/// error less than another seed does (docs/notebook/constants.md).
 inline constexpr std::size_t kPlacedTogether = 256;
 
 /// A picture that needs records.
@@ -56,31 +59,32 @@ struct RecordPicture {
   PixelView view;
   int width, height;                          ///< pixels
   std::function<void(double)> progress = {};  ///< called with values in [0, 1]; may be empty
-  const RecordSource* source = nullptr;       ///< makes the records; null: FinalGather::gather does
+  const RecordSource* source = nullptr;       ///< makes the records; null: FinalGather::gather makes them
 };
 
-/// Adds records until the point of every pixel is covered. Takes the points through the pixel centres of lattices with
-/// a stride of 16, 8, 4, 2 and 1 pixels, each in a fixed shuffled order and in batches of fixed size. A batch is tested
-/// and gathered in parallel, and its records are added in order. Then takes four more points in each pixel at an edge
+/// Adds records until the point of every pixel is covered. Tests the points at the pixel centres of lattices with a
+/// stride of 16, 8, 4, 2 and 1 pixels, each in a fixed shuffled order and in batches of fixed size. A batch is tested
+/// and gathered in parallel, and its records are added in order. Then tests four more points in each pixel at an edge
 /// or behind glass, so that a frame's samples find records there, too. Same records for any number of threads. Returns
 /// the number of added records.
 ///
 /// Every fourth record of the coarsest lattice is gathered twice, with independent random numbers. Half of the squared
-/// difference of the two is the variance of one. The `noise` of all added records is scaled by the root of that
-/// variance over the mean square of `noise`, both summed in `counts` over all calls. Records of a `source` are gathered
+/// difference of the two is the variance of one. The `noise` of all added records is multiplied by the square root of
+/// (that variance / mean square of `noise`), both summed in `counts` over all calls. Records of a `source` are gathered
 /// once.
 std::size_t place_records(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
                           RecordStore& store, GatherCounts& counts);
 
-/// Radius r [m] of a record from R, the harmonic mean distance of what it sees (FinalGather::distance) [Ward,
-/// Rubinstein and Clear 1988]: error_bound R, or unseen_radius_px footprints if R is infinite, but at least
-/// min_radius_px footprints [Tabellion and Lamorlette 2004].
+/// Radius r [m] of a record from R = record.radius_unclamped, the harmonic mean distance of the surfaces around it
+/// (FinalGather::distance) [Ward, Rubinstein and Clear 1988]: error_bound R, or unseen_radius_px footprints if R is
+/// infinite, but at least min_radius_px footprints [Tabellion and Lamorlette 2004]. `footprint` [m]: size of a pixel.
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
-/// Sets the radius of a gathered record whose radius_unclamped is R. radius_unclamped then holds r before min_radius_px
-/// is applied. Reduces the translational gradient
-/// - by the ratio of r before and after min_radius_px, because a gradient next to a wall is large, noisy and valid only
-///   within the smaller radius [Jakob, Mitsuba 0.6];
+/// Sets the radius of a gathered record to radius_of(). radius_unclamped, which is R before, becomes r without the
+/// limit by min_radius_px. Reduces the translational gradient
+/// - by the ratio of radius_unclamped and radius, because a gradient next to a wall is large, noisy and valid only
+/// within
+///   the smaller radius [Jakob, Mitsuba 0.6];
 /// - so far that the irradiance is not negative within the radius.
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);
 

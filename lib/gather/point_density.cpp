@@ -27,43 +27,28 @@ PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList&
   return {std::sqrt(found.distance2()[farthest]), farthest};
 }
 
-/// The estimate for radii that float coordinates do not resolve.
-Rgb PointDensity::plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const {
-  const IrradianceEstimate estimate =
-      estimate_irradiance(index_, position, normal, {options_.neighbours, options_.max_radius}, found);
-  radius = estimate.radius;
-  return Rgb(estimate.irradiance);
-}
-
-Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& random, float& radius, Rgb* noise) const {
+PointDensity::Estimate PointDensity::estimate(const IrradiancePoint& point, const PathRandom& random) const {
   thread_local NeighbourList found;
   const auto [found_radius, farthest] = find(point.position, point.normal, found);
-  radius = float(found_radius);
-  if (radius == 0) return Rgb(0.0f);
-  if (!(radius > 4 * area_.offset())) return plain(point.position, point.normal, radius, found);
-  const bool whole = area_.whole(point.position, point.normal, radius, random.get1(2, Purpose::points));
-  // In a whole disc everything in its plane is reachable. A sheet close above the plane may still belong to another
-  // side.
-  const auto counts = [&](std::uint32_t photon) {
-    const Vec3 place = index_.position(photon);
-    return (whole && std::abs(dot(place - point.position, point.normal)) < 4 * area_.offset()) ||
-           area_.reach()(point.position, point.normal, place, index_.normal(photon));
-  };
+  if (found_radius == 0) return {};
+  const auto radius = float(found_radius);
+  if (!(radius > 4 * area_.offset())) {  // float coordinates do not resolve the disc, so its area is not measured
+    const IrradianceEstimate plain =
+        estimate_irradiance(index_, point.position, point.normal, {options_.neighbours, options_.max_radius}, found);
+    return {Rgb(plain.irradiance), Rgb(0.0f), plain.radius};
+  }
+  const ReachableArea::Disc disc = area_.measure(point.position, point.normal, radius, options_.area_probes, random);
   Rgbd flux{0.0}, signed_flux{0.0};
-  bool any = false;
   for (std::size_t i = 0; i < found.count(); ++i) {
     const std::uint32_t photon = found.photons()[i];
-    if (i == farthest || !counts(photon)) continue;
+    if (i == farthest ||
+        !area_.reaches(disc, point.position, point.normal, index_.position(photon), index_.normal(photon)))
+      continue;
     flux += Rgbd(index_.flux(photon));
     signed_flux += Rgbd(index_.flux(photon)) * double(signs_[photon]);
-    any = true;
   }
-  if (!any) return Rgb(0.0f);
-  const double inverse = whole ? 1 / (double(kPi) * double(radius) * double(radius))
-                               : area_.inverse(point.position, point.normal, radius, options_.area_probes,
-                                               ReachableArea::Kernel::flat, random);
-  if (noise) *noise = Rgb(signed_flux * inverse);
-  return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
+  const Rgbd positive{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)};
+  return {Rgb(positive * disc.inverse), Rgb(signed_flux * disc.inverse), radius};
 }
 
 }  // namespace tempolux

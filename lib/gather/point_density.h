@@ -16,37 +16,41 @@ namespace tempolux {
 
 struct DensityOptions {
   int neighbours = 50;                   ///< k
-  float max_radius = 0;                  ///< m; 0: kSparser times the photons' own radius (photon_reach)
+  float max_radius = 0;                  ///< m; 0: kSparser times photon_reach()
   int area_probes = 32;                  ///< probes that must arrive if the disc is not whole
-  std::function<bool(Vec3)> where = {};  ///< places whose photons determine the photons' own radius; empty: all
+  std::function<bool(Vec3)> where = {};  ///< places whose photons photon_reach() measures; empty: all
 };
 
-/// Density estimates over one set of photons. Thread-safe.
+/// Irradiance at points by density estimation over one set of photons. Thread-safe.
 ///
 ///     E [W/m^2] = (flux of the reachable photons among the k-1 nearest) / (reachable area)
 ///
-/// Distances are measured by an ellipsoid around the point, whose axis along the normal is a tenth of the others. Only
-/// surfaces within 84 degrees of the point's plane count. The area is measured inside the ellipsoid that touches the
-/// k-th photon. If the ellipsoid of max_radius holds fewer than k photons, the sum is over all photons in it, and the
-/// area is measured inside this ellipsoid.
+/// Distances are measured in the metric of an ellipsoid around the point, whose axis along the normal is a tenth of the
+/// others. Only surfaces within 84 degrees of the point's plane count. The area is that of the reachable surface inside
+/// the ellipsoid that touches the k-th photon. If fewer than k photons are within max_radius, all of them are summed,
+/// and the area is that inside the ellipsoid of max_radius.
 ///
 /// If light is uniform on the reachable surface, E is unbiased, whatever the light elsewhere is. Given the ellipsoid,
 /// each of the k-1 photons is reachable with the probability (reachable light / all light in the ellipsoid), and
-/// (k-1) / (all light in it) has the mean 1 (irradiance_estimate.h). This requires the same test (Reach) for photons
-/// and for area: clipping the area alone gains light at thin walls, and dropping photons alone loses it in corners.
+/// (k-1) / (all light in the ellipsoid) has the mean 1 (irradiance_estimate.h). This requires the same test (Reach) for
+/// photons and for area. If only the area were cut, points at thin walls would be too bright; if only photons were left
+/// out, points in corners would be too dark.
 class PointDensity {
  public:
-  /// Where light is up to 16 times as sparse as the mean over the places with photons, k photons are still found.
+  /// max_radius over photon_reach(): where photons are up to 4^2 times as sparse as usual, k photons are still found.
   static constexpr float kSparser = 4;
 
   /// Uses the photons of these kinds (kind_bit), moved by `shift` [m] into scene space.
   PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
-  /// Irradiance [W/m^2], >= 0. `radius` receives the long half-axis of the ellipsoid [m]; 0 if no photon was found.
-  /// `noise` receives the same sum [W/m^2] with the flux of each photon times the random sign of its path
-  /// (path_signs.h).
-  Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius, Rgb* noise = nullptr) const;
+  struct Estimate {
+    Rgb irradiance{0.0f};  ///< W/m^2, >= 0
+    Rgb noise{0.0f};   ///< W/m^2: the same sum with the flux of each photon times the sign of its path (path_signs.h)
+    float radius = 0;  ///< m: the long half-axis of the ellipsoid; 0: no photon was found
+  };
+  /// The estimate at the position and normal of a point.
+  Estimate estimate(const IrradiancePoint& point, const PathRandom& random) const;
 
  private:
   struct Disc {
@@ -54,7 +58,6 @@ class PointDensity {
     std::size_t farthest = 0;  ///< index of the farthest photon found, which is not summed
   };
   Disc find(Vec3 position, Vec3 normal, NeighbourList& found) const;
-  Rgb plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const;
 
   DensityOptions options_;
   ReachableArea area_;

@@ -9,11 +9,11 @@
 namespace tempolux {
 namespace {
 
-constexpr double kHeld = 0.95;   // docs/methods/aim.md, "Irradiance points"
-constexpr double kPiece = 0.25;  ///< share of a sphere's radius: longest edge of a piece
+constexpr double kHeld = 0.95;   ///< docs/methods/aim.md, "Irradiance points"
+constexpr double kPiece = 0.25;  ///< longest edge of a piece that crosses a sphere's outline, over the sphere's radius
 
-/// Divides a triangle into four at the middles of its edges, and its pieces again, until the spheres hold all of a
-/// piece or nothing, or the piece is small.
+/// Divides a triangle into four pieces at the middles of its edges, and these pieces again, until a piece crosses no
+/// sphere's outline or is small.
 class Splitter {
  public:
   Splitter(std::span<const AimSphere> spheres, std::uint32_t triangle, std::array<Vec3d, 3> corners,
@@ -37,7 +37,7 @@ class Splitter {
       split_it = split_it || (!whole && longest > kPiece * sphere.radius);
     }
     const std::array<Vec2, 3> half{between(at[1], at[2]), between(at[2], at[0]), between(at[0], at[1])};
-    // Weights have 32 bits: a piece smaller than 2^-20 of its triangle is not divided.
+    // Barycentric weights are floats: a piece smaller than 2^-20 of its triangle is not divided.
     if (split_it && std::max(std::abs(at[1].x - at[0].x), std::abs(at[1].y - at[0].y)) > 0x1p-20f) {
       split({at[0], half[2], half[1]});
       split({half[2], at[1], half[0]});

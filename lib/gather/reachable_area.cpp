@@ -7,20 +7,22 @@
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
+#include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kRim = Clearance::kSpokes;  ///< places on the rim that are tested first
-constexpr int kMostProbes = 32;           ///< largest number of probes, in multiples of the probes that must arrive
-constexpr int kMostBends = 4;
-constexpr int kMostInColumn = 8;  ///< largest number of surfaces on top of each other
+constexpr int kRim = Clearance::kSpokes;  ///< places on a disc's rim that are tested
+constexpr float kFlat = 0.005f;           ///< largest distance of a whole disc's rim from its plane, in radii
+constexpr int kMostProbes = 32;           ///< largest number of columns, in multiples of the columns that must arrive
+constexpr int kMostBends = 4;             ///< bends of the surface that a spoke follows
+constexpr int kMostInColumn = 8;          ///< largest number of surfaces in a column
 
 }  // namespace
 
-// All rays here meet surfaces of alpha mode BLEND as if they were opaque. The photons' flux already accounts for the
-// light that such a surface lets pass (photon_trace.h), and its whole area counts.
+// All rays here meet surfaces of alpha mode BLEND as if the surfaces were opaque. The flux of photons already accounts
+// for the light that such a surface lets pass (photon_trace.h), and the whole area of the surface counts.
 
 Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
   const Box3& bounds = tracer.frame().bounds;
@@ -31,7 +33,7 @@ bool Reach::free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to 
 
 bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   const Vec3 start = from + normal * (2 * offset_), end = to + to_normal * (2 * offset_);
-  // Both ends lie on the lit sides: a ray from behind `to` meets the surface of `to` just before its end.
+  // Both ends are above the lit sides, so a ray from behind the surface of `to` meets it just before the end.
   if (free(start, end)) return true;
   const float below = dot(from - to, normal);
   if (!(below > 0)) return false;
@@ -40,17 +42,17 @@ bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
 }
 
 Ray Reach::across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const {
-  return {position + up * (2 * offset_), normalize(outwards - up * dot(outwards, up)) + up * Clearance::kRise, 0, reach,
-          true};
+  return {position + up * (2 * offset_), normalize(outwards - up * dot(outwards, up)) + up * Clearance::kOffPlane, 0,
+          reach, true};
 }
 
-/// m: length of a path along the surface, up to `reach`. `ray` has met `hit`; the path continues over bends of the
+/// m: length of a spoke, up to `reach`. Its first ray `ray` has met `hit`. The spoke continues over bends of the
 /// surface and ends at an obstacle.
 float Reach::over_bends(Ray ray, Hit hit, Vec3 normal, Vec3 outwards, float reach) const {
   float gone = hit.t;
   for (int bends = 0; bends < kMostBends && gone < reach; ++bends) {
     const SurfacePoint there = tracer_.surface_point(hit);
-    const Vec3 up = dot(there.normal_geometric, ray.direction) > 0 ? -there.normal_geometric : there.normal_geometric;
+    const Vec3 up = face_forward(there.normal_geometric, -ray.direction);
     if (!(dot(up, normal) > Clearance::kBend)) break;
     ray = across(there.position, up, outwards, reach - gone);
     if (!tracer_.intersect(ray, hit)) return reach;
@@ -96,11 +98,12 @@ bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn, 
   return true;
 }
 
-/// Area of the reachable surface in a column, over the column's cross section: the sum of 1 / cos of the surfaces'
-/// tilts. The column lies at offset `across` from the point and reaches from `height` above the plane to `height`
-/// below it. With the round kernel a surface at height h counts with the probability 1 - (h / height)^2, its kernel
-/// weight over the weight in the plane; `u` in [0, 1) decides. Weights in place of probabilities would differ between
-/// columns and bias the inverse of the sum upwards. With the flat kernel u is 0.
+/// Area of the reachable surface in a thin column along the normal, over the column's cross section: the sum of 1 / cos
+/// of the tilts of the surfaces. The column is at the offset `across` [m] from the place and reaches from `height` [m]
+/// above the plane to `height` below. With the round kernel a surface at height h counts with the probability
+/// 1 - (h / height)^2, which is its kernel weight over the weight in the plane; `u` in [0, 1) decides. If the weights
+/// were summed instead, they would differ between columns, and the inverse of the sum would be too large in the mean.
+/// With the flat kernel u is 0.
 inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
   const float half = std::max(4 * reach_.offset(), height);
   Vec3 top = position + across + normal * half;
@@ -109,8 +112,8 @@ inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, floa
     Hit hit;
     if (!tracer_.intersect({top, -normal, 0, left, true}, hit)) break;
     const SurfacePoint there = tracer_.surface_point(hit);
-    const float side = dot(there.normal_geometric, normal), cosine = std::abs(side);
-    const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
+    const Vec3 up = face_forward(there.normal_geometric, normal);
+    const float cosine = dot(up, normal);
     const float off_plane = dot(there.position - position, normal);
     if (cosine > kMinCos && stores_[there.material] && off_plane * off_plane <= (1 - u) * half * half &&
         reach_(position, normal, there.position, up))
@@ -122,12 +125,12 @@ inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, floa
   return sum;
 }
 
-/// 1 / reachable area [1/m^2]; 0 if there is none. Columns along the normal are drawn over the disc until a fixed
-/// number m of them arrives. For independent columns the mean of (number drawn) / m is exactly 1 / (share that arrives)
-/// [inverse binomial sampling, Haldane 1945]; m arrivals of a fixed number of columns would be biased downwards.
-/// Stratified columns have less noise, but their mean is low by up to 1 / (2 m), because m columns arrive as soon as m
-/// - 1/2 are expected. So columns are stratified for the flat kernel and independent for footprints, many of which
-/// light a place. With the round kernel the area is weighted by drawing columns with the density 2 (1 - d^2) / pi.
+/// Columns are drawn over the disc until a fixed number m of them arrives at reachable surface. For independent columns
+/// the mean of (number drawn) / m is exactly 1 / (share that arrives) [inverse binomial sampling, Haldane 1945]. With a
+/// fixed number of columns, 1 / (share that arrived) would be biased. Stratified columns have less noise, but their
+/// mean is too small by up to 1 / (2 m), because m columns arrive as soon as m - 1/2 are expected. So columns are
+/// stratified for the flat kernel, and independent for the round kernel of footprints, many of which light a place. The
+/// round kernel is applied by drawing columns with the density 2 (1 - d^2) / pi.
 double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel,
                               const PathRandom& random) const {
   const Frame frame(normal);
@@ -151,6 +154,14 @@ double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int prob
   }
   if (arrived < (round ? probes : 1)) return 0;
   return double(drawn) / (double(kPi) * double(radius) * double(radius) * surface);
+}
+
+ReachableArea::Disc ReachableArea::measure(Vec3 position, Vec3 normal, float radius, int probes,
+                                           const PathRandom& random) const {
+  const bool is_whole = whole(position, normal, radius, random.get1(2, Purpose::points));
+  return {is_whole, is_whole || !(radius > 4 * offset())
+                        ? 1 / (double(kPi) * double(radius) * double(radius))
+                        : inverse(position, normal, radius, probes, Kernel::flat, random)};
 }
 
 }  // namespace tempolux

@@ -20,49 +20,40 @@ SignedDensity::SignedDensity(const Tracer& static_tracer, std::span<const format
     options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours);
 }
 
-void SignedDensity::find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area,
+void SignedDensity::find(Vec3 position, Vec3 normal, float& radius, const PathRandom& random, Area& area,
                          NeighbourList& found) const {
+  if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
   index_.find_within({position, normal, radius, kMinCos, kFlattening}, found);
-  if (found.count() == 0 || area.known) return;
-  area.known = true;
-  area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));
-  area.inverse =
-      area.whole || !(radius > 4 * area_.offset())
-          ? 1 / (double(kPi) * double(radius) * double(radius))
-          : area_.inverse(position, normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
+  if (found.count() > 0 && !area) area = area_.measure(position, normal, radius, options_.area_probes, random);
 }
 
 double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
                                      Area& area) const {
   thread_local NeighbourList found;
-  if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
   find(position, normal, radius, random, area, found);
   double sum = 0;
   for (std::size_t i = 0; i < found.count(); ++i)
     if (found.distance2()[i] < radius * radius) sum += largest(index_.flux(found.photons()[i]));
-  return sum * area.inverse;
+  return area ? sum * area->inverse : 0;
 }
 
 std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius,
                                                        const PathRandom& random, Area& area) const {
   thread_local NeighbourList found;
-  if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
   find(position, normal, radius, random, area, found);
   if (found.count() == 0) return std::nullopt;
   Change change;
   for (std::size_t i = 0; i < found.count(); ++i) {
-    // The static estimate leaves out the photon that its disc touches.
+    // A photon on the border does not count, as in the static estimate.
     if (!(found.distance2()[i] < radius * radius)) continue;
     const std::uint32_t photon = found.photons()[i];
-    const Vec3 place = index_.position(photon);
-    const bool flat = area.whole && std::abs(dot(place - position, normal)) < 4 * area_.offset();
-    if (!flat && !area_.reach()(position, normal, place, index_.normal(photon))) continue;
+    if (!area_.reaches(*area, position, normal, index_.position(photon), index_.normal(photon))) continue;
     const Rgb flux = index_.flux(photon);
     change.irradiance += Rgbd(flux);
     change.influence += largest(flux);
   }
-  change.irradiance *= area.inverse;
-  change.influence *= area.inverse;
+  change.irradiance *= area->inverse;
+  change.influence *= area->inverse;
   return change;
 }
 

@@ -13,9 +13,9 @@
 
 namespace tempolux {
 
-/// Density estimates over the indirect photons of a dynamic map in given discs. The radii come from the static photons,
-/// because radii from a few dynamic photons would be noisy. Occlusion and area are those of the static scene, as in
-/// PointDensity. Thread-safe.
+/// Density estimates over the indirect photons of a dynamic map in given discs. The caller takes the radii from static
+/// photons, because radii from few dynamic photons would be noisy. Reachability and area are those of the static scene,
+/// as in PointDensity. Thread-safe.
 class SignedDensity {
  public:
   /// shift: m, added to the photons' positions.
@@ -24,34 +24,26 @@ class SignedDensity {
 
   struct Change {
     Rgbd irradiance{0.0};  ///< W/m^2: sum of flux with its sign / area
-    /// W/m^2: sum of the largest channel of |flux| / area, so that gains and losses do not cancel.
+    /// W/m^2: sum over photons of the largest channel of |flux|, / area, so that gains and losses do not cancel.
     double influence = 0;
   };
   /// m: largest radius of a disc; by default PointDensity::kSparser times the photons' own radius.
   float max_radius() const { return options_.max_radius; }
-  /// The change by the photons in an ellipsoid around the position. `radius` is its radius along the surface (m; 0: the
-  /// largest radius); its radius along the normal is 1 / kFlattening of this. Empty if the ellipsoid holds no photon.
-  /// `random`: as for PointDensity::estimate at the same place.
-  std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random) const {
-    Area area;
-    return at(position, normal, radius, random, area);
-  }
-
-  /// The reachable area of a disc in the static scene: the same for all maps of a segment.
-  struct Area {
-    bool known = false, whole = false;
-    double inverse = 0;  ///< 1/m^2
-  };
-  /// The same change. If the reachable area is needed and `area` does not hold it yet, the function computes and stores
-  /// it there. A caller can pass one `area` for all maps of a segment, so that rays test the disc once.
+  /// A disc in the static scene, which is the same for all maps of a segment; empty: not yet measured.
+  using Area = std::optional<ReachableArea::Disc>;
+  /// The change by the photons in an ellipsoid around the position. `radius` [m] is its radius along the surface (0 or
+  /// infinite: max_radius()); its radius along the normal is 1 / kFlattening of this. Empty if the ellipsoid holds no
+  /// photon. `random`: as for PointDensity::estimate at the same place. The function measures `area` if it is needed
+  /// and empty. A caller can pass one `area` for all maps of a segment, so that rays test the disc once.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
-  /// An upper bound of Change::influence that needs no ray: it counts photons that do not reach the place, too. 0 if
-  /// there are no photons.
+  /// An upper bound of Change::influence at a fraction of the cost: it also counts photons that do not reach the place,
+  /// so no ray tests them. 0 if there are no photons.
   double most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
 
  private:
-  /// Finds the photons within `radius` and the area in which they lie. If there are none, `area` does not change.
-  void find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area, NeighbourList& found) const;
+  /// Finds the photons within `radius`, and their area if there are any. Replaces a radius of 0 by the largest radius.
+  void find(Vec3 position, Vec3 normal, float& radius, const PathRandom& random, Area& area,
+            NeighbourList& found) const;
 
   DensityOptions options_;
   ReachableArea area_;

@@ -6,7 +6,6 @@
 #include "lib/core/random.h"
 #include "lib/gather/localised.h"
 #include "lib/gather/signed_density.h"
-#include "lib/gather/whole_photons.h"
 
 namespace tempolux {
 namespace {
@@ -14,7 +13,8 @@ namespace {
 using formats::PathKind;
 using formats::Photon;
 
-/// Written without branches: it tests millions of photons, and few of them are inside.
+/// True if p is inside the box, or at most `margin` [m] outside. Without branches, because it tests millions of
+/// photons.
 bool inside(const Box3& box, Vec3 p, float margin) {
   return (p.x >= box.lower.x - margin) & (p.x <= box.upper.x + margin) & (p.y >= box.lower.y - margin) &
          (p.y <= box.upper.y + margin) & (p.z >= box.lower.z - margin) & (p.z <= box.upper.z + margin);
@@ -40,7 +40,8 @@ bool any_caustic(std::span<const Photon> photons) {
                      [](const Photon& photon) { return photon.kind == PathKind::caustic; });
 }
 
-/// Largest radius [m] of a density estimate: the option, or the largest among the points. 0: neither is known.
+/// Largest radius [m] of a density estimate: the option if it is set, or else the largest among the points. 0: neither
+/// is known.
 float largest_radius(const PointOptions& options, std::span<const IrradiancePoint> points) {
   float largest = options.max_radius;
   if (!(largest > 0))
@@ -57,8 +58,8 @@ Rgb not_negative(const Rgbd& sum) {
 std::function<bool(Vec3, const Photon&)> static_photons_read(const SceneFrame& frame, const PointOptions& options,
                                                              std::span<const IrradiancePoint> points,
                                                              std::span<const Photon> dynamic_photons) {
-  // A point is estimated anew if a mover may cut its disc, so if it lies within one radius of the mover. Its photons
-  // lie within one radius of the point, so within two radii of the mover.
+  // A point is estimated again if it lies within one radius of a mover. Its photons lie within one radius of the point,
+  // so within two radii of the mover.
   const float reach = 2 * largest_radius(options, points);
   return
       [boxes = moving_boxes(frame), reach, caustic = any_caustic(dynamic_photons)](Vec3 place, const Photon& photon) {
@@ -70,10 +71,10 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
                                 std::vector<IrradiancePoint>& points) {
   PointUpdateCounts counts;
   const SceneFrame& frame = in.whole.frame();
-  // Points that found fewer static photons than the estimate asks for have the largest radius of all.
+  // Points that found fewer static photons than `neighbours` have the largest radius of all points.
   DensityOptions density{options.neighbours, largest_radius(options, points),
                          std::min(options.area_probes, kChangeProbes)};
-  const SignedDensity density_of_change(in.standing, in.dynamic_photons.photons, density, in.dynamic_shift);
+  const SignedDensity density_of_change(in.static_scene, in.photons.dynamic.photons, density, in.photons.dynamic_shift);
   density.max_radius = density_of_change.max_radius();
   const MovingBoxes boxes = moving_boxes(frame);
   const MoverWatch watch({boxes});
@@ -93,17 +94,17 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   counts.anew = anew.size();
   counts.changed = parallel_sum<std::size_t>(others.size(), 256, [&](std::size_t i, std::size_t& changed) {
     IrradiancePoint& point = points[others[i]];
+    SignedDensity::Area area;
     const auto change =
-        density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]));
+        density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]), area);
     if (!change) return;
     point.indirect = not_negative(Rgbd(point.indirect) + change->irradiance);
     ++changed;
   });
 
-  const PhotonMaps maps{in.static_photons, in.dynamic_photons, in.static_shift, in.dynamic_shift};
-  // Close to movers: all photons that an estimate there may use.
+  // All photons that the estimates close to movers may use.
   const formats::PhotonBlock near =
-      anew.empty() ? formats::PhotonBlock{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
+      anew.empty() ? formats::PhotonBlock{} : whole_photons(in.photons, [&](Vec3 place, const Photon&) {
         return near_any(boxes, place, widest + density.max_radius);
       });
   std::vector<Rgb> caustic;
@@ -113,10 +114,10 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, limited, anew, points);
 
   // A caustic photon lights its own footprint, so one changed photon can reach any point. If the dynamic map holds a
-  // caustic photon, caustic light is estimated anew at every point.
-  if (any_caustic(in.dynamic_photons.photons)) {
+  // caustic photon, re-estimate caustic light at every point.
+  if (any_caustic(in.photons.dynamic.photons)) {
     const formats::PhotonBlock all =
-        whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
+        whole_photons(in.photons, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
     const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0},
                                       kind_bit(PathKind::caustic), {});
     estimate_caustic(in.whole, footprints, points);

@@ -15,6 +15,8 @@ namespace tempolux {
 /// How far the surface around a place is unobstructed, along sixteen spokes. Light measured at the place may be used
 /// only inside the polygon of the spokes' ends. The polygon follows a straight wall exactly.
 struct Clearance {
+  /// Spokes point at most 26.6 degrees apart, so the polygon that must hold a disc is only 1.028 times as wide
+  /// (kPerRadius; with eight spokes 1.08 times), and the shares fit into two words.
   static constexpr std::uint32_t kSpokes = 16;
   static constexpr std::uint64_t kFull = 255;  ///< share of a spoke that met no obstacle
   using Shares = std::array<std::uint64_t, 2>;
@@ -22,8 +24,10 @@ struct Clearance {
   /// Smallest cosine between the normals of two places of one surface. A surface that rises by more than 45 degrees is
   /// a wall: light on both sides of the edge differs, because the sides face different halves of the scene.
   static constexpr float kBend = 0.7f;
-  /// Tangent of the angle at which spokes rise above the surface: lower obstacles do not end them.
-  static constexpr float kRise = 0.05f;
+  /// Height above the surface that still counts as on the surface, as a share of the distance from the centre [Ward
+  /// 1988]. Records are valid up to this height, and spokes rise with this tangent, so that lower obstacles do not end
+  /// them.
+  static constexpr float kOffPlane = 0.05f;
 
   float reach = INFINITY;  ///< m: length of an unobstructed spoke
   /// Length of spoke k in 1/255 of reach, rounded down: byte k mod 8 of word k / 8, where byte 0 is the lowest.

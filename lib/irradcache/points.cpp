@@ -96,7 +96,7 @@ bool PointLookup::represents(const Light& light, const Question& q) const {
   const float reach = kReach * spacing_;
   if (!(length2(d) < reach * reach) || !(dot(light.normal, q.normal) > Clearance::kBend) ||
       std::abs(dot(d, light.normal + q.normal)) >
-          2 * (Clearance::kRise * length(d) + kRounding * max_component(abs(q.position))))
+          2 * (Clearance::kOffPlane * length(d) + kRounding * max_component(abs(q.position))))
     return false;  // the hit is above or below the spokes, so another surface may lie between
   Clearance::Shares shares{light.clearance[0].load(std::memory_order_relaxed),
                            light.clearance[1].load(std::memory_order_relaxed)};

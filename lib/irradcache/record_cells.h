@@ -11,8 +11,6 @@
 namespace tempolux {
 
 inline constexpr std::size_t kFirstBuckets = 256;  ///< of a level; their number grows with the entries
-/// |(x - x_i) . (n + n_i) / 2| of a point at which a record is valid is at most this share of the radius [Ward 1988].
-inline constexpr float kOffPlane = 0.05f;
 /// Relative rounding error of distances in float: spheres are enlarged by this share.
 inline constexpr double kSphereRounding = 1e-6;
 

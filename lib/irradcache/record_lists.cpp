@@ -7,7 +7,7 @@
 namespace tempolux {
 namespace {
 
-constexpr double kOffPlaneSlack = 1e-4;  ///< in radii: above the rounding errors of the test of kOffPlane
+constexpr double kOffPlaneSlack = 1e-4;  ///< in radii: above the rounding errors of the test of Clearance::kOffPlane
 
 }  // namespace
 
@@ -29,15 +29,15 @@ void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
 
 /// Lists a record in the cells in which it may be valid. They lie close to the record's tangent plane: let d be the
 /// offset of a point with normal n = n_i cos a + t sin a, where t is a unit vector perpendicular to n_i. Then
-///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r give
-///     |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)).
+///     |d . (n + n_i)| <= 2 Clearance::kOffPlane r   and   |d| < r give
+///     |d . n_i| <= r (2 Clearance::kOffPlane / (1 + cos a) + tan(a / 2)).
 /// This bound grows with the angle a, so it is taken at least_cosine. Cells farther off do not list the record.
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
   const Vec3d local(r.position), normal(r.normal);
   const double c = double(least_cosine_), width = 1 / level.inverse_cell;
   const double off =
-      double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
+      double(r.radius) * (2 * double(Clearance::kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   for_each_cell(local, r.radius, level.inverse_cell, [&](Cell cell) {
     const Vec3d middle{(double(cell.x) + 0.5) * width, (double(cell.y) + 0.5) * width, (double(cell.z) + 0.5) * width};

@@ -37,7 +37,7 @@ inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Ve
     // |d . (n + n_i)| as a square: |x| <= a if x^2 <= a^2
     const __m256 off = dx * (all(normal.x) + of(e.normal_x)) + dy * (all(normal.y) + of(e.normal_y)) +
                        dz * (all(normal.z) + of(e.normal_z)),
-                 most = r * all(2 * kOffPlane + kSlack);
+                 most = r * all(2 * Clearance::kOffPlane + kSlack);
     for (int lanes = _mm256_movemask_ps(_mm256_and_ps(counts, _mm256_cmp_ps(off * off, most * most, _CMP_LE_OQ)));
          lanes; lanes &= lanes - 1) {
       const auto i = std::size_t(std::countr_zero(unsigned(lanes)));
@@ -104,7 +104,7 @@ inline float RecordStore::weight_of(const Entry& entry, Vec3 position, Vec3 norm
   if (d2 >= entry.radius * entry.radius) return 0;
   const float cosine = dot(normal, entry.normal);
   if (cosine <= least_cosine_) return 0;
-  if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
+  if (std::abs(dot(d, normal + entry.normal)) > 2 * Clearance::kOffPlane * entry.radius) return 0;
   const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - least_cosine_));
   const float weight = std::max(0.0f, (1 - std::sqrt(d2) / entry.radius) * (1 - angle));
   if (!(weight > 0)) return 0;

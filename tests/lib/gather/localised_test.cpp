@@ -46,11 +46,16 @@ struct Floor {
 
 const Vec3 kMiddle{2, 0, 2}, kUp{0, 1, 0};
 
+std::optional<SignedDensity::Change> change_at(const SignedDensity& density, Vec3 position, Vec3 normal, float radius) {
+  SignedDensity::Area area;
+  return density.at(position, normal, radius, PathRandom(1, 1), area);
+}
+
 TEST(SignedDensity, WhatComesAndGoesCancelsInIrradianceAndNotInInfluence) {
   Floor floor;
   floor.spread(4000, 1, 1);
   floor.spread(4000, -1, 2);
-  const auto change = floor.density().at(kMiddle, kUp, 0.5f, PathRandom(1, 1));
+  const auto change = change_at(floor.density(), kMiddle, kUp, 0.5f);
   ASSERT_TRUE(change);
   // 250 photons per m^2 and sign: pi / 4 m^2 hold 196 of each sign, with a standard deviation of 14. The difference
   // of the two numbers has sqrt(2) times that.
@@ -64,8 +69,8 @@ TEST(SignedDensity, InfluenceDoesNotKnowSigns) {
   Floor one, other;
   one.spread(500, 3, 1);
   other.spread(500, -3, 1);
-  const auto a = one.density().at(kMiddle, kUp, 0.4f, PathRandom(1, 1));
-  const auto b = other.density().at(kMiddle, kUp, 0.4f, PathRandom(1, 1));
+  const auto a = change_at(one.density(), kMiddle, kUp, 0.4f);
+  const auto b = change_at(other.density(), kMiddle, kUp, 0.4f);
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->influence, b->influence);
   EXPECT_EQ(a->irradiance.g, -b->irradiance.g);
@@ -76,7 +81,7 @@ TEST(SignedDensity, AtAnEdgeTheAreaThatIsThereCounts) {
   // of it.
   Floor floor;
   floor.spread(40000, 1, 1);
-  const auto change = floor.density().at({2, 0, 0.001f}, kUp, 0.5f, PathRandom(1, 1));
+  const auto change = change_at(floor.density(), {2, 0, 0.001f}, kUp, 0.5f);
   ASSERT_TRUE(change);
   // 982 photons have a noise of 3.2 %. The area comes from 32 probes that arrive, of about 64: an error of 1 /
   // sqrt(64). The band is 4 standard errors of both.
@@ -88,8 +93,8 @@ TEST(SignedDensity, NothingNearIsNothing) {
   Floor floor;
   floor.spread(100, 1, 1);
   const SignedDensity density = floor.density();
-  EXPECT_FALSE(density.at({2, 1, 2}, kUp, 0.05f, PathRandom(1, 1)));
-  EXPECT_FALSE(density.at(kMiddle, -kUp, 0.5f, PathRandom(1, 1)));
+  EXPECT_FALSE(change_at(density, {2, 1, 2}, kUp, 0.05f));
+  EXPECT_FALSE(change_at(density, kMiddle, -kUp, 0.5f));
 }
 
 TEST(Influence, ShareIsContinuousAtBothThresholds) {

@@ -61,7 +61,7 @@ struct Room {
   PointUpdateCounts update(std::vector<IrradiancePoint>& points) const {
     const Tracer whole(frame), without(standing);
     const Lights lights(frame, table);
-    return update_points({whole, without, lights, fixed, dynamic, {}, {}}, options, points);
+    return update_points({whole, without, lights, {fixed, dynamic, {}, {}}}, options, points);
   }
 };
 
