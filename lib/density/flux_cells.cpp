@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <vector>
 
 #include "lib/core/random.h"
 
@@ -106,38 +108,23 @@ void CellEdge::add(Vec3 position) {
   ++total_;
   std::uint64_t hash = 0;
   for (int a = 0; a < 3; ++a) hash = mix64(hash + std::bit_cast<std::uint32_t>(position[a]) + 0x9e3779b97f4a7c15ull);
-  if (hash > limit_) return;
-  const auto [entry, is_new] = index_.try_emplace(hash, places_.size());
-  if (is_new) places_.push_back({hash, position, 0});
-  ++places_[entry->second].count;
-  if (places_.size() >= 2 * kPlaces) trim();
-}
-
-/// Keeps the places with the smallest hashes. Later records with larger hashes are ignored.
-void CellEdge::trim() {
-  const auto middle = places_.begin() + std::ptrdiff_t(kPlaces - 1);
-  std::nth_element(places_.begin(), middle, places_.end(),
-                   [](const Place& a, const Place& b) { return a.hash < b.hash; });
-  limit_ = middle->hash;
-  places_.resize(kPlaces);
-  index_.clear();
-  for (std::size_t i = 0; i < places_.size(); ++i) index_[places_[i].hash] = i;
+  if (places_.size() == kPlaces && hash > places_.rbegin()->first) return;
+  ++places_.try_emplace(hash, Place{position}).first->second.count;
+  if (places_.size() > kPlaces) places_.erase(std::prev(places_.end()));
 }
 
 double CellEdge::edge() const {
-  CellEdge kept = *this;
-  if (kept.places_.size() > kPlaces) kept.trim();
   Box3 bounds;
   std::uint64_t records = 0;
-  for (const Place& place : kept.places_) bounds.add(place.position), records += place.count;
-  if (kept.places_.size() < 2) return 1;
+  for (const auto& [hash, place] : places_) bounds.add(place.position), records += place.count;
+  if (places_.size() < 2) return 1;
   double edge = double(max_component(bounds.upper - bounds.lower));
   if (!(edge > 0)) return 1;  // -0 and 0 are the same position
   // Starts with all records in one cell and divides the edge by 2^(1/4) until a cell holds the wanted number of the
   // kept records on average.
   for (int step = 0; step < 100; ++step, edge *= 0.8408964152537145) {  // 2^(-1/4)
     std::set<std::array<std::int64_t, 3>> cells;
-    for (const Place& place : kept.places_) {
+    for (const auto& [hash, place] : places_) {
       std::array<std::int64_t, 3> cube{};
       for (int a = 0; a < 3; ++a) cube[std::size_t(a)] = std::int64_t(std::floor(grid_of(place.position[a], edge)));
       cells.insert(cube);

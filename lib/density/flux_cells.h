@@ -3,9 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
+#include <map>
 #include <unordered_map>
-#include <vector>
 
 #include "lib/core/vec.h"
 #include "lib/density/planar_hull.h"
@@ -88,14 +87,11 @@ class CellEdge {
 
  private:
   struct Place {
-    std::uint64_t hash;
     Vec3 position;
-    std::uint64_t count;
+    std::uint64_t count = 0;  ///< records at this position
   };
-  std::unordered_map<std::uint64_t, std::size_t> index_;  ///< index into places_, by hash
-  std::vector<Place> places_;
-  std::uint64_t limit_ = ~std::uint64_t(0), total_ = 0;
-  void trim();
+  std::map<std::uint64_t, Place> places_;  ///< by hash
+  std::uint64_t total_ = 0;                ///< number of records
 };
 
 }  // namespace tempolux

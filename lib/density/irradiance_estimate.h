@@ -8,9 +8,9 @@ namespace tempolux {
 /// Ratio of the axes of the ellipsoid in which density estimates search photons. The short axis is along the normal, so
 /// that photons on a parallel surface close by are left out.
 inline constexpr float kFlattening = 10;
-/// Smallest cosine between the normals of a place and of a photon or surface that counts there (84 degrees): photons
-/// on the other side of a thin wall do not count.
-inline constexpr float kMinCos = 0.1f;
+/// Smallest cosine between the normals of a place and of a photon or surface that counts there, so that photons on the
+/// other side of a thin wall do not count: 84 degrees, the slope of the ellipsoid's diagonal.
+inline constexpr float kMinCos = 1 / kFlattening;
 
 struct IrradianceOptions {
   int neighbours = 50;                                        ///< k, 2 .. kMaxNeighbours

@@ -2,6 +2,7 @@
 
 #include <immintrin.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -48,24 +49,6 @@ struct CurveLayout {
   }
 };
 
-/// Stable sort by the upper 32 bits: three passes of 11 bits (LSD radix sort).
-void sort_by_code(std::vector<std::uint64_t>& items) {
-  constexpr std::size_t kDigits = 1 << 11;
-  std::vector<std::uint64_t> other(items.size());
-  for (int shift = 32; shift < 64; shift += 11) {
-    std::array<std::size_t, kDigits> start{};
-    for (std::uint64_t item : items) ++start[(item >> shift) % kDigits];
-    std::size_t sum = 0;
-    for (std::size_t& s : start) {
-      const std::size_t count = s;
-      s = sum;
-      sum += count;
-    }
-    for (std::uint64_t item : items) other[start[(item >> shift) % kDigits]++] = item;
-    items.swap(other);
-  }
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> morton_order(std::span<const Vec3> points) {
@@ -75,10 +58,10 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points) {
     if (is_finite(p)) box.add(p);
   const CurveLayout layout(box.empty() ? Box3{{}, {}} : box);
 
-  std::vector<std::uint64_t> items(points.size());
+  std::vector<std::uint64_t> items(points.size());  // code and index
   parallel_each(points.size(), kCodeChunk,
                 [&](std::size_t i) { items[i] = std::uint64_t(layout.code(points[i])) << 32 | i; });
-  sort_by_code(items);
+  std::ranges::sort(items);
   std::vector<std::uint32_t> order(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint32_t(items[i]);
   return order;

@@ -53,19 +53,15 @@ float FinalGather::distance(const SurfacePoint& from, Vec3 normal, GatherCounts&
   const GatherDirections directions(from, normal, strata.rings, strata.sectors,
                                     gather_key(from.position, normal, ~options_.seed));
   const float closest = closest_distance(from);
-  thread_local std::vector<Ray> rays;
+  thread_local GatherRays shot;
   thread_local std::vector<Hit> hits;
   double met = 0, inverse = 0;
   for (std::uint32_t draw = 0; draw < kMostDraws && met < kEnoughMet; ++draw) {
-    rays.clear();
-    for (const std::uint32_t c : strata.order) {
-      Ray ray;
-      std::uint64_t key = 0;
-      if (directions.aim(c, draw, ray, key)) rays.push_back(ray);
-    }
-    hits.assign(rays.size(), Hit{});
-    tracer_.intersect(rays, hits);
-    counts.distance_rays += rays.size();
+    shot.clear();
+    for (const std::uint32_t c : strata.order) shot.aim(directions, c, draw);
+    hits.assign(shot.rays.size(), Hit{});
+    tracer_.intersect(shot.rays, hits);
+    counts.distance_rays += shot.rays.size();
     for (const Hit& hit : hits)
       if (hit.surface != kNone) ++met, inverse += 1 / double(std::max(hit.t, closest));
   }

@@ -10,13 +10,14 @@
 #include "lib/core/arrays.h"
 #include "lib/core/parallel_each.h"
 #include "lib/core/random.h"
+#include "lib/irradcache/clearance.h"
 
 namespace tempolux {
 namespace {
 
 constexpr std::size_t kAtOnce = 1024;  ///< photons, or elements, per piece of parallel work
 /// Low bits that are dropped from each coordinate (of 16 bits) of a normal when elements are joined: 64 directions
-/// remain, about kSameWay apart.
+/// remain. One bit more or less changes previews by less than another seed does (docs/notebook/constants.md).
 constexpr int kNormalBits = 13;
 constexpr float kReach = 3;  ///< radius at which a Gaussian is cut, in standard deviations
 
@@ -88,7 +89,7 @@ class Neighbours {
 float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   const float width = a.width;
   const Vec3 d = b.position - a.position;
-  if (dot(a.normal, b.normal) < kSameWay || std::abs(dot(d, a.normal)) > width) return 0;
+  if (dot(a.normal, b.normal) < Clearance::kBend || std::abs(dot(d, a.normal)) > width) return 0;
   if (filter.kind == MeshFilter::Kind::box)
     return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= width ? 1.0f : 0.0f;
   const float d2 = dot(d, d) / (width * width);
@@ -96,8 +97,8 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
 }
 
 /// Irradiance of all samples whose width is above 0: flux over area under the kernel.
-void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours,
-            Smoothed& result) {
+Smoothed smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours) {
+  Smoothed result(samples.size());
   parallel_each(samples.size(), kAtOnce, [&](std::size_t i) {
     if (!(samples[i].width > 0)) return;
     Rgbd flux{0.0};
@@ -113,6 +114,7 @@ void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const 
     result.light[i] = flux * (1 / area);
     result.variance[i] = squares / (area * area);
   });
+  return result;
 }
 
 /// Elements joined into fewer samples, because the filter does not resolve them.
@@ -150,7 +152,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
 
 /// Smooths each sample with its own width. Samples whose widths are within a factor of two are processed together.
 /// Small elements are joined first, so that the cost depends on the widths and not on the number of elements.
-void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Smoothed& result) {
+Smoothed smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter) {
+  Smoothed result(samples.size());
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (samples[i].width > 0 && samples[i].area > 0)
@@ -164,18 +167,12 @@ void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, Sm
       widest = std::max(widest, width);
     }
     const Neighbours neighbours(joined.cubes, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach));
-    Smoothed smoothed(joined.cubes.size());
-    smooth(joined.cubes, filter, neighbours, smoothed);
+    const Smoothed smoothed = smooth(joined.cubes, filter, neighbours);
     for (const std::uint32_t i : which) {
       result.light[i] = smoothed.light[joined.of[i]];
       result.variance[i] = smoothed.variance[joined.of[i]];
     }
   }
-}
-
-Smoothed gaussian_of(const std::vector<Sample>& samples, double width) {
-  Smoothed result(samples.size());
-  smooth_all(samples, {MeshFilter::Kind::gaussian, width}, result);
   return result;
 }
 
@@ -247,15 +244,8 @@ std::uint32_t MeshCuts::operator()(std::uint32_t surface, std::uint32_t triangle
 }
 
 double kernel_width(double area, double photons, double in_kernel) {
-  return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons));
-}
-
-MeshOptions window_widths(double area, double photons, double in_kernel) {
-  const double width = kernel_width(area, std::max(1.0, photons), in_kernel);
-  MeshOptions result;
-  result.filter.width = width > 0 ? width : 1;  // for a scene without surfaces
-  result.cell = kCellOfWindows * result.filter.width;
-  return result;
+  const double width = std::sqrt(in_kernel * area / (4 * std::numbers::pi * std::max(1.0, photons)));
+  return width > 0 ? width : 1;
 }
 
 double surface_area(const SceneFrame& frame) {
@@ -266,12 +256,10 @@ double surface_area(const SceneFrame& frame) {
   return area;
 }
 
-MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std::uint64_t photons) {
+MeshOptions with_widths(const MeshOptions& options, double area, double photons, double cell) {
   MeshOptions result = options;
-  double& width = result.filter.width;
-  if (!(width > 0)) width = kernel_width(surface_area(frame), double(std::max<std::uint64_t>(1, photons)));
-  if (!(width > 0)) width = 1;  // for a scene without surfaces
-  if (!(result.cell > 0)) result.cell = width;
+  if (!(result.filter.width > 0)) result.filter.width = kernel_width(area, photons);
+  if (!(result.cell > 0)) result.cell = cell * result.filter.width;
   return result;
 }
 
@@ -379,7 +367,7 @@ void smooth_elements(const Tracer& tracer, std::span<const Rgbd> flux, const Mes
     for (std::size_t i = 0; i < samples.size(); ++i)
       if (samples[i].area > 0) smoothed.light[i] = flux[i] * (1 / double(samples[i].area));
   } else {
-    smooth_all(samples, filter, smoothed);
+    smoothed = smooth_all(samples, filter);
     put_right(samples, elements, smoothed.light);
   }
   put_light(smoothed.light, elements);
@@ -387,22 +375,22 @@ void smooth_elements(const Tracer& tracer, std::span<const Rgbd> flux, const Mes
 
 void smooth_by_scales(const Tracer& tracer, const MeshFlux& flux, double width, std::span<const float> widths,
                       std::vector<formats::MeshElement>& elements) {
-  const MeshFilter filter{MeshFilter::Kind::gaussian, width};
-  std::vector<Sample> samples = samples_of(tracer, flux.mean, filter, widths, elements);
+  const auto gaussian = [&](double factor) { return MeshFilter{MeshFilter::Kind::gaussian, factor * width}; };
+  std::vector<Sample> samples = samples_of(tracer, flux.mean, gaussian(1), widths, elements);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].squares = flux.squares[i];
   const auto widen = [&] {
     for (Sample& s : samples) s.width *= 2;
   };
-  const Smoothed fine = gaussian_of(samples, width);
+  const Smoothed fine = smooth_all(samples, gaussian(1));
   widen();
-  const Smoothed middle = gaussian_of(samples, 2 * width);
+  const Smoothed middle = smooth_all(samples, gaussian(2));
   widen();
-  const Smoothed coarse = gaussian_of(samples, 4 * width);
+  const Smoothed coarse = smooth_all(samples, gaussian(4));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double a = luminance(fine.light[i] - middle.light[i]), b = luminance(middle.light[i] - coarse.light[i]);
     samples[i].flux = Rgbd(a * a, b * b, 0) * double(samples[i].area);
   }
-  const Smoothed squares = gaussian_of(samples, 4 * width);  // mean squares of the two bands around each place
+  const Smoothed squares = smooth_all(samples, gaussian(4));  // mean squares of the two bands around each place
   std::vector<Rgbd> light(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double a = kept_share(squares.light[i].r, fine.variance[i]),

@@ -16,9 +16,6 @@
 
 namespace tempolux {
 
-/// Cosine of 30 degrees: elements whose normals differ by more than that do not share their light.
-inline constexpr float kSameWay = 0.866f;
-
 struct MeshFilter {
   enum class Kind : std::uint8_t { none, box, gaussian };
   Kind kind = Kind::gaussian;
@@ -82,23 +79,20 @@ class MeshSums {
 
 /// Mean number of photons under the spatial filter: the relative noise is 1/16.
 inline constexpr double kPhotonsInKernel = 256;
-/// Standard deviation [m] of the Gaussian that averages `in_kernel` photons, if `photons` are spread over `area` [m^2].
-/// The Gaussian averages over an area of 4 pi deviations squared.
+/// Standard deviation [m] of the Gaussian that averages `in_kernel` photons, if `photons` are spread over `area` [m^2];
+/// 1 without surfaces. The Gaussian averages over an area of 4 pi deviations squared.
 double kernel_width(double area, double photons, double in_kernel = kPhotonsInKernel);
 
-/// Edge length of elements, in standard deviations of the filter. Light is interpolated linearly between elements, so
-/// smaller elements would not show more.
+/// Edge length of the elements of windows, in standard deviations of the filter. Light is interpolated linearly between
+/// elements, so smaller elements would not show more.
 inline constexpr double kCellOfWindows = 2;
-/// Widths of filter and elements for windows. `photons`: number of photons that arrive on surfaces of `area` [m^2] in
-/// all frames of a full window together. The filter averages `in_kernel` of them.
-MeshOptions window_widths(double area, double photons, double in_kernel = kPhotonsInKernel);
 
 /// Area of one side of all surfaces of the frame together [m^2].
 double surface_area(const SceneFrame& frame);
 
-/// The options with a filter width of 0 replaced by kernel_width() for this number of photons, and an element edge of 0
-/// replaced by the filter width.
-MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std::uint64_t photons);
+/// The options with a filter width of 0 replaced by kernel_width(area, photons), and an element edge of 0 replaced by
+/// `cell` times the filter width.
+MeshOptions with_widths(const MeshOptions& options, double area, double photons, double cell = 1);
 
 /// Largest number of elements of a frame, lit or not. They take 2 GB.
 inline constexpr std::uint64_t kMostElements = std::uint64_t(1) << 25;
@@ -113,7 +107,7 @@ void leave_out_dark(std::vector<formats::MeshElement>& elements);
 
 /// Computes the irradiance [W/m^2] of all_elements() from their `flux` [W]: the sum of flux over the sum of area,
 /// both weighted by the same kernel around the element. Another element counts only if
-///   - its normal is within 30 degrees of the element's normal,
+///   - its normal is within 45 degrees of the element's normal (Clearance::kBend),
 ///   - it lies within a width of the element's plane,
 ///   - it has the same material,
 ///   - both lie outside of solids, or both inside. An element lies inside if the first surface above it shows its back.

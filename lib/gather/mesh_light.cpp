@@ -7,7 +7,7 @@
 #include "formats/octahedral.h"
 #include "lib/core/arrays.h"
 #include "lib/core/random.h"
-#include "lib/gather/mesh_elements.h"
+#include "lib/irradcache/clearance.h"
 
 namespace tempolux {
 namespace {
@@ -77,7 +77,8 @@ void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::
       double area = 0;
       for (std::size_t k = first; k < last; ++k) {
         const formats::MeshElement& e = elements[meetings[k].element];
-        if (material(meetings[m]) != material(meetings[k]) || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay)
+        if (material(meetings[m]) != material(meetings[k]) ||
+            dot(normal(meetings[m]), normal(meetings[k])) < Clearance::kBend)
           continue;
         sum += Rgbd(rgb_of(e.irradiance)) * double(e.area);
         area += double(e.area);

@@ -15,8 +15,8 @@ namespace tempolux {
 /// Irradiance [W/m^2] of a .meshirrad file at hits. Thread-safe.
 ///
 /// Each element has a value at each of its corners: the mean, weighted by area, over the elements that meet there, face
-/// the same way (kSameWay) and have the same material. Within an element the irradiance is linear between the corners.
-/// So edges between elements are invisible, and uniform light stays uniform.
+/// the same way (normals within 45 degrees) and have the same material. Within an element the irradiance is linear
+/// between the corners. So edges between elements are invisible, and uniform light stays uniform.
 class MeshLight {
  public:
   /// `frame`: the frame of the file.

@@ -21,8 +21,8 @@ struct Clearance {
   static constexpr std::uint64_t kFull = 255;  ///< share of a spoke that met no obstacle
   using Shares = std::array<std::uint64_t, 2>;
   static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};  ///< no spoke met an obstacle
-  /// Smallest cosine between the normals of two places of one surface. A surface that rises by more than 45 degrees is
-  /// a wall: light on both sides of the edge differs, because the sides face different halves of the scene.
+  /// Smallest cosine between the normals of two places of one surface. If the surface bends by more than 45 degrees,
+  /// the two places face different halves of the scene and get different light.
   static constexpr float kBend = 0.7f;
   /// Height above the surface that still counts as on the surface, as a share of the distance from the centre [Ward
   /// 1988]. Records are valid up to this height, and spokes rise with this tangent, so that lower obstacles do not end

@@ -106,7 +106,7 @@ PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, double kernel
   // plus bias. The error is least at s^4 = v / (b N). The number of photons below the Gaussian, N s^2, then grows as
   // sqrt(N).
   const double growth = std::sqrt(double(paths) * frames / double(kPilotPaths));
-  return {paths, window_widths(mean.area, mean.photons * double(paths) * frames, kernel * growth).filter.width};
+  return {paths, kernel_width(mean.area, mean.photons * double(paths) * frames, kernel * growth)};
 }
 
 }  // namespace tempolux

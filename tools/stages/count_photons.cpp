@@ -75,18 +75,6 @@ class SegmentFrames {
   std::map<int, SceneFrame> others_;
 };
 
-/// Widths for windows. They follow from the number of light paths and not from the stored photons, so they are equal
-/// in all frames of a segment.
-MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& first, std::uint64_t paths) {
-  MeshOptions mesh = window_widths(surface_area(first), double(paths) * options.frames);
-  if (options.mesh.filter.width > 0) {
-    mesh.filter.width = options.mesh.filter.width;
-    mesh.cell = kCellOfWindows * mesh.filter.width;
-  }
-  if (options.mesh.cell > 0) mesh.cell = options.mesh.cell;
-  return mesh;
-}
-
 }  // namespace
 
 void add_count_options(Tool& tool, CountOptions& options) {
@@ -113,8 +101,11 @@ CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& 
   auto& [file, mesh] = counted;
   std::vector<const SceneFrame*> measured{&frame};
   if (options.for_windows) measured = segment.measured();
-  mesh = options.for_windows ? widths_of_windows(options, *measured.front(), map.header.emitted_count)
-                             : with_widths(options.mesh, frame, map.photons.size());
+  // Widths for windows follow from the number of light paths and not from the stored photons, so they are equal in all
+  // frames of a segment.
+  mesh = options.for_windows ? with_widths(options.mesh, surface_area(*measured.front()),
+                                           double(map.header.emitted_count) * options.frames, kCellOfWindows)
+                             : with_widths(options.mesh, surface_area(frame), double(map.photons.size()));
   const auto& emitted = map.totals.emitted_flux;
   MeshSums sums(tracer, MeshCuts(mesh.cell, measured), unit_of(emitted[0] + emitted[1] + emitted[2]));
   sums.add(map.photons, Vec3(shift_of(map.header.origin, frame)));

@@ -230,10 +230,10 @@ TEST(LightTextures, BacksOfSolidsTakeNoLight) {
 
 TEST_F(LightTexture, WidthsFollowFromThePhotons) {
   // Area 24 m^2, 1e6 photons, 256 of them in 4 pi s^2: s = sqrt(256 x 24 / (4 pi 1e6)).
-  const MeshOptions options = with_widths({}, room_.frame(), 1'000'000);
+  const MeshOptions options = with_widths({}, surface_area(room_.frame()), 1e6);
   EXPECT_NEAR(options.filter.width, std::sqrt(256 * 24 / (4 * 3.14159265 * 1e6)), 1e-6);
   EXPECT_EQ(options.cell, options.filter.width);
-  EXPECT_EQ(with_widths({0.1, {MeshFilter::Kind::box, 0.4}}, room_.frame(), 5).cell, 0.1);
+  EXPECT_EQ(with_widths({0.1, {MeshFilter::Kind::box, 0.4}}, 1, 5).cell, 0.1);
 }
 
 }  // namespace
