@@ -27,7 +27,7 @@ class SignedDensity {
     /// W/m^2: sum over photons of the largest channel of |flux|, / area, so that gains and losses do not cancel.
     double influence = 0;
   };
-  /// m: largest radius of a disc; by default PointDensity::kSparser times the photons' own radius.
+  /// m: largest radius of a disc; by default PointDensity::kSparser times photon_reach().
   float max_radius() const { return options_.max_radius; }
   /// A disc in the static scene, which is the same for all maps of a segment; empty: not yet measured.
   using Area = std::optional<ReachableArea::Disc>;

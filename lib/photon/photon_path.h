@@ -33,7 +33,7 @@ struct PhotonTracer::Wave {
   std::uint32_t scattered[kWave];  ///< indices of the paths that a medium has scattered in this bounce
   Hit hits[kWave];                 ///< where the paths `alive` arrive, in their order
   SurfacePoint points[kWave];      ///< the surface at `hits`
-  std::uint64_t touched[kWave];    ///< by path, if movers are watched: bits of MoverWatch whose movers can touch it
+  std::uint64_t touched[kWave];    ///< by path, if movers are watched: bits of MoverWatch::touching(), of all its rays
   std::uint8_t* moved = nullptr;   ///< by path: elements of PhotonBatch::moved; null if they are not wanted
 };
 

@@ -69,7 +69,7 @@ std::set<std::uint32_t> groups_beside_base(const MapUpdate& update) {
 std::string why_not_updatable(const formats::PhotonHeader& a, const formats::PhotonHeader& b) {
   if (a.map != b.map || !a.part.empty()) return "it is a part of a map";
   if (a.kinds != b.kinds) return "it has other kinds of photons (" + a.kinds + ")";
-  if (a.majorants.empty()) return "it has no photons in media: only these maps say how old their groups are";
+  if (a.majorants.empty()) return "it has no photons in media: only such maps store how old their groups are";
   if (a.majorants != b.majorants)
     return "its majorants are others: make all maps of a segment with the same --majorants";
   if (a.group_count != b.group_count || a.emitted_count != b.emitted_count)
