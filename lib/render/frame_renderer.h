@@ -45,7 +45,8 @@ struct LayerImage {
   std::vector<Layers> pixels;               ///< width * height, top row first
   std::vector<StoredNoise> stored_noise;    ///< of the same pixels; empty unless KnownLight::has_noise()
   std::vector<SampleHalves> sample_halves;  ///< of the same pixels; empty unless asked for
-  /// By pixel: bit l is set if further samples have confirmed an outlier of layer l. Empty unless outliers are spread.
+  /// By pixel: bit l is set if further samples have confirmed an outlier of layer l. Empty unless outliers are spread
+  /// and sample_halves are kept.
   std::vector<std::uint8_t> confirmed;
   /// By layer: the variance of a pixel's mean over the mean square of SampleHalves::difference (NoiseCheck::shares).
   std::array<double, kLayerCount> difference_share{1, 1, 1, 1, 1, 1};

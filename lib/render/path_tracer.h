@@ -104,8 +104,8 @@ class EyePath {
   bool sharp_ = true;
 };
 
-/// Random numbers of one sample of a pixel: points of scrambled Sobol sequences, one sequence for each bounce and
-/// purpose.
+/// Random numbers of one sample of a pixel. The first bounces draw points of scrambled Sobol sequences, one sequence
+/// for each bounce and purpose; later bounces draw hashed numbers.
 class PixelRandom {
  public:
   PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
@@ -121,6 +121,9 @@ class PixelRandom {
   PathRandom hashed() const { return {key_, sample_}; }
 
  private:
+  /// Sobol points for all bounces change neither error nor CPU time (docs/notebook/constants.md).
+  static constexpr std::uint32_t kSobolBounces = 4;
+
   PixelRandom(std::uint64_t key, std::uint32_t sample) : key_(key), sample_(sample) {}
   std::uint64_t key(std::uint32_t bounce, Purpose purpose) const {
     return key_ + (std::uint64_t(bounce) * 64 + std::uint64_t(purpose)) * 0xd1342543de82ef95ull;

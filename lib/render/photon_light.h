@@ -10,7 +10,7 @@
 namespace tempolux {
 
 struct PhotonLightOptions {
-  int neighbours = 50;          ///< k of the density estimate of indirect light
+  int neighbours = 50;          ///< k of the density estimate of indirect light, 2 to kMaxNeighbours
   int caustic_neighbours = 25;  ///< fewer, because caustics have edges and a pixel averages several estimates
   bool caustic_only = false;    ///< no indirect light is needed, so only caustic photons are indexed
 };
@@ -39,7 +39,6 @@ class CausticMemory {
 class PhotonLight {
  public:
   /// photon_shift [m] is added to photon positions to bring them into scene space: the file's origin minus the frame's.
-  /// Throws std::invalid_argument unless the numbers of neighbours are 2 to kMaxNeighbours.
   PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift, const PhotonLightOptions& options);
 
   /// Caustic light [W/m^2] on the lit side of the surface, and its noise. 0 without caustic photons.

@@ -14,7 +14,7 @@ namespace tempolux {
 /// does not count: its bright samples are edges of what the camera sees, not outliers.
 struct BrightestSample {
   Rgb radiance{0.0f};   ///< W/m^2/sr
-  Rgb second{0.0f};     ///< second brightest value in the same layer; 0 if there is none
+  Rgb second{0.0f};     ///< next brightest value of this layer since it is the brightest layer; 0: none
   float brightest = 0;  ///< sum of the channels of `radiance`
   Layer layer = Layer::specular;
   /// Takes the next sample into account.
