@@ -32,6 +32,7 @@ struct AuditEntry {
   /// Sum of all layers over all pixels of the picture (mean_to_white), divided by the part's number of pixels. share()
   /// is `bias` over this radiance, so shares of parts add up.
   double picture = 0;
+  /// `bias` over `picture`, and its standard error; 0 for a black picture.
   double share() const { return picture > 0 ? bias.value / picture : 0; }
   double share_error() const { return picture > 0 ? bias.error / picture : 0; }
   /// `bias` over the radiance that the layer should have in the part; 0 if that is not above 0.

@@ -46,8 +46,8 @@ class CameraView {
   /// The cone around a pixel's ray, which decides the level of textures.
   RayCone cone() const { return orthographic() ? RayCone{pixel_size(0), 0} : RayCone{0, pixel_size(1)}; }
 
-  /// OpenEXR's standard attributes: row-vector matrices, row-major. Camera space is left-handed, +x right, +y up,
-  /// +z into the picture; NDC is (0, 0) at the top left and (1, 1) at the bottom right of the picture.
+  /// OpenEXR's standard attributes, from world space: row-vector matrices, row-major. Camera space is left-handed,
+  /// +x right, +y up, +z into the picture. NDC is (0, 0) at the top left and (1, 1) at the bottom right of the picture.
   std::array<double, 16> world_to_camera() const;
   std::array<double, 16> world_to_ndc() const;
 
@@ -64,6 +64,7 @@ struct CameraRays {
   std::vector<Ray> rays;
   std::vector<Hit> hits;  ///< by ray; surface kNone: nothing
 
+  /// The rays through these raster positions, in their order.
   CameraRays(const Tracer& tracer, const CameraView& view, std::span<const Vec2> raster);
 };
 

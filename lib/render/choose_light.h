@@ -32,7 +32,7 @@ struct Way {
   bool measured = true;    ///< false: work and error are lower bounds
   double lacks = 0;        ///< share of the picture that the way never finds (hidden_share)
   double unsure = 0;       ///< RoughFrame::unsure
-  double score() const { return work * error; }
+  double score() const { return work * error; }  ///< the least is best
 };
 
 /// All ways in ascending order of work x squared error; ways that lack light (Way::lacks, Way::unsure) come last.

@@ -25,10 +25,10 @@ struct FrameNoise {
   /// The part of image.codes that comes from noise of records and photons. All samples read the same records and
   /// photons, so further samples do not reduce this part.
   double stored_codes = 0;
-  std::array<Noise, kLayerCount> layer;  ///< noise of each layer alone, at the exposure of the whole picture
-  double exposure = 0;                   ///< factor that brings the median of the pixels' mean channels to .18
-  std::size_t pixels = 0;                ///< number of pixels that were rendered twice
-  bool known() const { return pixels > 1; }
+  std::array<Noise, kLayerCount> layer;      ///< noise of each layer alone, at the exposure of the whole picture
+  double exposure = 0;                       ///< factor that brings the median of the pixels' mean channels to .18
+  std::size_t pixels = 0;                    ///< number of pixels that were rendered twice
+  bool known() const { return pixels > 1; }  ///< two pixels at least give a standard error
 };
 
 /// Relative error of a linear value of .18 that changes the value's sRGB code by `codes`. At .18 the slope of the curve

@@ -114,8 +114,14 @@ class PixelRandom {
   std::uint32_t sample() const { return sample_; }
   /// Random numbers of another sample of the pixel.
   PixelRandom of_sample(std::uint32_t sample) const { return {key_, sample}; }
-  Vec2 get2(std::uint32_t bounce, Purpose purpose) const { return sobol_owen_2d(sample_, key(bounce, purpose)); }
-  float get1(std::uint32_t bounce, Purpose purpose) const { return sobol_owen_1d(sample_, key(bounce, purpose)); }
+  /// Two numbers in [0, 1).
+  Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
+    return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : hashed().get2(bounce, purpose);
+  }
+  /// One number in [0, 1).
+  float get1(std::uint32_t bounce, Purpose purpose) const {
+    return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : hashed().get1(bounce, purpose);
+  }
 
   /// Hashed numbers of this sample, for decisions whose number has no bound.
   PathRandom hashed() const { return {key_, sample_}; }

@@ -45,6 +45,7 @@ class PhotonLight {
   FootprintLight caustic(Vec3 position, const LitSurface& surface) const;
   /// Indirect irradiance [W/m^2] on the side of the geometric normal (unit). 0 unless has_indirect().
   Rgb indirect(Vec3 position, Vec3 normal) const;
+  /// False with PhotonLightOptions::caustic_only.
   bool has_indirect() const { return has_indirect_; }
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }
 

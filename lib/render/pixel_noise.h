@@ -28,6 +28,7 @@ double error_for_variance(double times);
 /// both.
 class PixelNoise {
  public:
+  /// Both arguments must outlive this object.
   PixelNoise(const CameraView& view, const FrameOptions& options);
 
   /// Pixels whose first samples are needed, as FrameOptions::mask (empty: all). With a mask: its pixels, the pixels

@@ -52,6 +52,7 @@ struct SampledPixels {
   /// light. Thread-safe.
   std::function<double(double)> error;
   std::unordered_map<std::size_t, FurtherSamples> further{};  ///< by pixel
+  /// True if the pixel may give and receive light.
   bool takes_part(std::size_t pixel) const { return mask.empty() || mask[pixel] != 0; }
 };
 
