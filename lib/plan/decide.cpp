@@ -96,8 +96,8 @@ class FramePilot {
 
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
   double kernel() { return pilot_kernel({tracer_, aimed()}, kinds_, 0); }
-  SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
-  MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
+  SplitChoice split() { return choose_split(pilot_split({tracer_, lights_}, view_, 0)); }
+  MovingPilot moving() { return pilot_moving({tracer_, lights_}, table_, view_, 0); }
   /// Mean share of a picture of the segment that the picture before does not show.
   double new_share(const PlannedSegment& segment) const {
     const std::vector<int> pictures = spread(segment.pictures());

@@ -40,15 +40,15 @@ struct PilotMaps {
   std::size_t touched = 0;               ///< number of touched paths
 };
 
-PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, const EmissionTable& emission,
-                     std::uint64_t seed) {
+PilotMaps trace_maps(const RenderScene& scene, const EmissionTable& emission, std::uint64_t seed) {
   PhotonOptions options{.seed = seed, .photon_count = kPilotPaths, .group_count = 1};
   options.set_kinds("indirect");
-  const Tracer whole_tracer(frame), fixed_tracer(static_scene);
-  const Lights whole_lights(frame, emission), fixed_lights(static_scene, emission);
-  const PhotonTracer whole(whole_tracer, whole_lights, options);
+  const SceneFrame static_scene = static_scene_of(scene.frame());
+  const Tracer fixed_tracer(static_scene);
+  const Lights fixed_lights(static_scene, emission);
+  const PhotonTracer whole(scene.tracer, scene.lights, options);
   PhotonTracer fixed(fixed_tracer, fixed_lights, options);
-  const MoverWatch watch({moving_boxes(frame)});
+  const MoverWatch watch({moving_boxes(scene.frame())});
   fixed.watch(&watch);
   std::vector<PhotonBatch> batches(fixed.batch_count()), changes(batches.size());
   parallel_each(batches.size(), 1, [&](std::size_t b) {
@@ -68,22 +68,19 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& static_scene, co
 
 }  // namespace
 
-MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
+MovingPilot pilot_moving(const RenderScene& scene, const EmissionTable& emission, const CameraView& view,
                          std::uint64_t seed) {
-  const SceneFrame static_scene = static_scene_of(frame);
-  const PilotMaps maps = trace_maps(frame, static_scene, emission, seed);
+  const PilotMaps maps = trace_maps(scene, emission, seed);
   const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}),
       dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
-  const Tracer tracer(frame);
-  const Lights lights(frame, emission);
-  const SeenPlaces seen = places_seen({tracer, lights}, view, kPilotPlaces, seed);
+  const SeenPlaces seen = places_seen(scene, view, kPilotPlaces, seed);
   std::vector<std::uint8_t> gathered(kPilotPlaces, 0);
   parallel_chunks(kPilotPlaces, 64, [&](std::size_t first, std::size_t last) {
     NeighbourList found;
     for (std::size_t i = first; i < last; ++i) {
       const SeenPlace& place = seen.places[i];
       if (!place.exists()) continue;
-      gathered[i] = place.surface.surface >= frame.static_count;  // surfaces of movers come last
+      gathered[i] = place.surface.surface >= scene.frame().static_count;  // surfaces of movers come last
       PhotonQuery query{place.surface.position, place.normal, INFINITY, kMinCos, kFlattening};
       fixed.find_nearest(query, kNeighbours, found);
       if (gathered[i] || found.count() == 0) continue;

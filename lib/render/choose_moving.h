@@ -21,10 +21,10 @@ struct MovingPilot {
   double gathered_share = 0;
 };
 
-/// Traces kPilotPaths light paths through the static scene, traces those that movers touch through the whole scene as
-/// well, and looks at kPilotPlaces visible places. Takes some tenths of a second. Same result for any number of
-/// threads.
-MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
+/// `emission`: that of scene.lights. Traces kPilotPaths light paths through the static scene, traces those that movers
+/// touch through the whole scene as well, and looks at kPilotPlaces visible places. Takes some tenths of a second. Same
+/// result for any number of threads.
+MovingPilot pilot_moving(const RenderScene& scene, const EmissionTable& emission, const CameraView& view,
                          std::uint64_t seed);
 
 struct MovingChoice {

@@ -20,13 +20,9 @@ constexpr double kPays = 2;  ///< a split pays above this variance_ratio
 
 }  // namespace
 
-SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
-                       std::uint64_t seed) {
-  const Tracer tracer(frame);
-  const Lights lights(frame, emission);
-  const RenderScene scene{tracer, lights};
+SplitPilot pilot_split(const RenderScene& scene, const CameraView& view, std::uint64_t seed) {
   const std::vector<formats::Photon> photons =
-      pilot_photons(tracer, lights, "direct,caustic,indirect", kPilotPaths, seed).photons;
+      pilot_photons(scene.tracer, scene.lights, "direct,caustic,indirect", kPilotPaths, seed).photons;
   CellEdge edge;
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
   FluxCells cells(edge.edge(), 0);
@@ -44,7 +40,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
       const SeenPlace& met = seen.next_places[i];
       if (!met.exists()) continue;
       SurfacePoint surface = met.surface;
-      const SurfaceMaterial material(frame, surface);
+      const SurfaceMaterial material(scene.frame(), surface);
       const Rgb reflected = Bsdf(material, dot(met.surface.normal_geometric, met.geometric) > 0).diffuse_albedo();
       const Rgbd irradiance = estimate_irradiance(index, met.surface.position, met.geometric, {}, found).irradiance;
       all[i] = channel_sum(Rgbd(reflected) * irradiance);

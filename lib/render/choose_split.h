@@ -21,8 +21,7 @@ struct SplitPilot {
 /// Traces kPilotPaths light paths, divides the light of their photons of all kinds into a low and a high part
 /// (FluxCells with the limit kBrightLimit), and sends one gather ray from each of kPilotPlaces visible places. Takes a
 /// tenth of a second. Same result for any number of threads.
-SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view,
-                       std::uint64_t seed);
+SplitPilot pilot_split(const RenderScene& scene, const CameraView& view, std::uint64_t seed);
 
 struct SplitChoice {
   bool split = false;

@@ -29,7 +29,9 @@ struct Room {
     camera.camera.kind = Camera::Kind::orthographic;
     camera.camera.ymag_m = 1.35f;
     camera.scene_from_camera.translation = {2, 1.4, 3.9};
-    return pilot_moving(frame, table, CameraView(camera, {}, 64, 36), 0);
+    const Tracer tracer(frame);
+    const Lights lights(frame, table);
+    return pilot_moving({tracer, lights}, table, CameraView(camera, {}, 64, 36), 0);
   }
 };
 

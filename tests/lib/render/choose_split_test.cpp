@@ -18,12 +18,12 @@ SplitPilot pilot_of(float size, float above) {
   const float a = 2 - size / 2, b = 2 + size / 2;
   scene.add_quad({a, above, a}, {b, above, a}, {b, above, b}, {a, above, b}, lamp);
   const SceneFrame& frame = scene.frame();
-  const EmissionTable table = build_emission_table(std::span(&frame, 1));
+  const test::Lit lit(frame);
   PlacedCamera camera;  // orthographic, 7 x 3.9 m
   camera.camera.kind = Camera::Kind::orthographic;
   camera.camera.ymag_m = 1.95f;
   camera.scene_from_camera.translation = {2, 2, 3.9};
-  return pilot_split(frame, table, CameraView(camera, {}, 64, 36), 0);
+  return pilot_split(lit.scene(), CameraView(camera, {}, 64, 36), 0);
 }
 
 /// A lamp under the ceiling lights all of the floor: at most 4 times the mean.
