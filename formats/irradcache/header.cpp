@@ -10,7 +10,8 @@ namespace {
 constexpr std::uint16_t kLeastCosineSince = 1, kClearanceSince = 2, kNoiseSince = 3,
                         kLampsApartSince = 4;  ///< minor versions
 
-constexpr std::array<std::string_view, 4> kColumnNames{"influence", "update", "clearance", "noise"};
+constexpr std::array<std::string_view, 5> kColumnNames{"influence", "update", "clearance", "noise", "apart"};
+constexpr std::uint32_t kApart = 1u << 4;  ///< a column without bytes: `lamps-apart` is there
 constexpr std::uint32_t kColumnSets = 1u << kColumnNames.size();
 
 /// Value of the key `columns`.
@@ -23,7 +24,7 @@ std::string names_of(std::uint32_t columns) {
 
 /// Checks the values for both reader and writer: returns the fault, or "" if there is none.
 std::string_view fault_of(const IrradcacheHeader& h) {
-  if (h.columns >= kColumnSets) return "columns are not known";
+  if (h.columns >= kApart) return "columns are not known";
   if (!std::isfinite(h.error_bound) || h.error_bound < 0) return "error-bound is not finite or is negative";
   if (!(h.least_cosine >= 0 && h.least_cosine < 1)) return "least-cosine is not from 0 to below 1";
   if (!std::isfinite(h.lamps_apart) || h.lamps_apart < 0) return "lamps-apart is not finite or is negative";
@@ -52,8 +53,9 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
   if (key == "columns") {
     h.columns = 0;
     while (h.columns < kColumnSets && names_of(h.columns) != value) ++h.columns;
-    return result(!(h.columns & column_clearance && minor < kClearanceSince) &&
-                  !(h.columns & column_noise && minor < kNoiseSince));
+    return result(h.columns < kColumnSets && !(h.columns & column_clearance && minor < kClearanceSince) &&
+                  !(h.columns & column_noise && minor < kNoiseSince) &&
+                  !(h.columns & kApart && minor < kLampsApartSince));
   }
   if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);
   if (key == "error-bound") return result(parse_numbers(value, &h.error_bound, 1) && h.error_bound > 0);
@@ -95,7 +97,7 @@ Format format_of(const IrradcacheHeader& h) {
 std::string header_text(const IrradcacheHeader& h) {
   HeaderText text("irradcache");
   if (const std::string_view fault = fault_of(h); !fault.empty()) text.refuse(fault);
-  text.line("columns", names_of(h.columns));
+  text.line("columns", names_of(h.columns | (h.lamps_apart > 0 ? kApart : 0)));
   text.origin(h.origin);
   if (h.rays > 0) text.line("rays", text_of(h.rays));
   if (h.error_bound > 0) text.line("error-bound", text_of(h.error_bound));
@@ -113,6 +115,9 @@ std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_
   constexpr std::array<std::string_view, 2> required{"columns", "origin"};
   const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };
   if (auto error = parse_lines(text, minor > kFormat.minor, required, take)) return error;
+  if (bool(h.columns & kApart) != (h.lamps_apart > 0))
+    return HeaderError{0, "header: the column apart and lamps-apart do not come together"};
+  h.columns &= ~kApart;
   if (const std::string_view fault = fault_of(h); !fault.empty())
     return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;

@@ -15,6 +15,8 @@ using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
 
+constexpr double kNarrowestCone = 1e-4;  ///< rad; replaces an outer angle of 0 or less
+
 constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
 
 /// Clamps a number to [lower, upper], with a warning if it was outside; fails if it is not finite.
@@ -138,11 +140,14 @@ PunctualLight read_light(Import& import, std::size_t index) {
   light.intensity *= limited(import, source.intensity, 0, kNoUpper, place + ".intensity");
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
   if (light.kind == PunctualLight::Kind::spot) {
-    const double outer = source.spot.outerConeAngle, inner = source.spot.innerConeAngle;
-    if (!(outer > 0 && outer <= std::numbers::pi / 2 + 1e-6 && inner >= 0 && inner <= outer))
-      import.fail(place + ".spot", "cone angles must be 0 <= inner < outer <= pi/2");
-    light.inner_cone_rad = float(std::min(inner, outer * kSharpestSpot));
-    light.outer_cone_rad = float(outer);
+    // An animated angle is brought into the same range (animate_properties.cpp).
+    const double widest = std::numbers::pi / 2 + 1e-6,
+                 outer = std::clamp(source.spot.outerConeAngle, kNarrowestCone, widest);
+    light.outer_cone_rad =
+        limited(import, source.spot.outerConeAngle, kNarrowestCone, widest, place + ".spot.outerConeAngle");
+    light.inner_cone_rad =
+        std::min(limited(import, source.spot.innerConeAngle, 0, outer, place + ".spot.innerConeAngle"),
+                 float(outer * kSharpestSpot));
   }
   if (source.range > 0) import.ignore("range of lights (light follows the inverse square)");
   return light;

@@ -221,8 +221,12 @@ def make_cache():
     m.save("accept/least-cosine-zero", m.with_header(least_cosine="0"))
     m.headers({f"least-cosine-{name}": {"least-cosine": value}
                for name, value in {"one": "1", "negative": "-0.5", "nan": "nan", "empty": "", "two": "0.9 0.9"}.items()})
-    m.save("accept/lamps-apart", m.with_header(lamps_apart="0.125"))
-    m.headers({f"lamps-apart-{name}": {"lamps-apart": value}
+    apart = m.with_header(lamps_apart="0.125", columns="apart")
+    m.save("accept/lamps-apart", apart)
+    apart.header["columns"] = "clearance,noise,apart"
+    apart.records[0].clearance, apart.records[0].noise = (0.515625, *range(0, 240, 16), 255), (0.5, -0.25, 0)
+    m.save("accept/lamps-apart-with-columns", apart)
+    m.headers({f"lamps-apart-{name}": {"lamps-apart": value, "columns": "apart"}
                for name, value in {"zero": "0", "negative": "-0.5", "infinite": "inf", "empty": ""}.items()})
     text = m.pieces(m.bytes)[0][16:-4]
     m.save("refuse/header-key-of-a-later-version", m.with_text(text + b"least-cosine: 0.985\n"))
@@ -259,6 +263,10 @@ def make_cache():
         cleared.records = [dataclass_with(record, clearance=(reach, *[0] * 16))]
         m.save("refuse/clearance-reach-" + name, cache.encode_irradcache(cleared))
     m.save("refuse/clearance-before-1.2", m.with_text(text.replace(b"columns: none", b"columns: clearance"), minor=1))
+    m.save("refuse/apart-before-1.4",
+           m.with_text(text.replace(b"columns: none", b"columns: apart") + b"lamps-apart: 0.125\n", minor=3))
+    m.save("refuse/apart-without-lamps-apart", m.with_text(text.replace(b"columns: none", b"columns: apart"), minor=4))
+    m.save("refuse/lamps-apart-without-apart", m.with_text(text + b"lamps-apart: 0.125\n", minor=4))
     m.save("refuse/noise-before-1.3", m.with_text(text.replace(b"columns: none", b"columns: noise"), minor=2))
     noisy = m.with_header(columns="noise")
     noisy.records = [dataclass_with(record, noise=(0, NAN, 0))]

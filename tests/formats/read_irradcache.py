@@ -21,11 +21,11 @@ MAGIC, MARK = b"\x89TIRRC\r\n", b"IRRC"
 RECORD = struct.Struct("<3f3fHBB3f9f9fff")
 INFLUENCE, UPDATE, CLEARANCE, NOISE = map(struct.Struct, ("<f", "<3f", "<f16B", "<3f"))               # section 4
 END = "<Q3d"                                                       # section 5, without mark and chain
-NAMES = ["influence", "update", "clearance", "noise"]
-COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(16))}
-SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size, "clearance": CLEARANCE.size, "noise": NOISE.size}
+NAMES = ["influence", "update", "clearance", "noise", "apart"]
+COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(32))}
+SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size, "clearance": CLEARANCE.size, "noise": NOISE.size, "apart": 0}
 KEYS = ["columns", "origin", "rays", "error-bound", "least-cosine", "lamps-apart", "radii", "placed"]
-SINCE = {"least-cosine": 1, "clearance": 2, "noise": 3, "lamps-apart": 4}   # section 9; clearance, noise are columns
+SINCE = {"least-cosine": 1, "clearance": 2, "noise": 3, "apart": 4, "lamps-apart": 4}   # section 9; clearance, noise, apart are columns
 
 
 def good_radii(text):
@@ -86,6 +86,8 @@ def read_irradcache(path):
     header, history, blocks, end = read_container(
         path, MAGIC, MARK, ["columns"], RULES,
         lambda h: [RECORD.size] + [SIZES[c] for c in COLUMNS[h["columns"]]], END, SINCE)
+    if ("apart" in COLUMNS[header["columns"]]) != ("lamps-apart" in header):
+        refuse(0, "column apart and lamps-apart do not come together")
     records = []
     for offset, _, parts in blocks:
         columns = dict(zip(COLUMNS[header["columns"]], parts[1:]))
