@@ -110,7 +110,8 @@ void BrightPoints::gather_spots() {
       const Site& site = sites_[end];
       spot.box.add(site.place.position);
       spot.cos_spread = std::min(spot.cos_spread, dot(site.normal, spot.axis));
-      spot.weight += double(channel_mean(site.bsdf.diffuse_albedo() * site.irradiance) * (site.area * kInvPi));
+      spot.add_weight(site.normal,
+                      double(channel_mean(site.bsdf.diffuse_albedo() * site.irradiance) * (site.area * kInvPi)));
     }
     if (!(spot.weight > 0)) continue;
     spots.push_back(spot);

@@ -15,12 +15,22 @@ constexpr float kSlack = 4e-6f;
 constexpr int kBucketCount = 16;
 // From this depth on, nodes are halved by the number of lights. So no input makes the tree a list.
 constexpr int kDepthOfHalving = 32;
+/// Share of the square in mean_magnitude(): exact for one normal, and for normals that are uniform on the sphere.
+constexpr float kOfSquares = 0.75f;
+/// The least importance over its upper bound: an estimate that is too low costs at most 20 times the variance.
+constexpr float kLeastOfBound = 0.05f;
 
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
 /// cos(max(0, a - b)) of two angles in [0, pi]. Both branches are computed: vector lanes cannot branch.
 inline float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   const float difference = cos_a * cos_b + sin_a * sin_b;
   return cos_a > cos_b ? 1.0f : difference;
+}
+
+/// Estimate of the mean of |x| from the mean of x and of x^2: |mean| if all x are alike, 1/2 for the cosines of normals
+/// that are uniform on the sphere. The mean of max(0, x) is half of the sum of the means of x and |x|.
+inline float mean_magnitude(float mean, float square) {
+  return safe_sqrt((1 - kOfSquares) * mean * mean + kOfSquares * square);
 }
 
 /// The vector turned around the unit axis.
@@ -56,6 +66,8 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   join_cones(a, b);
   a.box.add(b.box);
   a.weight += b.weight;
+  a.normals += b.normals;
+  for (std::size_t i = 0; i < a.squares.size(); ++i) a.squares[i] += b.squares[i];
   a.cos_reach = std::min(a.cos_reach, b.cos_reach);
   a.two_sided = a.two_sided || b.two_sided;
   a.backs_within.add(b.backs_within);
@@ -92,6 +104,20 @@ struct Group {
 };
 
 }  // namespace
+
+void LightBounds::add_weight(Vec3 normal, double more) {
+  const Vec3d n(normal);
+  const std::array<double, 6> products{n.x * n.x, n.y * n.y, n.z * n.z, 2 * n.x * n.y, 2 * n.x * n.z, 2 * n.y * n.z};
+  weight += more;
+  normals += n * more;
+  for (std::size_t i = 0; i < products.size(); ++i) squares[i] += more * products[i];
+}
+
+void LightBounds::add_punctual(double more) {
+  constexpr double kSquare = 4 / double(kOfSquares);  // half of mean_magnitude(0, kSquare) is 1
+  weight += more;
+  for (std::size_t i = 0; i < 3; ++i) squares[i] += more * kSquare;
+}
 
 struct LightTree::Item {
   LightBounds bounds;
@@ -177,7 +203,7 @@ void LightTree::collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std
   }
 }
 
-void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
+void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) const {
   const Vec3 centre = bounds.box.centre();
   for (int axis = 0; axis < 3; ++axis) {
     node.centre[axis][lane] = centre[axis];
@@ -191,6 +217,9 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   const float farthest = length(max(abs(backs.lower - centre), abs(backs.upper - centre))) * (1 + kSlack);
   node.backs_within2[lane] = bounds.two_sided ? INFINITY : backs.empty() ? -1 : farthest * farthest;
   node.weight[lane] = bounds.weight;
+  const double whole = whole_ * bounds.weight;
+  for (int axis = 0; axis < 3; ++axis) node.normals[axis][lane] = float(bounds.normals[axis] / whole);
+  for (std::size_t i = 0; i < bounds.squares.size(); ++i) node.squares[i][lane] = float(bounds.squares[i] / whole);
 }
 
 /// Returns the index at which to divide [first, last), which holds at least two items. The function compares 15 planes
@@ -261,8 +290,19 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float cos_i = (normal.x * x + normal.y * y + normal.z * z) * inverse;
     const float above = cos_difference(safe_sqrt(1 - cos_i * cos_i), cos_i, sin_size, cos_size);
     const float cos_surface = no_normal > 0 ? 1.0f : above;
-    const float bound = inverse * inverse * std::max(cos_light, 1e-3f) * std::max(cos_surface, 1e-3f);
-    const float reached = cos_light < node.cos_reach[i] ? 0.0f : bound;
+    const float bound = std::max(cos_light, 1e-3f) * std::max(cos_surface, 1e-3f);
+    // Mean cosines at the lights and at the surface: the directions to places uniform in a cube of this radius have
+    // cosines of the variance sin_size^2 / 9.
+    const float mean = -(node.normals[0][i] * x + node.normals[1][i] * y + node.normals[2][i] * z) * inverse;
+    const float square = (node.squares[0][i] * x * x + node.squares[1][i] * y * y + node.squares[2][i] * z * z +
+                          node.squares[3][i] * x * y + node.squares[4][i] * x * z + node.squares[5][i] * y * z) *
+                         (inverse * inverse);
+    const float both_sides = mean_magnitude(mean, square);
+    const float mean_light = distance2 <= node.backs_within2[i] ? both_sides : 0.5f * (mean + both_sides);
+    const float mean_above = 0.5f * (cos_i + mean_magnitude(cos_i, cos_i * cos_i + sin_size * sin_size / 9));
+    const float estimate = mean_light * (no_normal > 0 ? 1.0f : mean_above);
+    const float likely = inverse * inverse * std::max(kLeastOfBound * bound, std::min(bound, estimate));
+    const float reached = cos_light < node.cos_reach[i] ? 0.0f : likely;
     const float outside = cos_surface < -kSlack ? 0.0f : reached;
     // Inside the sphere around the box the point may see the lights in any direction.
     const float inside = 1 / std::max(radius * radius, 1e-18f);

@@ -5,6 +5,7 @@
 // in the lanes of a vector.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,12 +17,20 @@ namespace tempolux {
 /// Bounds of one light, or of all lights below a node.
 struct LightBounds {
   Box3 box;
-  Vec3 axis{0, 0, 1};      ///< unit; axis of the cone of normals
-  double weight = 0;       ///< greatest irradiance at 1 m: L A of an area light, I of a point light; summed
+  Vec3 axis{0, 0, 1};  ///< unit; axis of the cone of normals
+  double weight = 0;   ///< greatest irradiance at 1 m: L A of an area light, I of a point light; summed
+  /// Sum over the lights of weight x normal, and of weight x (n_x^2, n_y^2, n_z^2, 2 n_x n_y, 2 n_x n_z, 2 n_y n_z).
+  Vec3d normals{};
+  std::array<double, 6> squares{};
   float cos_spread = 1;    ///< cosine of the largest angle between any light's normal and the axis
   float cos_reach = 0;     ///< cosine of the largest angle from its normal at which a light shines (at most pi/2)
   bool two_sided = false;  ///< true if any of the lights shines backwards, too
   Box3 backs_within;       ///< holds all points that see the backs of lights in closed_parts(); empty: no such lights
+
+  /// Adds the weight of a light with this normal (unit) to weight, normals and squares.
+  void add_weight(Vec3 normal, double more);
+  /// The same for a light that shines equally in all directions: its normals are estimated to have the cosine 1.
+  void add_punctual(double more);
 };
 
 /// A tree over lights that chooses one light for a point.
@@ -47,9 +56,10 @@ class LightTree {
   };
   /// Importances at a point. `normal` is unit; if zero, lights below the surface count as well.
   Start start(Vec3 point, Vec3 normal) const;
-  /// Walks down from the root. At each node a child is chosen in proportion to its importance, an upper bound of weight
-  /// x cos(light) cos(surface) / distance^2. `start` is that of the same point and normal. u in [0, 1). False if the
-  /// walk ends at a node from which no light can reach the point. The tree must not be empty.
+  /// Walks down from the root. At each node a child is chosen in proportion to its importance, an estimate of weight
+  /// x cos(light) cos(surface) / distance^2 that is 0 only if no light below the child can reach the point. `start` is
+  /// that of the same point and normal. u in [0, 1). False if the walk ends at a node from which no light can reach the
+  /// point. The tree must not be empty.
   bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Probability [1] with which choose() takes this light; 0 if it cannot.
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
@@ -58,6 +68,7 @@ class LightTree {
   struct alignas(32) Node {
     float centre[3][kWidth], radius[kWidth];  ///< sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
+    float normals[3][kWidth], squares[6][kWidth];  ///< LightBounds' over the child's weight
     /// m^2; square of the distance from the centre within which backs may be seen; -1: backs are seen nowhere
     float backs_within2[kWidth];
     double weight[kWidth];        ///< of the child, divided by the weight of all lights; 0: no child
@@ -71,7 +82,7 @@ class LightTree {
                                  std::vector<Pair>& pairs);
   static std::size_t split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost);
   void collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent);
-  static void set_child(Node& node, int lane, const LightBounds& bounds);
+  void set_child(Node& node, int lane, const LightBounds& bounds) const;
   /// Computes the importance of each child; returns their sum.
   double importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const;
 

@@ -19,7 +19,7 @@ LightBounds bounds_of(const TriangleLight& t, const Box3& backs_within) {
   b.box.add(t.corner + t.edge1);
   b.box.add(t.corner + t.edge2);
   b.axis = t.normal;
-  b.weight = double(max_component(t.radiance)) * t.area;
+  b.add_weight(t.normal, double(max_component(t.radiance)) * t.area);
   b.two_sided = t.two_sided && backs_within.empty();
   if (t.two_sided) b.backs_within = backs_within;
   return b;
@@ -31,7 +31,7 @@ LightBounds bounds_of(const PlacedLight& placed) {
   LightBounds b;
   b.box.add(placed.position);
   b.axis = placed.direction;
-  b.weight = max_component(placed.light.intensity);
+  b.add_punctual(max_component(placed.light.intensity));
   b.cos_spread = -1;
   if (placed.light.kind == PunctualLight::Kind::spot) {
     // The normals fill the inner cone. A direction of the outer cone's edge makes the angle outer - inner with the

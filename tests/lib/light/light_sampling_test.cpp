@@ -87,6 +87,37 @@ LightScene box_lamp(Vec3 centre, float half, bool inside_out = false, bool open 
   return scene;
 }
 
+/// A drum of 4 x `sides` triangles of radiance 1 around the centre, radius .2, half a height of .1, closed.
+std::vector<std::vector<Vec3>> drum(Vec3 centre, int sides) {
+  const auto corner = [&](int i, float z) {
+    const float phi = 2 * kPi * float(i) / float(sides);
+    return centre + Vec3{0.2f * std::cos(phi), 0.2f * std::sin(phi), z};
+  };
+  std::vector<std::vector<Vec3>> triangles;
+  for (int i = 0; i < sides; ++i) {
+    const Vec3 a = corner(i, -0.1f), b = corner(i + 1, -0.1f), c = corner(i + 1, 0.1f), d = corner(i, 0.1f);
+    const Vec3 below = centre - kUp * 0.1f, above = centre + kUp * 0.1f;
+    triangles.insert(triangles.end(), {{a, b, c}, {a, c, d}, {below, b, a}, {above, d, c}});
+  }
+  return triangles;
+}
+
+// Nothing hides a drum, so a sample would have no noise if triangles were chosen by their irradiance. By the upper
+// bounds of their irradiance it has a deviation of up to .6.
+TEST(LightTree, ChoosesTrianglesOfALampByTheirIrradiance) {
+  LightScene scene;
+  for (const auto& triangle : drum({0, 0, 2}, 20)) scene.add(triangle, Rgb(1.0f));
+  const Lights lights = scene.lights();
+  for (const auto& [point, normal] : {std::pair{Vec3{1.3f, 0.4f, 0}, kUp},
+                                      {Vec3{0.3f, 0.1f, 0}, kUp},
+                                      {Vec3{0.5f, 1.8f, 1}, Vec3{0, -1, 0}},
+                                      {Vec3{-1, 1, 2.6f}, -kUp}}) {
+    double sigma = 0;
+    const double e = irradiance(lights, point, normal, 1 << 14, &sigma).r;
+    EXPECT_LT(sigma * (1 << 7) / e, 0.3) << point.x;
+  }
+}
+
 /// Share of the samples at the origin that lie above z.
 double share_above(const Lights& lights, float z) {
   constexpr std::uint32_t kCount = 4096;
@@ -306,7 +337,7 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
     b.box.add(at);
     b.box.add(at + Vec3{0.1f, 0.05f, 0.2f});
     b.axis = test::sample_sphere(random.get2(i, Purpose::test, 3));
-    b.weight = 0.01 + double(random.get1(i, Purpose::test, 4));
+    b.add_weight(b.axis, 0.01 + double(random.get1(i, Purpose::test, 4)));
     b.two_sided = i % 3 == 0;
     bounds.push_back(b);
   }
