@@ -15,10 +15,6 @@ constexpr float kSlack = 4e-6f;
 constexpr int kBucketCount = 16;
 // From this depth on, nodes are halved by the number of lights. So no input makes the tree a list.
 constexpr int kDepthOfHalving = 32;
-/// Share of the square in mean_magnitude(): exact for one normal, and for normals that are uniform on the sphere.
-constexpr float kOfSquares = 0.75f;
-/// The least importance over its upper bound: an estimate that is too low costs at most 20 times the variance.
-constexpr float kLeastOfBound = 0.05f;
 
 inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
 /// cos(max(0, a - b)) of two angles in [0, pi]. Both branches are computed: vector lanes cannot branch.
@@ -27,11 +23,9 @@ inline float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) 
   return cos_a > cos_b ? 1.0f : difference;
 }
 
-/// Estimate of the mean of |x| from the mean of x and of x^2: |mean| if all x are alike, 1/2 for the cosines of normals
-/// that are uniform on the sphere. The mean of max(0, x) is half of the sum of the means of x and |x|.
-inline float mean_magnitude(float mean, float square) {
-  return safe_sqrt((1 - kOfSquares) * mean * mean + kOfSquares * square);
-}
+/// Estimate of the mean of |x| from the mean of x and of x^2: right if all x are alike, and for the cosines of normals
+/// that are uniform on the sphere (mean 0, square 1/3; 1/2). The mean of max(0, x) is (mean of x + mean of |x|) / 2.
+inline float mean_magnitude(float mean, float square) { return safe_sqrt(0.25f * (mean * mean + 3 * square)); }
 
 /// The vector turned around the unit axis.
 Vec3 rotate(Vec3 v, Vec3 axis, float angle) {
@@ -114,9 +108,8 @@ void LightBounds::add_weight(Vec3 normal, double more) {
 }
 
 void LightBounds::add_punctual(double more) {
-  constexpr double kSquare = 4 / double(kOfSquares);  // half of mean_magnitude(0, kSquare) is 1
   weight += more;
-  for (std::size_t i = 0; i < 3; ++i) squares[i] += more * kSquare;
+  for (std::size_t i = 0; i < 3; ++i) squares[i] += more * 16 / 3;  // half of mean_magnitude(0, 16 / 3) is 1
 }
 
 struct LightTree::Item {
@@ -290,18 +283,19 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float cos_i = (normal.x * x + normal.y * y + normal.z * z) * inverse;
     const float above = cos_difference(safe_sqrt(1 - cos_i * cos_i), cos_i, sin_size, cos_size);
     const float cos_surface = no_normal > 0 ? 1.0f : above;
-    const float bound = std::max(cos_light, 1e-3f) * std::max(cos_surface, 1e-3f);
-    // Mean cosines at the lights and at the surface: the directions to places uniform in a cube of this radius have
-    // cosines of the variance sin_size^2 / 9.
+    // Mean cosines at the lights and at the surface. The directions to the places of a cube of this radius, uniform,
+    // vary by sin_size^2 / 9 in each coordinate.
+    const float vary = sin_size * sin_size / 9;
     const float mean = -(node.normals[0][i] * x + node.normals[1][i] * y + node.normals[2][i] * z) * inverse;
     const float square = (node.squares[0][i] * x * x + node.squares[1][i] * y * y + node.squares[2][i] * z * z +
                           node.squares[3][i] * x * y + node.squares[4][i] * x * z + node.squares[5][i] * y * z) *
-                         (inverse * inverse);
+                             (inverse * inverse) +
+                         vary;
     const float both_sides = mean_magnitude(mean, square);
-    const float mean_light = distance2 <= node.backs_within2[i] ? both_sides : 0.5f * (mean + both_sides);
-    const float mean_above = 0.5f * (cos_i + mean_magnitude(cos_i, cos_i * cos_i + sin_size * sin_size / 9));
-    const float estimate = mean_light * (no_normal > 0 ? 1.0f : mean_above);
-    const float likely = inverse * inverse * std::max(kLeastOfBound * bound, std::min(bound, estimate));
+    const float of_lights = distance2 <= node.backs_within2[i] ? both_sides : 0.5f * (mean + both_sides);
+    const float of_surface = no_normal > 0 ? 1.0f : 0.5f * (cos_i + mean_magnitude(cos_i, cos_i * cos_i + vary));
+    const float likely = inverse * inverse * std::max(std::min(cos_light, of_lights), 1e-3f) *
+                         std::max(std::min(cos_surface, of_surface), 1e-3f);
     const float reached = cos_light < node.cos_reach[i] ? 0.0f : likely;
     const float outside = cos_surface < -kSlack ? 0.0f : reached;
     // Inside the sphere around the box the point may see the lights in any direction.
