@@ -325,8 +325,8 @@ TEST(Lights, ManyTogetherGiveTheSumOfEach) {
 }
 
 // The choice probabilities of all lights sum to 1, minus the probability of walks that end at lights which do not
-// reach the point. Each is the frequency with which choose() takes the light: u in equal steps of 2^-16 hits each
-// light within 1 step per level.
+// reach the point; if all lights are two-sided and the point has no normal, every light reaches the point. Each is the
+// frequency with which choose() takes the light: u in equal steps of 2^-16 hits each light within 1 step per level.
 TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
   std::vector<LightBounds> bounds;
   const PathRandom random(4, 4);
@@ -342,6 +342,8 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
     bounds.push_back(b);
   }
   const LightTree tree(bounds);
+  for (LightBounds& b : bounds) b.two_sided = true;
+  const LightTree two_sided_tree(bounds);
   for (std::uint32_t k = 0; k < 20; ++k) {
     const Vec3 point =
         Vec3{random.get1(k, Purpose::place, 0), random.get1(k, Purpose::place, 1), random.get1(k, Purpose::place, 2)} *
@@ -366,7 +368,11 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
       sum += p;
     }
     EXPECT_NEAR(sum + lost / kSteps, 1, 300.0 / kSteps);
-    if (lost == 0) { EXPECT_NEAR(sum, 1, 1e-9); }
+    EXPECT_LT(sum, 1 + 1e-9);
+    if (normal != Vec3{}) continue;
+    double all_reach = 0;
+    for (std::uint32_t i = 0; i < bounds.size(); ++i) all_reach += two_sided_tree.probability(point, normal, i);
+    EXPECT_NEAR(all_reach, 1, 1e-9);
   }
 }
 
