@@ -92,7 +92,10 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
 /// Variance of one sample of the part own, whose light has edges: the mean variance within the neighbours, plus a share
 /// of the variance between neighbours that their samples do not explain. If each neighbour's samples agree but the
 /// neighbours differ, an edge may run through this pixel alone, such as the rim of a lamp that reaches into one row of
-/// pixels. The pixel's first samples may then miss the bright part or overestimate it.
+/// pixels. The pixel's first samples may then miss the bright part or overestimate it. The
+/// variance is at most that of white, because the rim of a lamp is seen in white: if a lamp covers a share of a pixel,
+/// and all shares are equally likely, N samples all miss the lamp with the probability 1 / (N + 1), and the picture is
+/// then wrong by white at most.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {
@@ -106,7 +109,8 @@ double PixelNoise::own_variance(int x, int y) const {
   if (n == 0) return 0;
   within /= n;
   const double between = sample_variance(n, sum, square) - within / options_.samples;
-  return kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between)) + mirrored / n;
+  const double sharp = kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between));
+  return std::min(sharp, white_ * white_) + mirrored / n;
 }
 
 /// Sums over the pixels around a pixel.
@@ -170,6 +174,7 @@ void PixelNoise::all_noted() {
     for (int x = lattice_ / 2; x < view_.width(); x += lattice_)
       means.push_back(pixels_[std::size_t(y) * std::size_t(view_.width()) + std::size_t(x)].mean);
   picture_ = mean_to_white(means);
+  white_ = 1 / exposure_of(means);
 }
 
 }  // namespace tempolux

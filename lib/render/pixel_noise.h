@@ -72,6 +72,7 @@ class PixelNoise {
   PartCounts first_;
   int first_half_;      ///< number of samples in the first half of the first samples
   double picture_ = 0;  ///< mean_to_white() of the first samples of the pixels of a lattice
+  double white_ = 0;    ///< radiance that is shown as white, by exposure_of() of the same pixels
   int lattice_;         ///< spacing of that lattice in pixels
   std::vector<std::uint8_t> looked_at_;
   ParallelArray<Pixel> pixels_;

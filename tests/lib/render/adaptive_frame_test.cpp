@@ -112,6 +112,25 @@ TEST(AdaptiveFrame, EdgesArePaidForByThePixelsBesideThemAlone) {
   }
 }
 
+/// The rim of a lamp is seen in white, however bright the lamp is: a lamp 100 times as bright takes no more samples.
+/// The picture's median is the sheet beside the lamp, so white is .1 / .18.
+TEST(AdaptiveFrame, RimsOfLampsCountAsWhite) {
+  const auto samples = [](float radiance) {
+    HandMadeScene made;
+    const float rim = 28.5f / 32;
+    made.add_quad({-2, -2, 0}, {rim, -2, 0}, {rim, 2, 0}, {-2, 2, 0}, test::matte(Rgb(0.0f), Rgb(0.1f)));
+    made.add_quad({rim, -2, 0}, {2, -2, 0}, {2, 2, 0}, {rim, 2, 0}, test::matte(Rgb(0.0f), Rgb(radiance)));
+    const Lit lit(made.frame());
+    FrameOptions options;
+    options.samples = 4;
+    options.pixel_error = 0.05;
+    return render_frame(lit.scene(), from_above(), options).samples_per_pixel;
+  };
+  const double some = samples(10);
+  EXPECT_GT(some, 4.2);
+  EXPECT_DOUBLE_EQ(samples(1000), some);
+}
+
 /// A white and a black sheet under a lamp so far away that all light on one sheet is alike; they meet inside a column
 /// of pixels. Light sampling is noisy in this column alone. If edges are known, this column alone takes the 12 samples
 /// up to the limit, from 6 camera rays. Otherwise the pixels beside it do, too.
