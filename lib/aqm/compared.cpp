@@ -6,7 +6,7 @@
 #include <set>
 
 #include "formats/error.h"
-#include "lib/image/nonzero_pixels.h"
+#include "lib/image/image.h"
 
 namespace tempolux {
 namespace {
