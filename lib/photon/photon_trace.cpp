@@ -185,7 +185,8 @@ void PhotonTracer::find_solids_of_lights() {
   const SolidAround around(tracer_);
   if (!around.any()) return;
   for (const EmissionSlot& slot : lights_.slots()) {
-    const bool placed = slot.kind == EmissionSlot::Kind::point || slot.kind == EmissionSlot::Kind::spot;
+    const bool placed = slot.kind == EmissionSlot::Kind::punctual &&
+                        tracer_.frame().lights[slot.light].light.kind != PunctualLight::Kind::directional;
     if (slot.kind == EmissionSlot::Kind::triangle && slot.triangle > 0) slot_inside_.push_back(slot_inside_.back());
     else if (slot.kind == EmissionSlot::Kind::triangle) {
       const Hit middle{0, slot.surface, slot.triangle, 1.0f / 3, 1.0f / 3};

@@ -222,8 +222,8 @@ void FrameAudit::add_specular(const RenderScene& scene, const AuditEffort& effor
       RayCounts rays;
       Hit first;
       scene.tracer.intersect(ray, first);
-      const PathParts path =
-          trace_eye_path(scene, ray, first, random, nullptr, rays, view_.cone(), effort_of(std::uint32_t(s)));
+      const PathEffort one{1, 1, std::uint32_t(s), std::uint32_t(s)};
+      const PathParts path = trace_eye_path(scene, ray, first, random, nullptr, rays, view_.cone(), one);
       light[s] = channel_mean(Rgbd(path.sum().value[layer]));
       mirrored[s] = channel_mean(Rgbd(path.mirrored));
     }
