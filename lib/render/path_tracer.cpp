@@ -455,8 +455,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
                       const KnownLight* known, RayCounts& counts, RayCone cone) {
   Hit first;
   scene.tracer.intersect(camera_ray, first);
-  const PathEffort one{1, 1, random.sample(), random.sample()};
-  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, one).sum();
+  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, effort_of(random.sample())).sum();
 }
 
 }  // namespace tempolux

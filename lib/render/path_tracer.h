@@ -175,6 +175,8 @@ struct PathEffort {
   std::uint32_t lit = 1, onward = 1;
   std::uint32_t lit_first = 0, onward_first = 0;
 };
+/// One sample of each part, with this index.
+inline PathEffort effort_of(std::uint32_t sample) { return {1, 1, sample, sample}; }
 
 class KnownLight;
 
