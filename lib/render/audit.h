@@ -68,9 +68,9 @@ AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool
 /// Photons close to the camera are rare and bright. Audits that happen to meet none of them find too little light and
 /// too small a standard error. Where photons find all light, the error of a bias is therefore at least the error that
 /// photons would have if the frame were right. A pixel's light L then arrives by photons of contribution c, their
-/// number has a Poisson distribution, and the variance of the sum over pixels is the sum of L c. These entries exist
-/// for any effective number of contributions: entries only from audits without bright photons would all have too little
-/// light.
+/// number has a Poisson distribution, and the variance of the sum over pixels is the sum of L c. Such entries
+/// exist for any effective number of contributions. If those of few contributions were left out, the others would be
+/// those of audits that met no bright photon, and they would all have too little light.
 class FrameAudit {
  public:
   static constexpr std::size_t kAudits = 32;

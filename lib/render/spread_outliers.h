@@ -31,8 +31,8 @@ struct BrightestSamples {
   }
 };
 
-/// Further samples of a pixel. They only decide whether its brightest sample is an outlier and are not part of the
-/// picture: if they were, their number would depend on the pixel's own samples, and the picture would be biased.
+/// Further samples of a pixel. They only decide whether its brightest sample is an outlier. They are not part of the
+/// picture: their number depends on the pixel's own samples and would bias it.
 struct FurtherSamples {
   PathParts mean;
   PartCounts count;
