@@ -19,14 +19,14 @@ void declare(tools::Tool& tool, tools::CompareOptions& o) {
   CLI::App& app = tool.app();
   tool.file_option("test", o.test, "frame to judge, EXR, or a pattern such as f.####.exr")->required();
   tool.file_option("reference", o.reference, "its reference, unless --reference-halves is given");
-  tool.file_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
+  tool.file_option("--reference-halves", o.reference_halves, "two independent halves of the reference: no noise floor")
       ->expected(2);
-  app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
+  app.add_flag("--halves", o.halves, "the two frames are halves of one image: report its noise");
   app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")->type_name("NAME");
   tool.file_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count");
   tool.file_option("--except", o.except,
                    "EXR, such as a mask of ibr-warp; pixels where one of its channels is not 0 do not count");
-  tool.file_option("--relative-to", o.smooth,
+  tool.file_option("--relative-to", o.relative_to,
                    "EXR; replaces the reference in relMSE's denominator, where the reference's noise would matter");
   tool.choice_option(
       "--metric", o.metric, {"error", "aqm"},

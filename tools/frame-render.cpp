@@ -74,13 +74,10 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr, halves of spp/2 samples each; the halves are independent of each "
                "other, and of a frame with the same --seed but without --halves");
-  app.add_option(
-         "--channels", options.channels,
-         "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
-         "coverage, influence, variance, diffuse.variance, samples, halves, seen")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->default_str("RGBA,Z,N,id");
+  tool.list_option(
+      "--channels", options.channels,
+      "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, coverage, "
+      "influence, variance, diffuse.variance, samples, halves, seen");
   tool.file_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0");
   tool.file_option("--base", options.base,
                    "EXR file, or a pattern, from which the pixels outside --mask are copied, bit for bit");

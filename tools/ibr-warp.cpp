@@ -53,10 +53,8 @@ void add_options(tools::Tool& tool, tools::WarpFramesOptions& options) {
   tool.output_option(options.mask, "pixels that must be traced, with causes, EXR, or a pattern", "--mask");
   app.add_flag("--separate", options.warp.separate,
                "also write NAME_1.exr and NAME_2.exr: the frame from each key alone");
-  app.add_option("--channels", options.channels, "data channels besides the keys' colour: Z, N, P, id, albedo, motion")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->default_str("Z,N,id");
+  tool.list_option("--channels", options.channels,
+                   "data channels besides the keys' colour: Z, N, P, id, albedo, motion");
   tool.number_option("--edge-share", options.warp.edge_share, 0, tools::kNoLimit,
                      "edge pixels are masked if the keys differ by more than this share of the light");
   tool.number_option("--slow", options.warp.slow_deg_per_s, -1, tools::kNoLimit,
@@ -75,7 +73,7 @@ int main(int argc, char** argv) {
   add_options(tool, options);
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
   return tool.run([&] {
-    tools::keep_freed_memory();
+    tools::keep_memory_of_pictures();
     check(tool, options, tool.common().frames.size() > 1);
     tool.stats().phase("load");
     const std::vector<tools::LoadedKey> keys = tools::load_keys(tool, options.keys);

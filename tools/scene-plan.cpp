@@ -62,7 +62,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
                     "arrive; 0: the preset's");
   text("--measured", options.measured, "FILE",
        "preview: photons of each segment by what `make measure` has written into this file");
-  app.add_option("--aqm", options.share,
+  app.add_option("--aqm", options.aqm,
                  "with --measured: share of the pixels in which a viewer may see errors; without: draft 20%, final 5%")
       ->check(tools::number_between(0, 1))
       ->transform(tools::percent());

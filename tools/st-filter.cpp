@@ -33,15 +33,13 @@ int main(int argc, char** argv) {
       ->type_name("SPEC");
   tool.number_option("--position", options.position, 0, 1 << 20,
                      "number of the input frame that is filtered; 1: the first; 0: the middle one");
-  app.add_option("--channels", options.channels,
-                 "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; if not given: all "
-                 "channels of the frame")
-      ->delimiter(',')
-      ->type_name("NAMES");
+  tool.list_option("--channels", options.channels,
+                   "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; if not given: all "
+                   "channels of the frame");
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
   tool.common_options(0);
   return tool.run([&] {
-    tools::keep_freed_memory();
+    tools::keep_memory_of_pictures();
     tool.check_frame_output(options.output);
     tools::filter_frames(tool, options);
     return tools::exit_ok;

@@ -44,9 +44,8 @@ void declare(tools::Tool& tool, tools::Request& request) {
       ->type_name("N");
   tool.number_option("--tile", request.picture.tile_width, 1, 65536, "largest width of an image in --sheet, pixels")
       ->type_name("PX");
-  app.add_option("--mark", request.picture.marked, "files whose pictures get a border in --sheet, such as key frames")
+  tool.list_option("--mark", request.picture.marked, "files whose pictures get a border in --sheet, such as key frames")
       ->type_name("FILES")
-      ->delimiter(',')
       ->allow_extra_args(false)
       ->needs(sheet);
   const std::vector<CLI::Option*> modes{check, digest, diff, account, exported, png, sheet};

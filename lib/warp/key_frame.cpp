@@ -21,8 +21,14 @@ bool is_light(const std::string& channel) {
 }  // namespace
 
 KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamera& camera)
-    : name_(name), camera_(camera), seen_(seen_in(image, name)) {
-  look_at_pixels();
+    : name_(name),
+      camera_(camera),
+      seen_(seen_in(image, name)),
+      whole_(whole_pixels(seen_, camera_)),
+      shown_(seen_.pixel_count()) {
+  parallel_each(shown_.size(), 4096, [&](std::size_t p) {
+    shown_[p] = {seen_.depth[p], seen_.object_at(p), seen_.normal_at(p)};
+  });
   std::map<std::string, const Channel*> channels;
   for (const Channel& channel : image.channels)
     if (is_light(channel.name) && channel.ids.empty()) channels.emplace(channel.name, &channel);
@@ -49,21 +55,6 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
         for (std::size_t p = first; p < last; ++p) colour_[p * stride_ + c] = 0;
     }
   });
-}
-
-void KeyFrame::look_at_pixels() {
-  whole_ = whole_pixels(seen_, camera_);
-  shown_.resize(seen_.pixel_count());
-  const auto width = std::size_t(seen_.width), height = std::size_t(seen_.height);
-  parallel_each(shown_.size(), 4096, [&](std::size_t p) {
-    shown_[p] = {seen_.depth[p], seen_.object_at(p), seen_.normal_at(p)};
-  });
-  std::vector<std::uint8_t> four(whole_.size());
-  parallel_each(height - 1, 16, [&](std::size_t y) {
-    const std::uint8_t *upper = whole_.data() + y * width, *lower = upper + width;
-    for (std::size_t x = 0; x + 1 < width; ++x) four[y * width + x] = upper[x] & upper[x + 1] & lower[x] & lower[x + 1];
-  });
-  for (std::size_t p = 0; p < whole_.size(); ++p) whole_[p] = std::uint8_t(whole_[p] | four[p] << 1);
 }
 
 }  // namespace tempolux

@@ -26,9 +26,7 @@ class KeyFrame {
   const FrameCamera& camera() const { return camera_; }
   const SeenSurfaces& seen() const { return seen_; }
   /// True if the pixel shows a single face (whole_pixels()).
-  bool whole(std::size_t pixel) const { return (whole_[pixel] & 1) != 0; }
-  /// True if this pixel, the one to its right and the two below are whole; false in the last row and column.
-  bool four_whole(std::size_t pixel) const { return (whole_[pixel] & 2) != 0; }
+  bool whole(std::size_t pixel) const { return whole_[pixel] != 0; }
   /// Depth, object and normal of one pixel.
   const FacePoint& shown(std::size_t pixel) const { return shown_[pixel]; }
   /// Channel names as in frames, in ascending order.
@@ -39,12 +37,10 @@ class KeyFrame {
   std::size_t stride() const { return stride_; }
 
  private:
-  void look_at_pixels();
-
   std::string name_;
   FrameCamera camera_;
   SeenSurfaces seen_;
-  std::vector<std::uint8_t> whole_;  ///< bits: 1: whole(), 2: four_whole()
+  std::vector<std::uint8_t> whole_;
   std::vector<FacePoint> shown_;
   std::vector<std::string> names_;
   std::size_t stride_ = 0;

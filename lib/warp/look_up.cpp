@@ -85,21 +85,9 @@ LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolera
   const bool inside = nx < width && ny < height;  // nx and ny are not negative, since the position lies in the picture
   const bool nearest_shows = inside && shows(index(nx, ny));
 
-  if (nearest_shows && key_.whole(index(nx, ny))) {
-    if (std::abs(cx - nx) < kSamePixel && std::abs(cy - ny) < kSamePixel) {
-      taps.count = 1;
-      taps.pixel[0] = index(nx, ny);
-      taps.weight[0] = 1;
-      return LookUp::found;
-    }
-    // The other three pixels are neighbours of a whole pixel, so they show its face.
-    if (x0 >= 0 && y0 >= 0 && x0 + 1 < width && y0 + 1 < height) {
-      const std::uint32_t p = index(x0, y0), q = p + std::uint32_t(width);
-      if (key_.four_whole(p)) {
-        taps = {4, {p, p + 1, q, q + 1}, {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
-        return LookUp::found;
-      }
-    }
+  if (nearest_shows && key_.whole(index(nx, ny)) && std::abs(cx - nx) < kSamePixel && std::abs(cy - ny) < kSamePixel) {
+    taps = {1, {index(nx, ny)}, {1}};
+    return LookUp::found;
   }
   bool edge = nearest_shows;
   const auto usable = [&](int x, int y) {
@@ -127,9 +115,7 @@ LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolera
       const float dx = float(x - cx), dy = float(y - cy), distance = dx * dx + dy * dy;
       if (!(distance < nearest) || !usable(x, y)) continue;
       nearest = distance;
-      taps.count = 1;
-      taps.pixel[0] = index(x, y);
-      taps.weight[0] = 1;
+      taps = {1, {index(x, y)}, {1}};
     }
   return nearest < INFINITY ? LookUp::found : edge ? LookUp::edge : LookUp::hidden;
 }

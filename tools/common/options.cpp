@@ -234,6 +234,12 @@ CLI::Option* Tool::choice_option(const std::string& names, std::string& word, co
   return state_->app.add_option(names, word, help)->capture_default_str()->check(CLI::IsMember(words));
 }
 
+CLI::Option* Tool::list_option(const std::string& names, std::vector<std::string>& words, const std::string& help) {
+  std::string preset;
+  for (const std::string& word : words) preset += (preset.empty() ? "" : ",") + word;
+  return state_->app.add_option(names, words, help)->delimiter(',')->type_name("NAMES")->default_str(preset);
+}
+
 template <class Number>
 CLI::Option* Tool::number_option(const std::string& names, Number& number, double least, double most,
                                  const std::string& help) {

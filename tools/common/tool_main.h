@@ -111,6 +111,8 @@ class Tool {
   /// Adds an option whose value is one of `words`; help shows the default.
   CLI::Option* choice_option(const std::string& names, std::string& word, const std::vector<std::string>& words,
                              const std::string& help);
+  /// Adds an option whose value is a list of words, separated by commas; help shows the default.
+  CLI::Option* list_option(const std::string& names, std::vector<std::string>& words, const std::string& help);
   /// Adds an option whose value is a number from `least` to `most`; Number is int, float or double.
   template <class Number>
   CLI::Option* number_option(const std::string& names, Number& number, double least, double most,

@@ -13,10 +13,10 @@
 namespace tempolux::tools {
 namespace {
 
-/// Frames sample direct light themselves, so its audit only tests the audit.
 struct AuditedLayer {
   const char *name, *in_words;
 };
+/// Direct light is left out: frames sample it without bias, so its audit only tests the audit itself.
 constexpr std::array<AuditedLayer, 3> kLayers{
     {{"caustic", "caustic light"}, {"indirect", "indirect light"}, {"specular", "light in mirrors and glass"}}};
 constexpr std::size_t kMatte = 2;  // the first layers are light on surfaces that the camera sees

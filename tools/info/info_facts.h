@@ -71,8 +71,8 @@ struct FramesAccount {
   std::string line;                   ///< a sentence; empty if no frame was audited
   std::vector<std::string> warnings;  ///< layers with a bias of more than 2 % of the picture and three standard errors
 };
-/// From the attributes of EXR files. The audits of frames are independent, so the error of their mean is sqrt(sum of
-/// squares) / n.
+/// Reads the attributes of EXR files. The audits of n frames are independent, so the error of their mean is
+/// sqrt(sum of squared errors) / n.
 FramesAccount account_of_frames(const std::vector<std::string>& files);
 
 struct PictureOptions {
@@ -83,7 +83,7 @@ struct PictureOptions {
   std::function<void(double)> progress;  ///< of a contact sheet, [0, 1]; may be empty
 };
 /// An orthographic image of the elements of a .meshirrad file, seen along -(1, 1, 1), 640 pixels on its longer side.
-/// Elements with photons whose side faces the eye are drawn as discs; nearer discs hide others; the rest is black.
+/// Elements with photons that face the eye are drawn as discs; closer discs hide others; the background is black.
 /// layer "": irradiance, W/m^2; "window": number of frames in the element's window, divided by 33; "age": frames from
 /// the element's own frame to the middle of its window, divided by 16. Throws InputError.
 Image mesh_picture(const std::string& path, const std::string& layer);

@@ -15,10 +15,12 @@ namespace tempolux::tools {
 namespace {
 
 void check(const Tool& tool, const CompareOptions& o, bool frames_given) {
-  if (o.reference.empty() == o.halves.empty())
+  if (o.reference.empty() == o.reference_halves.empty())
     throw InputError("give the reference either as second file or as --reference-halves A B");
-  if (o.own_halves && !o.halves.empty()) throw InputError("--halves: judges two files, without --reference-halves");
-  if (!o.halves.empty() && (o.halves[0] == o.halves[1] || o.test == o.halves[0] || o.test == o.halves[1]))
+  if (o.halves && !o.reference_halves.empty())
+    throw InputError("--halves: judges two files, without --reference-halves");
+  if (!o.reference_halves.empty() && (o.reference_halves[0] == o.reference_halves[1] ||
+                                      o.test == o.reference_halves[0] || o.test == o.reference_halves[1]))
     throw InputError("--reference-halves: the same file twice; the halves must be independent of each other and of x");
   tool.check_patterns({o.test, o.difference, o.vision.map});
   if (!frames_given && has_frame_pattern(o.test))
@@ -47,12 +49,12 @@ Comparison description(const Tool& tool, const CompareOptions& o) {
   comparison.command.pop_back();  // LF
   comparison.test = o.test;
   comparison.references = o.references();
-  comparison.relative_to = o.smooth;
+  comparison.relative_to = o.relative_to;
   comparison.flow = o.vision.flow;
   comparison.layer = o.layer_or_rgb();
-  comparison.mode = !o.halves.empty() ? ComparisonMode::reference_halves
-                    : o.own_halves    ? ComparisonMode::own_halves
-                                      : ComparisonMode::one_reference;
+  comparison.mode = !o.reference_halves.empty() ? ComparisonMode::reference_halves
+                    : o.halves                  ? ComparisonMode::own_halves
+                                                : ComparisonMode::one_reference;
   return comparison;
 }
 
@@ -90,7 +92,7 @@ Comparison compare_frames(Tool& tool, const CompareOptions& o, const std::vector
                           FrameOutputs& outputs) {
   ComparisonBuilder builder(description(tool, o));
   IdentityGuard identities(tool, o.allow_stale);
-  const ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth, o.except, o.vision.flow};
+  const ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.relative_to, o.except, o.vision.flow};
   std::optional<VisionOptions> viewing;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");

@@ -18,7 +18,7 @@ LoadedFrame::LoadedFrame(Tool& tool, const ComparedFiles& files, std::optional<i
   inputs_.test = load(files.test, test_);
   inputs_.reference = load(files.references.at(0), reference_);
   if (files.references.size() > 1) inputs_.second = load(files.references[1], second_);
-  if (!files.smooth.empty()) inputs_.smooth = load(files.smooth, smooth_);
+  if (!files.relative_to.empty()) inputs_.smooth = load(files.relative_to, smooth_);
   if (!files.mask.empty()) inputs_.mask = load(files.mask, mask_);
   if (!files.except.empty()) inputs_.except = load(files.except, except_);
   if (!files.flow.empty()) {

@@ -11,11 +11,11 @@
 
 namespace tempolux::tools {
 
-/// Names or patterns. The reference is one file or two halves; mask, smooth, except and flow may be empty.
+/// Names or patterns. The reference is one file or two halves; all other names may be "".
 struct ComparedFiles {
   std::string test;
   std::vector<std::string> references;
-  std::string mask, layer, smooth, except, flow = {};
+  std::string mask, layer, relative_to, except, flow = {};
 };
 
 /// The images of one frame. Adds their files to the tool's dependencies.

@@ -79,13 +79,9 @@ class SegmentFrames {
 
 void add_count_options(Tool& tool, CountOptions& options) {
   tool.file_option("--photons", options.photons, ".photons file of the frame, or a pattern");
-  tool.app()
-      .add_option("--kinds", options.kinds,
-                  "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
-                  "caustic,indirect without a map")
-      ->delimiter(',')
-      ->type_name("NAMES")
-      ->default_str("indirect")
+  tool.list_option("--kinds", options.kinds,
+                   "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
+                   "caustic,indirect without a map")
       ->check(CLI::IsMember({"direct", "caustic", "indirect"}));
   tool.number_option("--cell", options.mesh.cell, 0, kNoLimit, "longest edge of an element, m; 0: the filter's width");
 }

@@ -54,7 +54,7 @@ Wish wish_of(Tool& tool, const PlanOptions& options) {
   if (!options.measured.empty()) {
     if (wish.method != FrameMethod::preview || wish.photons > 0)
       throw InputError("--measured: photons of --method preview; leave it out with another method or with --photons");
-    wish.measured = measured_photons(options.measured, options.share < 0 ? wish.seen() : options.share);
+    wish.measured = measured_photons(options.measured, options.aqm < 0 ? wish.seen() : options.aqm);
   }
   return with_preset(wish);
 }
