@@ -73,8 +73,7 @@ struct PictureLight {
 /// averaged over the neighbourhood. Errors thus count as they are seen: more in a dark pixel than in a bright one.
 ///
 /// 1. At each pixel the candidate with the least error is taken. The shares of the candidates are then averaged over
-/// the
-///    neighbourhood [Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012].
+///    the neighbourhood [Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012].
 /// 2. The result is w F + (1 - w) M with w = (V - C + s) / (F - M)^2, clamped to [0, 1], all terms being means over the
 ///    neighbourhood. Inside surfaces s is the standard error that V - C - (F - M)^2 has if A and B differ by noise
 ///    alone; at edges s = 0.

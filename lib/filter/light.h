@@ -45,8 +45,7 @@ struct LightGroup {
 /// variance of the pixel:
 /// - The variance is read from the channels diffuse.variance or variance, and divided among the layers by their light.
 /// - Without these channels, but with albedo, the variance is half the mean squared difference to the four neighbours
-/// on
-///   the surface.
+///   on the surface.
 /// - Without albedo there is no noise, and the filter only replaces values that are not finite.
 /// Values plus and minus random noise of this variance are uncorrelated, too [Oliveira, Lei, Tibshirani: Unbiased risk
 /// estimation in the normal means problem via coupled bootstrap techniques, 2021].

@@ -20,11 +20,11 @@ inline constexpr float kFewestPixels = 10;
 /// share. Least squares over the pixels q of p's surface within 6 pixels that have the same unknown part:
 ///     v minimises  sum over q of (radiance(q) - K(q) - s(q) albedo(q) v)^2 / albedo(q)^2
 /// for each layer and channel. One more term keeps v close to a first estimate:
-/// - In the first case the first estimate is the fit at p, if there is one. It counts as weight / `frames` pixels,
-/// where
+/// - In the first case the first estimate is the fit at p, if there is one. It counts as weight / `frames` pixels;
 ///   `frames` is the number of frames in the window.
-/// - Otherwise the first estimate is the mean of radiance / albedo over the pixels q. It counts as a pixel with s =
-/// 1/16. v is negative only if this mean is.
+/// - Otherwise the first estimate is the mean of radiance / albedo over the pixels q. It counts as one pixel with
+///   s = 1/16.
+/// v is negative only if this mean is.
 ///
 /// half: 0 or 1, the half of the samples. Returns a plane by layer and channel; empty planes if no pixel has
 /// coverage.other.
