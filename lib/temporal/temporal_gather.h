@@ -67,8 +67,9 @@ class TemporalGather {
   /// Updates the kept records to this frame. Records on deforming surfaces, and on triangles that have no area at one
   /// of the frames, are removed. Any other record changes if one of these cases holds for one of its cells; otherwise
   /// it stays the same to the bit:
-  /// - The cell's ray meets a box in which something has moved, or its hit moves. The cell is traced again along its old
-  ///   direction. A new direction would cause a bias: rays that hit the mover would be replaced, rays that miss it kept.
+  /// - The cell's ray meets a box in which something has moved, or its hit moves. The cell is traced again along its
+  ///   old direction. A new direction would cause a bias: rays that hit the mover would be replaced, and rays that miss
+  ///   it kept.
   /// - The light of the point that represents the cell's hit has changed. The cell's radiance is scaled by the ratio,
   ///   per channel; outside the range 1/2 to 2 the cell is traced again along its old direction.
   /// - No point represents the cell's hit (mirrors, corners). The cell is traced again along its old direction.
