@@ -67,6 +67,21 @@ void EnvironmentLight::integrate() {
   for (std::uint32_t y = 0; y < height_; ++y) integral_ += mean[y] * (2 * kPiD * weight[y]);
 }
 
+bool EnvironmentLight::has_sun() const {
+  constexpr double kSunMeans = 64 / 0.18, kSunShare = 0.02;
+  const double all = luminance(integral_), bright = kSunMeans * all / (4 * kPiD);
+  const double pixel = 2 * kPiD / width_ * kPiD / height_;
+  double light = 0;
+  for (std::uint32_t y = 0; y < height_; ++y) {
+    const double sin_polar = std::sin((y + 0.5) * kPiD / height_);
+    for (std::uint32_t x = 0; x < width_; ++x) {
+      const double l = luminance(Rgbd(environment_.radiance[std::size_t(y) * width_ + x]));
+      if (l > bright) light += l * pixel * sin_polar;
+    }
+  }
+  return light > kSunShare * all;
+}
+
 void EnvironmentLight::build_distribution() {
   std::vector<double> row_weight(height_ + 1);
   cell_end_.resize(std::size_t(height_ + 1) * width_);

@@ -34,6 +34,10 @@ class EnvironmentLight {
   Rgb radiance_at(const Place& place) const { return corners(place.row, place.column).radiance(place.x, place.y); }
   /// Integral of radiance over all directions [W/m^2], in closed form.
   Rgbd integral() const { return integral_; }
+  /// True if at least 2 % of the light comes from pixels so bright that one of 64 samples of a screen pixel that meets
+  /// such a place, by way of glass or a mirror, makes it white: paths show that light as lone dots. Radiance there is
+  /// at least 64 / .18 times the mean over all directions. Pixels count with the solid angle at their centre.
+  bool has_sun() const;
 
   struct Sample {
     Vec3 direction{};  ///< unit, towards the environment

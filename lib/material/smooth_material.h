@@ -9,7 +9,9 @@
 namespace tempolux {
 
 /// Index of the first material in use whose S lobes are all mirrors, smooth glass or sharper than roughness .07; kNone
-/// if there is none. Textures are ignored, so a material that they make smooth in parts may be missed.
-std::uint32_t first_smooth_material(const SceneFrame& frame);
+/// if there is none. Textures are ignored, so a material that they make smooth in parts may be missed. panes: false
+/// leaves out smooth thin walls. Light goes straight through them, so paths find what they let through, but not what
+/// they reflect.
+std::uint32_t first_smooth_material(const SceneFrame& frame, bool panes = true);
 
 }  // namespace tempolux

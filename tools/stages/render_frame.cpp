@@ -86,11 +86,17 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
             ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
 }
 
+/// True if panes reflect more light of suns than an audit tolerates.
+bool panes_hide_light(const Shot& shot) {
+  return may_hide_light(shot.scene.frame()) && hidden_share(shot.scene, shot.aimed(Lights::Which::punctual), shot.view,
+                                                            mean_to_white(shot.rendered.mean.pixels, {})) > 0;
+}
+
 /// Measures the bias of the frame's layers, with photons or camera paths of its own:
 /// - Light of lamps: photons, because few camera paths meet a bright spot close to a lamp.
 /// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
-/// - All light if the scene has a sun and a mirror or smooth glass: photons, because no camera path meets a sun via a
-///   smooth surface.
+/// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane: photons,
+///   because no camera path meets a sun via a smooth surface.
 /// - What mirrors and glass show (layer specular): camera paths, if they find all of its light.
 /// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
 /// true.
@@ -98,9 +104,11 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   if (!(options.audit > 0)) return {};
   const RenderScene& scene = shot.scene;
   const CameraView& view = shot.view;
-  const bool hidden = scene.lights.has_suns() && first_smooth_material(scene.frame()) != kNone,
+  const EnvironmentLight* const environment = shot.emission.environment.get();
+  const bool suns = scene.lights.has_suns() || (environment && environment->has_sun()),
+             hidden = suns && (first_smooth_material(scene.frame(), false) != kNone || panes_hide_light(shot)),
              paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed(),
-             specular = !options.traces_paths() && !may_hide_light(scene.frame());
+             specular = !options.traces_paths() && !hidden && !may_hide_light(scene.frame());
   unbiased = paths && !photons && options.traces_paths();
   if (unbiased) return {};
   tool.stats().phase("audit", true);

@@ -266,5 +266,22 @@ TEST(EnvironmentEmission, IsFrozenOverASegment) {
     EXPECT_EQ(Lights(frame, table).slots().back().probability, table.probability.back());
 }
 
+/// A pixel of 64 x 32 at the equator has .0096 sr of 12.57. At 356 means of the map it is a sun. A pixel that is 250
+/// times as bright as the rest brings 16 % of the light and is 211 means: no sun. One 1000 times as bright brings 43 %
+/// and is 568 means. Of 640 x 320, it brings .8 % and is 992 means: too little light.
+TEST(EnvironmentLight, ASunIsBrightAndBringsLight) {
+  const auto has_sun = [](int width, float times) {
+    return EnvironmentLight(
+               painted(width, width / 2, [&](int x, int y) { return Rgb(x == 5 && y == width / 4 ? times : 1.0f); }))
+        .has_sun();
+  };
+  EXPECT_FALSE(has_sun(64, 1));
+  EXPECT_FALSE(has_sun(64, 250));
+  EXPECT_TRUE(has_sun(64, 1000));
+  EXPECT_FALSE(has_sun(640, 1000));
+  EXPECT_TRUE(has_sun(640, 10000));
+  EXPECT_FALSE(EnvironmentLight(painted(4, 2, [](int, int) { return Rgb(0.0f); })).has_sun());
+}
+
 }  // namespace
 }  // namespace tempolux

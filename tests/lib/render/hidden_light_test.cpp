@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lib/material/smooth_material.h"
 #include "tests/support/frames.h"
 #include "tests/support/scenes.h"
 
@@ -52,6 +53,18 @@ TEST(HiddenLight, NeedsALampWithoutExtentAndAMirror) {
   EXPECT_FALSE(may_hide_light(UnderAMirror(test::matte(Rgb(1.0f))).scene.frame()));
   EXPECT_TRUE(may_hide_light(UnderAMirror(mirror(0.05f)).scene.frame())) << "one path in 40000 meets the lamp";
   EXPECT_FALSE(may_hide_light(UnderAMirror(mirror(0.2f)).scene.frame())) << "one in 160";
+}
+
+/// Light goes straight through a smooth thin wall. A solid of the same glass bends light.
+TEST(HiddenLight, PanesAreSmoothAndCanBeLeftOut) {
+  Material glass = test::matte(Rgb(1.0f));
+  glass.transmission = 1, glass.roughness = 0;
+  for (const bool thin : {true, false}) {
+    glass.thin_walled = thin;
+    UnderAMirror room(glass);
+    EXPECT_NE(first_smooth_material(room.scene.frame()), kNone);
+    EXPECT_EQ(first_smooth_material(room.scene.frame(), false) == kNone, thin);
+  }
 }
 
 /// The image's light over that of the lamp and its image. Of 32768 light paths one in 70 reaches the picture by way of
