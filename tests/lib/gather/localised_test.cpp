@@ -190,7 +190,7 @@ TEST(Influence, ARecordThatNoPointStandsForHasTheDiscOfTheNearestPoint) {
   const PointLookup lookup(points, 0.2f, [](Vec3, Vec3, float reach) { return Clearance{reach, {0, 0}}; });
   const std::vector<IrradianceRecord> records{record(kMiddle, 10)};
   ASSERT_EQ(lookup.find(kMiddle, kUp), nullptr);
-  ASSERT_TRUE(maps[0].at(kMiddle, kUp, 0, PathRandom(1, 1)));
+  ASSERT_TRUE(change_at(maps[0], kMiddle, kUp, 0));
   EXPECT_EQ(record_changes(records, maps, lookup, 0)[0].influence, 0);
 }
 
