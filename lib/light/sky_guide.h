@@ -29,7 +29,7 @@ class SkyGuide {
     float weight = 0;         ///< radiance [any unit], above 0
   };
   /// Half and twice the numbers of kRows and kLeastHits: docs/notebook/constants.md.
-  static constexpr int kRows = 16, kColumns = 2 * kRows;
+  static constexpr int kRows = 32, kColumns = 2 * kRows;
   static constexpr std::size_t kLeastHits = 64;
   static constexpr double kMostSeen = 0.1;
 
