@@ -112,9 +112,10 @@ void Collector::follow(const Strip& strip, const WindowFrame& frame, Lane& weigh
     }
     const FlowFrame::Step back = frame.flow->step(pixel[i], -direction_), on = frame.flow->step(pixel[i], direction_);
     const float miss_right = step_right[i] + back.right, miss_down = step_down[i] + back.down;
-    const float allowed =
-        kReturn + kReturnShare * std::sqrt(step_right[i] * step_right[i] + step_down[i] * step_down[i]);
-    const bool returns = back.known && miss_right * miss_right + miss_down * miss_down <= allowed * allowed;
+    const float length2 =
+        step_right[i] * step_right[i] + step_down[i] * step_down[i] + back.right * back.right + back.down * back.down;
+    const bool returns =
+        back.known && miss_right * miss_right + miss_down * miss_down <= kReturnShare * length2 + kReturnSquare;
     if (!returns) weights[i] = 0;
     px[i] = returns && on.known ? px[i] + on.right : kLost;
     py[i] += on.down;

@@ -25,9 +25,7 @@ struct WindowFrame {
 /// the remaining frames if that pixel
 /// - lies outside the picture,
 /// - shows another object, or a normal that is turned by more than PixelSurfaces::kSameNormal, or
-/// - has flow that does not lead back: the end of the way there and back is more than kReturn pixels plus kReturnShare
-/// of
-///   the flow's length away from its start.
+/// - has flow that does not lead back to the start (kReturnShare, kReturnSquare).
 class Collector {
  public:
   /// All that `middle` refers to must outlive this object.

@@ -33,9 +33,9 @@ struct FlowFrame {
   std::vector<std::uint32_t> valid_;
 };
 
-/// Largest distance between the start and the end of flow there and back: in pixels, and as a share of the flow's
-/// length.
-inline constexpr float kReturn = 0.75f, kReturnShare = 0.05f;
+/// The flow there, w, and back, b, fit together if |w + b|^2 <= kReturnShare (|w|^2 + |b|^2) + kReturnSquare [pixels^2]
+/// [Sundaram, Brox, Keutzer: Dense point trajectories by GPU-accelerated large displacement optical flow, 2010, (5)].
+inline constexpr float kReturnShare = 0.01f, kReturnSquare = 0.5f;
 
 inline FlowFrame::Step FlowFrame::step(std::size_t pixel, int direction) const {
   if (empty()) return {};
