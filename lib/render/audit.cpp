@@ -16,17 +16,24 @@ namespace tempolux {
 namespace {
 
 constexpr int kTilesAcross = 4;
-constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr std::size_t kLooks = 4;  ///< paths of a pixel whose layer specular is audited
-constexpr double kFewest = 32;     ///< least effective number of contributions from which a variance is estimated
+constexpr std::array<Layer, 4> kAudited{Layer::specular, Layer::direct, Layer::caustic, Layer::indirect};
+constexpr auto kSpecular = std::size_t(Layer::specular);
+constexpr double kFewest = 32;  ///< least effective number of contributions from which a variance is estimated
 /// Factor for standard errors from 32 audits. Student's t with 31 degrees of freedom exceeds 3 times this factor as
 /// rarely as a normally distributed number exceeds 3.
 constexpr double kStudent = 3.25 / 3;
 /// Cost in rays of a frame: of one light path with its photons in view, and of one camera path.
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 5;
 constexpr int kStep = 2;  ///< expect() computes one pixel in each square of this edge
-constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8,
-                        kSpecularKey = 0x6d6972726full << 8;
+constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull << 8;
+
+/// The audited light of a pixel or a path by layer, mean channels: all light but lamps and sky in mirrors.
+std::array<double, kLayerCount> audited(const Layers& light) {
+  std::array<double, kLayerCount> means{};
+  for (std::size_t l = 0; l < kLayerCount; ++l) means[l] = channel_mean(Rgbd(light.value[l]));
+  means[kSpecular] -= double(light.mirrored);
+  return means;
+}
 
 }  // namespace
 
@@ -55,14 +62,13 @@ FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::
   sums_.resize(parts_.size());
   for (std::size_t p = 0; p < objects.size(); ++p) {
     if (!mask_.empty() && !mask_[p]) continue;
-    const Layers& pixel = frame.mean.pixels[p];
+    const std::array<double, kLayerCount> shown = audited(frame.mean.pixels[p]);
     for_parts_of(p, [&](std::size_t part) {
       ++parts_[part].pixels;
-      for (std::size_t l = 0; l < kLayerCount; ++l) sums_[part].shown[l] += channel_mean(Rgbd(pixel.value[l]));
+      for (std::size_t l = 0; l < kLayerCount; ++l) sums_[part].shown[l] += shown[l];
     });
   }
   picture_ = mean_to_white(frame.mean.pixels, mask_) * double(parts_[0].pixels);
-  white_ = 1 / exposure_of(frame.mean.pixels, mask_);
 }
 
 /// Calls body(part) for the picture, for the pixel's tile and for the pixel's object.
@@ -75,23 +81,28 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
+void FrameAudit::add_to(Sums& sums, std::size_t audit, std::size_t layer, double radiance) {
+  const double square = radiance * radiance;
+  sums.light[layer][audit] += radiance;
+  sums.square[layer] += square;
+  sums.fourth[layer] += square * square;
+}
+
 void FrameAudit::add(std::size_t audit, std::size_t pixel, std::size_t layer, double radiance) {
   if (!mask_.empty() && !mask_[pixel]) return;
-  const double square = radiance * radiance;
-  for_parts_of(pixel, [&](std::size_t part) {
-    sums_[part].light[layer][audit] += radiance;
-    sums_[part].square[layer] += square;
-    sums_[part].fourth[layer] += square * square;
-  });
+  for_parts_of(pixel, [&](std::size_t part) { add_to(sums_[part], audit, layer, radiance); });
 }
 
 /// Each audit is a photon map with its own seed and one group. Audits are traced in parallel and added in their order.
-void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
+void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort,
+                             const SpecularHits* hits) {
   struct Seen : Splat {
     double flux = 0;
   };
   const PhotonSplats camera(tracer, view_, camera_inside_);
   std::array<std::vector<Seen>, kAudits> seen;
+  std::array<std::vector<std::pair<std::uint32_t, double>>, kAudits> seen_at_hits;
+  std::array<std::vector<double>, kAudits> of_photons;  ///< that are seen at hits
   parallel_each(kAudits, 1, [&](std::size_t k) {
     PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)),
                           .photon_count = (effort.photon_paths + kAudits - 1) / kAudits,
@@ -102,6 +113,12 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
       for (std::size_t i = 0; i < block.photons.size(); ++i) {
         if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, PhotonView(block).direction(i)))
           seen[k].push_back({*splat, channel_mean(Rgbd(rgb_of(block.photons[i].flux)))});
+        if (!hits) continue;
+        const std::size_t first = seen_at_hits[k].size();
+        hits->add(block.photons[i], PhotonView(block).direction(i), seen_at_hits[k]);
+        double light = 0;
+        for (std::size_t h = first; h < seen_at_hits[k].size(); ++h) light += seen_at_hits[k][h].second;
+        if (light > 0) of_photons[k].push_back(light);
       }
     }
   });
@@ -113,6 +130,13 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
       flux[layer] += splat.flux, square[layer] += splat.flux * splat.flux;
     }
   for (std::size_t l = 0; l < kLayerCount; ++l) flux[l] = flux[l] > 0 ? square[l] / flux[l] : 0;
+  specular_ = hits != nullptr;
+  std::vector<double> at_hit(hits ? hits->size() : 0);
+  for (std::size_t k = 0; k < kAudits; ++k) {
+    for (const double light : of_photons[k]) add_to(sums_[0], k, kSpecular, light);
+    for (const auto& [hit, light] : seen_at_hits[k]) at_hit[hit] += light / kAudits;
+  }
+  for (const double light : at_hit) hits_square_ += light * light;
   expect(tracer, camera, flux);
 }
 
@@ -174,7 +198,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) 
     const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
     RayCounts rays;
     const Layers light = trace_eye_path(scene, ray, random, nullptr, rays, view_.cone());
-    for (std::size_t l = 0; l < kLayerCount; ++l) found[i].layer[l] = channel_mean(Rgbd(light.value[l]));
+    found[i].layer = audited(light);
   });
   const double pixels_of_path = double(pixels) / double(count);
   for (std::size_t i = 0; i < found.size(); ++i)
@@ -182,67 +206,6 @@ void FrameAudit::add_paths(const RenderScene& scene, const AuditEffort& effort) 
       const auto l = std::size_t(layer);
       if (found[i].layer[l] != 0) add(i / count, found[i].pixel, l, pixels_of_path * found[i].layer[l]);
     }
-}
-
-/// Pixels whose middle shows a surface with S lobes. What the frame shows does not decide, as its noise would.
-std::vector<std::size_t> FrameAudit::specular_pixels(const RenderScene& scene) const {
-  const auto width = std::size_t(view_.width());
-  return parallel_found<std::size_t>(object_part_.size(), 4096, [&](std::size_t p, std::vector<std::size_t>& found) {
-    Hit hit;
-    if ((mask_.empty() || mask_[p]) &&
-        scene.tracer.intersect(view_.ray(float(p % width) + 0.5f, float(p / width) + 0.5f), hit) &&
-        lobes_of(scene.frame().materials[scene.tracer.surface_point(hit).material]).specular)
-      found.push_back(p);
-  });
-}
-
-void FrameAudit::add_specular(const RenderScene& scene, const AuditEffort& effort) {
-  const std::vector<std::size_t> pixels = specular_pixels(scene);
-  const std::size_t count = (effort.specular_paths + kAudits * kLooks - 1) / (kAudits * kLooks);
-  if (pixels.empty() || count == 0) return;
-  struct Found {
-    std::size_t pixel = 0;
-    double shown = 0, light = 0;  ///< of the paths that count, over kLooks
-  };
-  constexpr auto layer = std::size_t(Layer::specular);
-  std::vector<Found> found(kAudits * count);
-  parallel_each(found.size(), 16, [&](std::size_t i) {
-    const std::uint64_t seed = mix64(effort.seed ^ (kSpecularKey + i / count));
-    const std::size_t run = i % count;
-    const float within = PathRandom(seed ^ 1, run).get1(0, Purpose::pixel);
-    const std::size_t at = std::size_t((double(run) + double(within)) * double(pixels.size()) / double(count));
-    const std::size_t pixel = found[i].pixel = pixels[std::min(pixels.size() - 1, at)],
-                      width = std::size_t(view_.width());
-    const double shown = channel_mean(Rgbd(frame_.mean.pixels[pixel].value[layer]));
-    std::array<double, kLooks> light{}, mirrored{};
-    for (std::size_t s = 0; s < kLooks; ++s) {
-      const PixelRandom random(seed, run, std::uint32_t(s));
-      const Vec2 jitter = random.get2(0, Purpose::pixel);
-      const Ray ray = view_.ray(float(pixel % width) + jitter.x, float(pixel / width) + jitter.y);
-      RayCounts rays;
-      Hit first;
-      scene.tracer.intersect(ray, first);
-      const PathEffort one{1, 1, std::uint32_t(s), std::uint32_t(s)};
-      const PathParts path = trace_eye_path(scene, ray, first, random, nullptr, rays, view_.cone(), one);
-      light[s] = channel_mean(Rgbd(path.sum().value[layer]));
-      mirrored[s] = channel_mean(Rgbd(path.mirrored));
-    }
-    for (std::size_t s = 0; s < kLooks; ++s) {
-      double brightest = 0;
-      for (std::size_t o = 0; o < kLooks; ++o)
-        if (o != s) brightest = std::max(brightest, mirrored[o]);
-      if (brightest > white_) continue;
-      found[i].shown += shown / kLooks, found[i].light += light[s] / kLooks;
-    }
-  });
-  const double pixels_of_look = double(pixels.size()) / double(count);
-  for (Sums& sums : sums_) sums.shown[layer] = 0;
-  for (const Found& look : found)
-    for_parts_of(look.pixel, [&](std::size_t p) { sums_[p].shown[layer] += pixels_of_look * look.shown / kAudits; });
-  for (Sums& sums : sums_) sums.light[layer].fill(sums.shown[layer]);
-  for (std::size_t i = 0; i < found.size(); ++i)
-    if (const double differs = found[i].light - found[i].shown; differs != 0)
-      add(i / count, found[i].pixel, layer, pixels_of_look * differs);
 }
 
 AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
@@ -264,6 +227,7 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   for (const double audit : sums.light[layer]) square += (audit - mean) * (audit - mean);
   entry.light = {mean / n, std::sqrt(square / kAudits / (kAudits - 1)) / n};
   const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
+  if (layer == kSpecular) entry.light.error = std::hypot(entry.light.error, std::sqrt(hits_square_) / n);
   const double error = std::max(kStudent * entry.light.error, std::sqrt(std::max(0.0, sums.expected[layer])) / n);
   entry.bias = {entry.shown - entry.light.value, std::sqrt(error * error + noise * noise / n)};
   return entry;
@@ -271,9 +235,9 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
 
 std::vector<AuditEntry> FrameAudit::entries() const {
   std::vector<AuditEntry> entries;
-  for (const Layer layer : {Layer::specular, Layer::direct, Layer::caustic, Layer::indirect})
+  for (const Layer layer : kAudited)
     for (std::size_t part = 0; part < parts_.size(); ++part) {
-      if (parts_[part].pixels == 0) continue;
+      if (parts_[part].pixels == 0 || (layer == Layer::specular && (part > 0 || !specular_))) continue;
       const AuditEntry found = entry(part, std::size_t(layer));
       if (found.bias.known()) entries.push_back(found);
     }

@@ -10,6 +10,7 @@
 #include "lib/core/statistics.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/photon_splats.h"
+#include "lib/render/specular_hits.h"
 
 namespace tempolux {
 
@@ -45,7 +46,7 @@ struct AuditEntry {
 struct AuditEffort {
   std::uint64_t photon_paths = 0;
   std::size_t eye_paths = 0;
-  std::size_t specular_paths = 0;  ///< camera paths for the layer specular
+  std::size_t specular_paths = 0;  ///< of SpecularHits
   std::uint64_t seed = 0;
 };
 
@@ -56,8 +57,8 @@ AuditEffort audit_effort(double share, const RayCounts& rays, bool photons, bool
 
 /// Audits the layers direct, caustic and indirect of a frame: estimates their radiance without bias and without files
 /// of light, and compares. add_photons() finds the light of some of the scene's lights by photons that the camera sees,
-/// add_paths() that of the others by camera paths. The two calls together must cover each light of the scene once.
-/// add_specular() audits the layer specular.
+/// add_paths() that of the others by camera paths. The two calls together must cover each light of the scene once. The
+/// layer specular is audited in the whole picture only, and only its light on surfaces that mirrors and glass show.
 ///
 /// The effort is divided into kAudits independent audits with different seeds. Paths and their starts are stratified
 /// within an audit; the standard error comes from the differences between audits, so it includes the gain. There is no
@@ -80,19 +81,11 @@ class FrameAudit {
   FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects,
              std::span<const std::uint8_t> mask, const Inside& camera_inside = {});
   /// Adds the photons of effort.photon_paths light paths from `lights` that the camera sees (PhotonSplats). `lights`
-  /// may aim photons.
-  void add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort);
+  /// may aim photons. With `seen`, also adds their light on surfaces that mirrors and glass show.
+  void add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort,
+                   const SpecularHits* seen = nullptr);
   /// Adds the light of scene.lights that effort.eye_paths camera paths find in pixels all over the picture.
   void add_paths(const RenderScene& scene, const AuditEffort& effort);
-  /// Compares the layer specular, light on surfaces that the camera sees in mirrors and glass, with
-  /// effort.specular_paths camera paths. They must find all light of the scene: see may_hide_light().
-  ///
-  /// Pixels are drawn among those whose middle shows a surface with S lobes, with four paths each. A path's light minus
-  /// the light that the frame shows in the pixel is the contribution: the picture's own contrast adds no noise. Lamps
-  /// and sky in a mirror are sampled by frames themselves and may be a thousand times as bright as all other light, so
-  /// a path counts only if the three others of its pixel meet no lamp and no sky above white by events S. Shown and
-  /// found light are those of the paths that count.
-  void add_specular(const RenderScene& scene, const AuditEffort& effort);
   /// Entries of all layers that have an estimate: of the picture, the tiles and the objects, in this order.
   std::vector<AuditEntry> entries() const;
 
@@ -112,7 +105,7 @@ class FrameAudit {
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;
   void add(std::size_t audit, std::size_t pixel, std::size_t layer, double radiance);
-  std::vector<std::size_t> specular_pixels(const RenderScene& scene) const;
+  static void add_to(Sums& sums, std::size_t audit, std::size_t layer, double radiance);
   void expect(const Tracer& tracer, const PhotonSplats& camera, const std::array<double, kLayerCount>& flux);
   AuditEntry entry(std::size_t part, std::size_t layer) const;
 
@@ -120,11 +113,12 @@ class FrameAudit {
   const RenderedFrame& frame_;
   std::span<const std::uint8_t> mask_;
   Inside camera_inside_;
-  std::vector<Part> parts_;                 ///< picture, 16 tiles, objects
+  bool specular_ = true;     ///< all light of layer specular was looked for
+  double hits_square_ = 0;   ///< sum over SpecularHits of the squares of the light that photons bring to each
+  std::vector<Part> parts_;  ///< picture, 16 tiles, objects
   std::vector<std::uint32_t> object_part_;  ///< by pixel
   std::vector<Sums> sums_;                  ///< by part
   double picture_ = 0;                      ///< sum over pixels of mean_to_white()
-  double white_ = 0;                        ///< radiance at which a pixel is white
 };
 
 /// Least bias that is reported: over the light of the picture, and in standard errors.

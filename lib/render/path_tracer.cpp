@@ -256,6 +256,7 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
     arriving *= state.inside.transmittance_over(scene_.frame().materials, length(light.position - x.surface.position));
   result[state.path.after(true).layer()] += arriving * diffuse;
   result[state.path.after(false).layer()] += arriving * glossy;
+  if (state.path.after(false).only_specular()) result.mirrored += float(channel_mean(arriving * glossy));
 }
 
 /// Takes one sample of the light that records leave out (KnownLight::lamp_spots).
@@ -302,7 +303,7 @@ void EyeTracer::go_onward(const Vertex& at, float u_lobe, float times, const Pat
 /// Adds light of a lamp or of the sky that the path meets.
 void EyeTracer::add_met(Rgb light, const PathState& state) const {
   (*state.result)[state.path.layer()] += light;
-  if (state.path.sharp() && state.path.layer() == Layer::specular) parts_.mirrored += light;
+  if (state.path.only_specular()) state.result->mirrored += float(channel_mean(light));
 }
 
 /// Applies the absorption of glass between the last vertex and a surface, and adds the surface's emission.
@@ -408,7 +409,6 @@ bool EyeTracer::step(PathState& state) const {
     const Passed media_event = pass_media(*media, state);
     if (media_event != Passed::through) return media_event == Passed::scattered;
   }
-  Layers& result = *state.result;
   if (state.hit.surface == kNone) {
     if (scene_.lights.has_environment() && state.light_counts())
       add_met(state.throughput * weighed_environment(scene_.lights, state.ray.direction, state.last), state);
@@ -424,7 +424,7 @@ bool EyeTracer::step(PathState& state) const {
   const Vec3 smooth = point.normal;
   const SurfaceMaterial material(frame, point, state.cone.width);
   if (material.values().unlit) [[unlikely]] {
-    if (state.path.sharp()) result[state.path.layer()] += state.throughput * material.values().base_color;
+    if (state.path.sharp()) add_met(state.throughput * material.values().base_color, state);
     return false;
   }
   const ShadingPoint x(point, -state.ray.direction, material);

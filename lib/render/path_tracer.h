@@ -24,12 +24,14 @@ template <class T>
 struct LayersT {
   std::array<RgbT<T>, kLayerCount> value{};
   T coverage = 0;  ///< 1 if the camera ray met a surface or a medium: the alpha channel
+  T mirrored = 0;  ///< mean channel of the lamps and sky in layer specular, which the camera sees by events S alone
   RgbT<T>& operator[](Layer layer) { return value[std::size_t(layer)]; }
   const RgbT<T>& operator[](Layer layer) const { return value[std::size_t(layer)]; }
   template <class U>
   LayersT& operator+=(const LayersT<U>& more) {
     for (std::size_t l = 0; l < kLayerCount; ++l) value[l] += RgbT<T>(more.value[l]);
     coverage += T(more.coverage);
+    mirrored += T(more.mirrored);
     return *this;
   }
   LayersT operator+(const LayersT& more) const { return LayersT(*this) += more; }
@@ -91,6 +93,8 @@ class EyePath {
   }
   /// True if the path has had no event D and no event in a medium: the camera sees directly or by events S.
   bool sharp() const { return sharp_; }
+  /// True after events S alone, at least one: the camera sees lamps and sky in mirrors and glass (Layers::mirrored).
+  bool only_specular() const { return sharp_ && layer_ == Layer::specular; }
   /// The path with one more event.
   EyePath after(bool diffuse) const {
     EyePath next = *this;
@@ -165,7 +169,6 @@ struct PathParts {
   Layers lit;                  ///< light sampled at the first matte surface
   Layers onward;               ///< light found by rays from the first matte surface's Lambert lobe
   StoredNoise stored_noise{};  ///< not included in `own`
-  Rgb mirrored{0.0f};          ///< part of `own`: lamps and sky that the camera sees by events S alone
   Layers sum() const { return own + (lit + onward); }
 };
 

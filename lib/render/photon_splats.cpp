@@ -10,13 +10,7 @@
 namespace tempolux {
 namespace {
 
-/// Largest distances, over the distance from the camera, of a ray's hit from the photon's position x if both are on one
-/// surface: along the normal, and along the ray. Positions are exact to 1e-7 of the scene; grazing rays need the rest.
-/// Surfaces that lie closer together are not distinguished.
-constexpr float kOff = 1e-4f, kAlong = 1e-2f;
-
 /// The layer of light of this kind; empty for kinds of media.
-
 std::optional<Layer> layer_of(formats::PathKind kind) {
   switch (kind) {
     case formats::PathKind::direct: return Layer::direct;

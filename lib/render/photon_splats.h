@@ -44,6 +44,11 @@ class PhotonSplats {
   /// or tentative. Thread-safe.
   std::optional<Splat> splat(const formats::Photon& photon, Vec3d shift, std::optional<Vec3> wi) const;
 
+  /// Tolerances for the test whether a ray to x meets x's own surface, in units of the distance from the ray's start:
+  /// along the normal and along the surface. Positions are exact to 1e-7 of the scene; the rest allows for grazing
+  /// rays. Surfaces that lie closer together than this are not distinguished.
+  static constexpr float kOff = 1e-4f, kAlong = 1e-2f;
+
  private:
   bool sees(Vec3 place, Vec3 normal, Hit& hit, Ray& ray, float& distance) const;
 

@@ -60,6 +60,7 @@ inline void join(const LayersT<double>& sum, int first, int count, Layers& mean)
   for (std::size_t l = 0; l < kLayerCount; ++l)
     mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.value[l] * new_weight);
   mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
+  mean.mirrored = float(double(mean.mirrored) * old_weight + sum.mirrored * new_weight);
 }
 
 /// The same for noise of records and photons.

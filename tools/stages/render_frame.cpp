@@ -93,11 +93,11 @@ bool panes_hide_light(const Shot& shot) {
 }
 
 /// Measures the bias of the frame's layers, with photons or camera paths of its own:
-/// - Light of lamps: photons, because few camera paths meet a bright spot close to a lamp.
+/// - Light of lamps: photons, because few camera paths meet a bright spot close to a lamp. Photons are also looked at
+///   in mirrors and glass (SpecularHits).
 /// - Light of sun and sky: camera paths, because few photons of sun and sky arrive in view.
 /// - All light if the scene has a sun, maybe in a map of light, and a mirror or smooth glass that is no pane: photons,
 ///   because no camera path meets a sun via a smooth surface.
-/// - What mirrors and glass show (layer specular): camera paths, if they find all of its light.
 /// If only camera paths are needed and the frame was rendered by paths, nothing is measured and `unbiased` becomes
 /// true.
 std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Shot& shot, bool& unbiased) {
@@ -108,7 +108,7 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   const bool suns = scene.lights.has_suns() || (environment && environment->has_sun()),
              hidden = suns && (first_smooth_material(scene.frame(), false) != kNone || panes_hide_light(shot)),
              paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed(),
-             specular = !options.traces_paths() && !hidden && !may_hide_light(scene.frame());
+             specular = !options.traces_paths() && !scene.frame().media;
   unbiased = paths && !photons && options.traces_paths();
   if (unbiased) return {};
   tool.stats().phase("audit", true);
@@ -119,12 +119,15 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
                                     mix64(shot.options.seed + std::uint64_t(tracer.frame().frame)));
   const auto measure = [&] {
     FrameAudit audit(view, shot.rendered, ids.channels.front().ids, shot.options.mask, scene.camera_inside);
-    if (photons) audit.add_photons(tracer, shot.aimed(hidden ? Lights::Which::all : Lights::Which::placed), effort);
+    std::optional<SpecularHits> hits;
+    if (specular && photons) hits.emplace(scene, view, shot.options.mask, effort.specular_paths, ~effort.seed);
+    if (photons)
+      audit.add_photons(tracer, shot.aimed(hidden ? Lights::Which::all : Lights::Which::placed), effort,
+                        hits ? &*hits : nullptr);
     if (paths) {
       const Lights distant(tracer.frame(), shot.emission, Lights::Which::distant);
       audit.add_paths({tracer, distant, distant.has_suns(), scene.camera_inside}, effort);
     }
-    if (specular) audit.add_specular(scene, effort);
     return audit.entries();
   };
   const std::vector<AuditEntry> entries = measure();

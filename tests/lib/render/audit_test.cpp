@@ -191,6 +191,44 @@ TEST(FrameAudit, EachLightIsFoundOnce) {
   EXPECT_TRUE(is_biased(dark));
 }
 
+/// A room whose back wall is a mirror, lit by a panel that the mirror shows. The audit's photons find what a frame by
+/// paths shows on walls in the mirror. A frame that shows a fifth less there, with the panel as bright as before, is
+/// found.
+TEST(FrameAudit, MirrorsShowLightThatIsTooDark) {
+  HandMadeScene made;
+  made.add_room({-2, -2, -2}, {2, 2, 2}, matte(Rgb(0.5f)));
+  made.add_quad({-1, 1.9f, 1}, {-1, 1.9f, -1}, {1, 1.9f, -1}, {1, 1.9f, 1}, matte(Rgb(0.0f), Rgb(20.0f)));
+  Material mirror;
+  mirror.metallic = 1;
+  mirror.roughness = 0;
+  mirror.base_color = Rgb(0.9f);
+  made.add_quad({-1.8f, -1.8f, -1.9f}, {1.8f, -1.8f, -1.9f}, {1.8f, 1.8f, -1.9f}, {-1.8f, 1.8f, -1.9f}, mirror);
+  const SceneFrame& frame = made.frame();
+  const Lit lit(frame);
+  const CameraView view = wide_view({0.1, -0.2, 1.3});
+  FrameOptions options;
+  options.samples = 32;
+  const std::vector<std::uint32_t> objects(kPixels, 0);
+  RenderedFrame rendered = render_frame(lit.scene(), view, options);
+  const SpecularHits hits(lit.scene(), view, {}, 20'000, 5);
+  const auto specular = [&] {
+    FrameAudit audit(view, rendered, objects, {});
+    audit.add_photons(lit.tracer, lit.lights, {.photon_paths = 100'000, .seed = 1}, &hits);
+    const std::vector<AuditEntry> entries = audit.entries();
+    const AuditEntry* const picture = find(entries, Layer::specular, "picture");
+    return picture ? *picture : AuditEntry{};
+  };
+  const AuditEntry right = specular();
+  ASSERT_TRUE(right.bias.known());
+  EXPECT_NEAR(right.of_layer(), 0, 4 * right.of_layer_error()) << right.light.value;
+  EXPECT_LT(right.of_layer_error(), 0.03);
+  for (Layers& pixel : rendered.mean.pixels)
+    pixel[Layer::specular] = pixel[Layer::specular] * 0.8f + Rgb(0.2f * pixel.mirrored);
+  const AuditEntry dark = specular();
+  EXPECT_NEAR(dark.of_layer(), -0.2, 4 * dark.of_layer_error());
+  EXPECT_TRUE(is_biased(dark));
+}
+
 /// A lamp behind the camera lights a wall and a card close to the camera. The card has two fifths of the light and
 /// meets two of 2000 photons. Audits in which no photon met the card know their error, and it must cover what they
 /// miss. The error of the photons that they did meet is ten times smaller.
