@@ -55,7 +55,7 @@ void add_figures(tools::Tool& tool, tools::PlanOptions& options) {
     app.add_option(name, value, help)->type_name(type);
   };
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
-  app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")
+  app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels; RGBA is needed")
       ->capture_default_str();
   tool.count_option("--photons", wish.photons,
                     "light paths of a photon map (preview: of a frame); up to 16 times as many where few of them "

@@ -128,6 +128,7 @@ bool has_full_ends(const std::vector<Piece>& pieces, int axis, double low, doubl
 
 /// Drops stray triangles where this shortens an axis to less than kShrink.
 void leave_out_strays(std::vector<Piece>& pieces) {
+  if (pieces.empty()) return;
   for (int axis = 0; axis < 3; ++axis) {
     const Box3d all = box_of(pieces);
     if (has_full_ends(pieces, axis, all.lower[axis], all.upper[axis])) continue;
@@ -206,7 +207,7 @@ std::string add_content_camera(Scene& scene) {
   node.source_index = std::uint32_t(scene.nodes.size());
   node.camera = int(scene.cameras.size());
   node.rotation = quaternion_of(axes);
-  node.translation = segment.origin + (pieces.empty() ? Vec3d{0, 0, 1} : eye_for(pieces, axes));
+  node.translation = segment.origin + (pieces.empty() ? axes[2] : eye_for(pieces, axes));
   scene.cameras.push_back(camera);
   scene.nodes.push_back(node);
   return "no camera: --camera auto looks at what the scene holds from " + text(node.translation) + " towards " +

@@ -25,6 +25,7 @@ refuses 2 'no camera.*Kamera' "$source" --camera Kamera -o "$work/plan"
 refuses 2 'only letters, digits' "$source" --words 'pixels:$(x)' -o "$work/plan"
 refuses 2 'frames' "$source" --frames 5-x -o "$work/plan"
 refuses 2 "'foo' is no channel group" "$source" --channels RGBA,foo -o "$work/plan"
+refuses 2 "frames need RGBA" "$source" --channels Z,N -o "$work/plan"
 : > "$work/file"
 refuses 3 'cannot create this folder' "$source" -o "$work/file/plan"
 exit $failed

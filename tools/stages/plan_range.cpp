@@ -45,6 +45,8 @@ Wish wish_of(Tool& tool, const PlanOptions& options) {
   std::istringstream names(wish.channels);
   for (std::string name; std::getline(names, name, ',');) channels.push_back(name);
   check_channels(channels);  // frame-render would refuse them only after all light
+  if (std::ranges::find(channels, "RGBA") == channels.end())
+    throw InputError("--channels '" + wish.channels + "': frames need RGBA, the picture; write RGBA," + wish.channels);
   const std::vector<int>& frames = tool.common().frames;
   if (options.report == "ends") wish.report = {frames.front(), frames.back()};
   else if (!options.report.empty()) wish.report = parse_frames(options.report);

@@ -68,6 +68,14 @@ TEST(ContentCamera, AnObjectFillsThePictureToItsMargin) {
   }
 }
 
+/// A node of scale 0 hides what it holds. The camera then stands 1 m before the origin.
+TEST(ContentCamera, LooksAtTheOriginIfAllIsHidden) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", add_box(maker, 1)}, {"scale", {0, 0, 0}}});
+  const auto [x, y] = seen_at(camera_of(maker), {0, 0, 0});
+  EXPECT_LT(std::max(std::abs(x), std::abs(y)), 1);
+}
+
 TEST(ContentCamera, ALargeGroundIsNotWhatItLooksAt) {
   for (const float half : {100.0f, 1e4f}) {
     GltfMaker maker;
