@@ -37,18 +37,22 @@ PointDensity::Estimate PointDensity::estimate(const IrradiancePoint& point, cons
         estimate_irradiance(index_, point.position, point.normal, {options_.neighbours, options_.max_radius}, found);
     return {Rgb(plain.irradiance), Rgb(0.0f), plain.radius};
   }
-  const ReachableArea::Disc disc = area_.measure(point.position, point.normal, radius, options_.area_probes, random);
+  const bool whole = area_.whole(point.position, point.normal, radius, random.get1(2, Purpose::points));
   Rgbd flux{0.0}, signed_flux{0.0};
+  bool any = false;
   for (std::size_t i = 0; i < found.count(); ++i) {
     const std::uint32_t photon = found.photons()[i];
     if (i == farthest ||
-        !area_.reaches(disc, point.position, point.normal, index_.position(photon), index_.normal(photon)))
+        !area_.reaches(whole, point.position, point.normal, index_.position(photon), index_.normal(photon)))
       continue;
     flux += Rgbd(index_.flux(photon));
     signed_flux += Rgbd(index_.flux(photon)) * double(signs_[photon]);
+    any = true;
   }
+  if (!any) return {Rgb(0.0f), Rgb(0.0f), radius};  // as at points inside walls: their area need not be measured
+  const double inverse = area_.inverse(whole, point.position, point.normal, radius, options_.area_probes, random);
   const Rgbd positive{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)};
-  return {Rgb(positive * disc.inverse), Rgb(signed_flux * disc.inverse), radius};
+  return {Rgb(positive * inverse), Rgb(signed_flux * inverse), radius};
 }
 
 }  // namespace tempolux

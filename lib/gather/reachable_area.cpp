@@ -156,12 +156,10 @@ double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int prob
   return double(drawn) / (double(kPi) * double(radius) * double(radius) * surface);
 }
 
-ReachableArea::Disc ReachableArea::measure(Vec3 position, Vec3 normal, float radius, int probes,
-                                           const PathRandom& random) const {
-  const bool is_whole = whole(position, normal, radius, random.get1(2, Purpose::points));
-  return {is_whole, is_whole || !(radius > 4 * offset())
-                        ? 1 / (double(kPi) * double(radius) * double(radius))
-                        : inverse(position, normal, radius, probes, Kernel::flat, random)};
+double ReachableArea::inverse(bool whole_disc, Vec3 position, Vec3 normal, float radius, int probes,
+                              const PathRandom& random) const {
+  return whole_disc || !(radius > 4 * offset()) ? 1 / (double(kPi) * double(radius) * double(radius))
+                                                : inverse(position, normal, radius, probes, Kernel::flat, random);
 }
 
 }  // namespace tempolux

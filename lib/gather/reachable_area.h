@@ -63,17 +63,13 @@ class ReachableArea {
   /// quarter.
   double inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel, const PathRandom& random) const;
 
-  struct Disc {
-    bool whole = false;
-    double inverse = 0;  ///< 1/m^2: 1 / reachable area, flat kernel
-  };
-  /// Tests whether the disc is whole, and measures its area if it is not. A disc whose radius float positions do not
-  /// resolve counts with its whole area.
-  Disc measure(Vec3 position, Vec3 normal, float radius, int probes, const PathRandom& random) const;
+  /// 1 / reachable area [1/m^2] of a disc, with the flat kernel. A disc that is whole(), or whose radius float
+  /// positions do not resolve, counts with its whole area.
+  double inverse(bool whole_disc, Vec3 position, Vec3 normal, float radius, int probes, const PathRandom& random) const;
   /// True if light at `place` counts at the centre of the disc. If the disc is whole, everything in its plane is
   /// reachable; a surface close above the plane may still be another surface.
-  bool reaches(const Disc& disc, Vec3 position, Vec3 normal, Vec3 place, Vec3 place_normal) const {
-    return (disc.whole && std::abs(dot(place - position, normal)) < 4 * offset()) ||
+  bool reaches(bool whole_disc, Vec3 position, Vec3 normal, Vec3 place, Vec3 place_normal) const {
+    return (whole_disc && std::abs(dot(place - position, normal)) < 4 * offset()) ||
            reach_(position, normal, place, place_normal);
   }
 

@@ -24,7 +24,10 @@ void SignedDensity::find(Vec3 position, Vec3 normal, float& radius, const PathRa
                          NeighbourList& found) const {
   if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
   index_.find_within({position, normal, radius, kMinCos, kFlattening}, found);
-  if (found.count() > 0 && !area) area = area_.measure(position, normal, radius, options_.area_probes, random);
+  if (found.count() == 0 || area.known) return;
+  area.known = true;
+  area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));
+  area.inverse = area_.inverse(area.whole, position, normal, radius, options_.area_probes, random);
 }
 
 double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
@@ -34,7 +37,7 @@ double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, c
   double sum = 0;
   for (std::size_t i = 0; i < found.count(); ++i)
     if (found.distance2()[i] < radius * radius) sum += largest(index_.flux(found.photons()[i]));
-  return area ? sum * area->inverse : 0;
+  return sum * area.inverse;
 }
 
 std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius,
@@ -47,13 +50,13 @@ std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 norma
     // A photon on the border does not count, as in the static estimate.
     if (!(found.distance2()[i] < radius * radius)) continue;
     const std::uint32_t photon = found.photons()[i];
-    if (!area_.reaches(*area, position, normal, index_.position(photon), index_.normal(photon))) continue;
+    if (!area_.reaches(area.whole, position, normal, index_.position(photon), index_.normal(photon))) continue;
     const Rgb flux = index_.flux(photon);
     change.irradiance += Rgbd(flux);
     change.influence += largest(flux);
   }
-  change.irradiance *= area->inverse;
-  change.influence *= area->inverse;
+  change.irradiance *= area.inverse;
+  change.influence *= area.inverse;
   return change;
 }
 

@@ -29,12 +29,15 @@ class SignedDensity {
   };
   /// m: largest radius of a disc; by default PointDensity::kSparser times photon_reach().
   float max_radius() const { return options_.max_radius; }
-  /// A disc in the static scene, which is the same for all maps of a segment; empty: not yet measured.
-  using Area = std::optional<ReachableArea::Disc>;
+  /// The reachable area of a disc in the static scene, which is the same for all maps of a segment.
+  struct Area {
+    bool known = false, whole = false;
+    double inverse = 0;  ///< 1/m^2
+  };
   /// The change by the photons in an ellipsoid around the position. `radius` [m] is its radius along the surface (0 or
   /// infinite: max_radius()); its radius along the normal is 1 / kFlattening of this. Empty if the ellipsoid holds no
   /// photon. `random`: as for PointDensity::estimate at the same place. The function measures `area` if it is needed
-  /// and empty. A caller can pass one `area` for all maps of a segment, so that rays test the disc once.
+  /// and not known. A caller can pass one `area` for all maps of a segment, so that rays test the disc once.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
   /// An upper bound of Change::influence at a fraction of the cost: it also counts photons that do not reach the place,
   /// so no ray tests them. 0 if there are no photons.
