@@ -94,9 +94,11 @@ def save(name, **of):
 faint = (.0009, .0004, 9, 4)
 save("both.exr", caustic=faint, indirect=(.005, .001, .01, .002))
 save("faint.exr", caustic=faint)
+save("vague.exr", caustic=(.1, .5, 2.35, 10.85), indirect=(.005, .001, .01, .002), specular=(-.1, .01, -.2, .02))
 END
 tempolux-info --account both.exr | grep -qxF 'audit: indirect light +1.0 +- 0.2 %' || bad 'faint light is named in the account'
 tempolux-info --account faint.exr | grep -qxF 'audit: indirect and caustic light are below 2 % of the picture' || bad 'account of faint light'
+tempolux-info --account vague.exr 2> vague.warned | grep -qxF 'audit: indirect light +1.0 +- 0.2 %, light in mirrors and glass -20 +- 2 %, caustic light not known, as too few of the tested paths bring it' || bad 'account of a layer that the audit does not know'
 expect 0 '--seen-error 0.01: .* codes are left' frame-render "$matte" --size 16x9 --spp 2 --seen-error .01 -o made.exr
 tiny="--size 16x9 --rays 8" point="--point-count 200" frame="--size 16x9 --spp 2 --pixel-error 0"
 for kinds in direct indirect caustic caustic,indirect; do
