@@ -44,8 +44,8 @@ class Masking {
   /// n^(-5/6) (docs/pixels.md), where sigma is the standard deviation of the colours. sigma is the larger of
   /// - the deviation at the `count` positions that were looked up (`at`), and
   /// - the deviation that a missed surface could cause. A surface missed by all positions covers about 1 / (2 count) of
-  ///   the pixel. Its colour follows from `around`, the colours at the centres of the 3 x 3 pixels, of which about a third
-  ///   lie on the other side of an edge.
+  ///   the pixel. Its colour follows from `around`, the colours at the centres of the 3 x 3 pixels, of which about a
+  ///   third lie on the other side of an edge.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 
   /// True if the light may differ on any surface that a key shows; else mark_changed_light() has nothing to do.
