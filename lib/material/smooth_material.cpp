@@ -5,8 +5,8 @@
 namespace tempolux {
 namespace {
 
-/// A lobe of GGX width alpha = roughness^2 reflects the light of a lamp without extent into about 4 pi alpha^2 sr. A ray
-/// from a matte surface meets this solid angle with a probability of at most 4 alpha^2, which is 1 in 10^4 at this
+/// A lobe of GGX width alpha = roughness^2 reflects the light of a lamp without extent into about 4 pi alpha^2 sr. A
+/// ray from a matte surface meets this solid angle with a probability of at most 4 alpha^2, which is 1 in 10^4 at this
 /// roughness. So 100 samples of a pixel usually miss the light, and a sample that meets it makes a white dot.
 constexpr float kSharpRoughness = 0.07f;
 

@@ -184,7 +184,7 @@ class PhotonTracer {
   std::uint64_t group_count_, members_, batches_per_group_;
   const MoverWatch* watch_ = nullptr;
   std::vector<Inside> slot_inside_;  ///< by slot: the absorbing solid that the light is in; empty: no solid absorbs
-  std::vector<char> slot_moves_;  ///< by slot of the emission table: true if the light moves or changes
+  std::vector<char> slot_moves_;     ///< by slot of the emission table: true if the light moves or changes
 };
 
 }  // namespace tempolux

@@ -47,8 +47,7 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   options_.neighbours = options.neighbours;
   has_indirect_ = !options.caustic_only;
   if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
-  if (indirect_.size() > 0)
-    options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours);
+  if (indirect_.size() > 0) options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours);
   const FootprintOptions density{.neighbours = options.caustic_neighbours, .asked = kAskedPhotons};
   caustic_ =
       std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);

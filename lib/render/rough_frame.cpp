@@ -105,8 +105,8 @@ struct Levels {
   std::vector<std::size_t> part;  ///< part of each place
   /// Mean of the picture. Radiance of the layers emission and specular counts at most as much as white, because a flame
   /// in a lantern is a thousand times as bright as the walls that it lights. Direct light does so, too, because a bulb
-  /// close to a wall makes a very bright spot. The other light is at least what photons show, because paths may find none
-  /// of it.
+  /// close to a wall makes a very bright spot. The other light is at least what photons show, because paths may find
+  /// none of it.
   double picture = 0;
   double white = 0;             ///< radiance that the exposure of the median part shows as white
   std::vector<double> allowed;  ///< by part: the allowed error at pixel error 1

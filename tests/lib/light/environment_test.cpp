@@ -128,7 +128,9 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
       const float near = 1e-4f * s.radiance.g + 1e-6f * (m == 1 ? 1e4f : 1.0f);
       EXPECT_NEAR(light.radiance(s.direction).g, s.radiance.g, near);
       if (s.radiance.g > 0.01f) {
-        EXPECT_NEAR(light.pdf_solid_angle(light.place_of(s.direction), s.direction), s.pdf_solid_angle, 2e-3 * s.pdf_solid_angle) << m;
+        EXPECT_NEAR(light.pdf_solid_angle(light.place_of(s.direction), s.direction), s.pdf_solid_angle,
+                    2e-3 * s.pdf_solid_angle)
+            << m;
       }
       area += 1 / s.pdf_solid_angle;
     }

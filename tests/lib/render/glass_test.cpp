@@ -46,7 +46,8 @@ double fresnel(double cos_o, double index) {
   return (rs * rs + rp * rp) / 2;
 }
 
-/// A camera in coloured water looks down at a matte floor 1 m below, under a lamp beside the camera: Beer's law over 2 m.
+/// A camera in coloured water looks down at a matte floor 1 m below, under a lamp beside the camera: Beer's law over 2
+/// m.
 TEST(GlassPaths, CameraInsideASolidSeesThroughIt) {
   HandMadeScene scene;
   Material water = glass(0);
