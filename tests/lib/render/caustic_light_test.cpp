@@ -113,8 +113,7 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
     for (int i = 0; i < 40; ++i) {
       const int step = 2 + i % 4;
       const Vec3 at{0.1f * (float(step) + (float(i) + 0.5f) / 40), 0.02f * float(step), -0.4f + 0.02f * float(i)};
-      float radius;
-      all += double(nearest.estimate({at, {0, 1, 0}}, PathRandom(seed, std::uint64_t(i)), radius).g);
+      all += double(nearest.estimate({at, {0, 1, 0}}, PathRandom(seed, std::uint64_t(i))).irradiance.g);
       sum += double(on_floor(density, at).g);
     }
   }
