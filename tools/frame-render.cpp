@@ -69,8 +69,8 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
   add_light_options(tool, options);
   tool.number_option(
       "--audit", options.audit, 0.0, 100.0,
-      "report the bias of direct, caustic and indirect light, measured with separate photons and paths that "
-      "take about this share of the frame's rays; 0: off");
+      "report the bias of direct, caustic and indirect light and of light in mirrors and glass, measured with separate "
+      "photons and paths that take about this share of the frame's rays; 0: off");
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr, halves of spp/2 samples each; the halves are independent of each "
                "other, and of a frame with the same --seed but without --halves");

@@ -188,7 +188,7 @@ struct DirectLight {
     const Inside inside(around(point.position, point.normal, offset));
     for_samples(point, scattering, random, [&](const DirectSample& direct, const WayBits& bits) {
       Rgbd passed(transmittance(tracer, direct.shadow, bits));
-      if (inside.any()) [[unlikely]]
+      if (inside.any() && !direct.light.distant) [[unlikely]]
         passed *=
             Rgbd(inside.transmittance_over(tracer.frame().materials, length(direct.light.position - point.position)));
       sum += Rgbd(direct.irradiance) * passed;

@@ -86,15 +86,17 @@ class Divider {
 
 EmissionParts::EmissionParts(const SceneFrame& frame, std::uint32_t surface)
     : parts_(frame.surfaces[surface].primitive->triangles.size()),
-      alpha_(frame.materials[frame.surfaces[surface].material].alpha),
       vary_(emission_varies(frame.materials[frame.surfaces[surface].material])) {
   for (std::uint32_t t = 0; t < parts_.size(); ++t) parts_[t].triangle = t;
-  if (vary_) *this = at(frame, surface);
+  *this = at(frame, surface);
 }
 
 EmissionParts EmissionParts::at(const SceneFrame& frame, std::uint32_t surface) const {
   EmissionParts result = *this;
-  result.alpha_ = frame.materials[frame.surfaces[surface].material].alpha;
+  const Material& material = frame.materials[frame.surfaces[surface].material];
+  result.alpha_ = material.alpha, result.alpha_cutoff_ = material.alpha_cutoff;
+  result.vary_ = emission_varies(material);
+  if (!vary_ && !result.vary_) return result;
   const std::uint32_t triangles = first_.empty() ? std::uint32_t(parts_.size()) : std::uint32_t(first_.size() - 1);
   parallel_each(triangles, 1024, [&](std::size_t index) {
     const auto t = std::uint32_t(index);
@@ -107,7 +109,8 @@ EmissionParts EmissionParts::at(const SceneFrame& frame, std::uint32_t surface) 
 }
 
 bool EmissionParts::hold_at(const SceneFrame& frame, std::uint32_t surface) const {
-  return alpha_ == frame.materials[frame.surfaces[surface].material].alpha;
+  const Material& material = frame.materials[frame.surfaces[surface].material];
+  return alpha_ == material.alpha && alpha_cutoff_ == material.alpha_cutoff;
 }
 
 void EmissionParts::divide(const SceneFrame& frame, std::uint32_t surface, std::span<const double> most_of) {

@@ -35,9 +35,9 @@ class EmissionParts {
 
   /// The same parts with the shares of a frame.
   EmissionParts at(const SceneFrame& frame, std::uint32_t surface) const;
-  /// True if a texture or alpha makes the emission vary.
+  /// True if a texture or alpha makes the emission vary at the frame of the shares.
   bool vary() const { return vary_; }
-  /// True if the shares are those of the frame, too: only the material's alpha changes them.
+  /// True if the shares are those of the frame, too: only the material's alpha and its cutoff change them.
   bool hold_at(const SceneFrame& frame, std::uint32_t surface) const;
 
   std::span<const EmissionPart> all() const { return parts_; }
@@ -51,7 +51,7 @@ class EmissionParts {
 
   std::vector<EmissionPart> parts_;
   std::vector<std::uint32_t> first_;  ///< by triangle, and their number; empty: every triangle is one part
-  float alpha_ = 1;
+  float alpha_ = 1, alpha_cutoff_ = 0;
   bool vary_ = false;
 };
 

@@ -56,12 +56,19 @@ void join_cones(LightBounds& a, const LightBounds& b) {
   a.cos_spread = std::max(-1.0f, std::cos(spread) - kSlack);
 }
 
+/// Adds lights of this weight and these means to `a`.
+void join_means(LightBounds& a, double weight, Vec3 mean_normal, const std::array<float, 6>& mean_squares) {
+  a.weight += weight;
+  const float share = a.weight > 0 ? float(weight / a.weight) : 0.0f;
+  a.mean_normal += (mean_normal - a.mean_normal) * share;
+  for (std::size_t i = 0; i < mean_squares.size(); ++i)
+    a.mean_squares[i] += (mean_squares[i] - a.mean_squares[i]) * share;
+}
+
 LightBounds join(LightBounds a, const LightBounds& b) {
   join_cones(a, b);
   a.box.add(b.box);
-  a.weight += b.weight;
-  a.normals += b.normals;
-  for (std::size_t i = 0; i < a.squares.size(); ++i) a.squares[i] += b.squares[i];
+  join_means(a, b.weight, b.mean_normal, b.mean_squares);
   a.cos_reach = std::min(a.cos_reach, b.cos_reach);
   a.two_sided = a.two_sided || b.two_sided;
   a.backs_within.add(b.backs_within);
@@ -99,17 +106,13 @@ struct Group {
 
 }  // namespace
 
-void LightBounds::add_weight(Vec3 normal, double more) {
-  const Vec3d n(normal);
-  const std::array<double, 6> products{n.x * n.x, n.y * n.y, n.z * n.z, 2 * n.x * n.y, 2 * n.x * n.z, 2 * n.y * n.z};
-  weight += more;
-  normals += n * more;
-  for (std::size_t i = 0; i < products.size(); ++i) squares[i] += more * products[i];
+void LightBounds::add_weight(Vec3 n, double more) {
+  join_means(*this, more, n, {n.x * n.x, n.y * n.y, n.z * n.z, 2 * n.x * n.y, 2 * n.x * n.z, 2 * n.y * n.z});
 }
 
 void LightBounds::add_punctual(double more) {
-  weight += more;
-  for (std::size_t i = 0; i < 3; ++i) squares[i] += more * 16 / 3;  // half of mean_magnitude(0, 16 / 3) is 1
+  const float all = 16.0f / 3;  // half of mean_magnitude(0, 16 / 3) is 1
+  join_means(*this, more, {}, {all, all, all, 0, 0, 0});
 }
 
 struct LightTree::Item {
@@ -210,9 +213,8 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) const
   const float farthest = length(max(abs(backs.lower - centre), abs(backs.upper - centre))) * (1 + kSlack);
   node.backs_within2[lane] = bounds.two_sided ? INFINITY : backs.empty() ? -1 : farthest * farthest;
   node.weight[lane] = bounds.weight;
-  const double whole = whole_ * bounds.weight;
-  for (int axis = 0; axis < 3; ++axis) node.normals[axis][lane] = float(bounds.normals[axis] / whole);
-  for (std::size_t i = 0; i < bounds.squares.size(); ++i) node.squares[i][lane] = float(bounds.squares[i] / whole);
+  for (int axis = 0; axis < 3; ++axis) node.normals[axis][lane] = bounds.mean_normal[axis];
+  for (std::size_t i = 0; i < bounds.mean_squares.size(); ++i) node.squares[i][lane] = bounds.mean_squares[i];
 }
 
 /// Returns the index at which to divide [first, last), which holds at least two items. The function compares 15 planes

@@ -19,15 +19,15 @@ struct LightBounds {
   Box3 box;
   Vec3 axis{0, 0, 1};  ///< unit; axis of the cone of normals
   double weight = 0;   ///< greatest irradiance at 1 m: L A of an area light, I of a point light; summed
-  /// Sum over the lights of weight x normal, and of weight x (n_x^2, n_y^2, n_z^2, 2 n_x n_y, 2 n_x n_z, 2 n_y n_z).
-  Vec3d normals{};
-  std::array<double, 6> squares{};
+  /// Means over the lights by weight: of the normal n, and of (n_x^2, n_y^2, n_z^2, 2 n_x n_y, 2 n_x n_z, 2 n_y n_z).
+  Vec3 mean_normal{};
+  std::array<float, 6> mean_squares{};
   float cos_spread = 1;    ///< cosine of the largest angle between any light's normal and the axis
   float cos_reach = 0;     ///< cosine of the largest angle from its normal at which a light shines (at most pi/2)
   bool two_sided = false;  ///< true if any of the lights shines backwards, too
   Box3 backs_within;       ///< holds all points that see the backs of lights in closed_parts(); empty: no such lights
 
-  /// Adds the weight of a light with this normal (unit) to weight, normals and squares.
+  /// Adds the weight of a light with this normal (unit) to weight and means.
   void add_weight(Vec3 normal, double more);
   /// The same for a light that shines equally in all directions: its normals are estimated to have the cosine 1.
   void add_punctual(double more);
@@ -68,7 +68,7 @@ class LightTree {
   struct alignas(32) Node {
     float centre[3][kWidth], radius[kWidth];  ///< sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
-    float normals[3][kWidth], squares[6][kWidth];  ///< LightBounds' over the child's weight
+    float normals[3][kWidth], squares[6][kWidth];  ///< LightBounds::mean_normal, mean_squares
     /// m^2; square of the distance from the centre within which backs may be seen; -1: backs are seen nowhere
     float backs_within2[kWidth];
     double weight[kWidth];        ///< of the child, divided by the weight of all lights; 0: no child

@@ -180,14 +180,17 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   find_solids_of_lights();
 }
 
-/// Finds the absorbing solid in which each light is; a surface's first triangle stands for all of its triangles.
+/// Finds the absorbing solid in which each light is. A surface's first slot stands for all of its slots.
 void PhotonTracer::find_solids_of_lights() {
   const SolidAround around(tracer_);
   if (!around.any()) return;
+  std::uint32_t last_surface = kNone;
   for (const EmissionSlot& slot : lights_.slots()) {
     const bool placed = slot.kind == EmissionSlot::Kind::punctual &&
                         tracer_.frame().lights[slot.light].light.kind != PunctualLight::Kind::directional;
-    if (slot.kind == EmissionSlot::Kind::triangle && slot.triangle > 0) slot_inside_.push_back(slot_inside_.back());
+    const bool same = slot.surface != kNone && slot.surface == last_surface;
+    last_surface = slot.surface;
+    if (same) slot_inside_.push_back(slot_inside_.back());
     else if (slot.kind == EmissionSlot::Kind::triangle) {
       const Hit middle{0, slot.surface, slot.triangle, 1.0f / 3, 1.0f / 3};
       const SurfacePoint point = tracer_.surface_point(middle);

@@ -252,7 +252,7 @@ void EyeTracer::sample_light(const Vertex& at, const PathState& state, const Pix
   const Rgb passed = transmittance(scene_.tracer, shadow, {random.hashed(), state.bounce, way_shadow});
   if (is_black(passed)) return;
   Rgb arriving = state.throughput * light.facing_irradiance * (std::abs(wi.z) / share) * passed;
-  if (state.inside.any())
+  if (state.inside.any() && !light.distant)
     arriving *= state.inside.transmittance_over(scene_.frame().materials, length(light.position - x.surface.position));
   result[state.path.after(true).layer()] += arriving * diffuse;
   result[state.path.after(false).layer()] += arriving * glossy;

@@ -15,7 +15,7 @@ using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
 
-constexpr double kNarrowestCone = 1e-4;  ///< rad; replaces an outer angle of 0 or less
+constexpr double kNarrowestCone = 1e-12;  ///< rad; replaces an outer angle of 0 or less
 
 constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
 

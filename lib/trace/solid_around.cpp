@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kRays = 16;
+constexpr int kRays = 16;
 constexpr float kGolden = 2.39996323f;  ///< radians
 
 bool absorbs_light(const MaterialValues& m) {
@@ -27,7 +27,7 @@ SolidAround::SolidAround(const Tracer& tracer) : tracer_(tracer) {
 std::uint32_t SolidAround::operator()(Vec3 place, Vec3 normal, float offset) const {
   if (!any_) return kNone;
   std::array<Ray, kRays> rays;
-  for (std::size_t i = 0; i < kRays; ++i) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
     const float z = 1 - (2 * float(i) + 1) / kRays, r = std::sqrt(1 - z * z), phi = kGolden * float(i);
     Vec3 direction{r * std::cos(phi), r * std::sin(phi), z};
     if (dot(direction, normal) < 0) direction -= normal * (2 * dot(direction, normal));
@@ -37,7 +37,7 @@ std::uint32_t SolidAround::operator()(Vec3 place, Vec3 normal, float offset) con
   tracer_.intersect(rays, hits);
   int fronts = 0;
   std::vector<std::pair<std::uint32_t, int>> backs;  // material, number
-  for (std::size_t i = 0; i < kRays; ++i) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].surface == kNone) continue;
     const SurfacePoint point = tracer_.surface_point(hits[i]);
     if (!absorbs_[point.material]) continue;
@@ -50,7 +50,7 @@ std::uint32_t SolidAround::operator()(Vec3 place, Vec3 normal, float offset) con
     else backs.emplace_back(point.material, 1);
   }
   const auto most = std::ranges::max_element(backs, {}, [](const auto& b) { return b.second; });
-  return most != backs.end() && most->second > fronts ? most->first : kNone;
+  return most != backs.end() && most->second > fronts && 4 * most->second >= kRays ? most->first : kNone;
 }
 
 }  // namespace tempolux

@@ -8,12 +8,13 @@
 
 namespace tempolux {
 
-/// Finds in which absorbing solid (water, coloured glass) a path starts: only the sides of the boundaries that it
-/// crosses tell a path where it is, and light may travel far before it meets one.
+/// Finds the absorbing solid (water, coloured glass) in which a path starts. Later the path knows the solid from the
+/// sides of the boundaries that it crosses, but light may travel far before it crosses one.
 ///
-/// Sends 16 rays from a place, spread evenly over the sphere, or over the hemisphere of `normal`. A ray whose first hit
-/// is the back of a solid's boundary says that the place is inside this solid; a front says that it is outside of all.
-/// The majority decides. So a sheet of water above a basin counts as the boundary of the water below.
+/// Sends 16 uniform rays from a place into the sphere, or into the hemisphere of `normal`. A ray whose first hit is the
+/// back of a solid's boundary is a vote for this solid, a front is a vote for none. A solid needs more votes than none
+/// has, and a quarter of the rays. So a sheet of water above a basin is the boundary of the water below, and a window
+/// of coloured glass that is modelled as one sheet does not make its room a solid.
 /// Costs nothing in scenes without absorbing solids. Thread-safe.
 class SolidAround {
  public:

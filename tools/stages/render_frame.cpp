@@ -108,7 +108,7 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   const bool suns = scene.lights.has_suns() || (environment && environment->has_sun()),
              hidden = suns && (first_smooth_material(scene.frame(), false) != kNone || panes_hide_light(shot)),
              paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed(),
-             specular = !options.traces_paths() && !scene.frame().media;
+             specular = photons && !options.traces_paths() && !scene.frame().media;
   unbiased = paths && !photons && options.traces_paths();
   if (unbiased) return {};
   tool.stats().phase("audit", true);
