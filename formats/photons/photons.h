@@ -121,9 +121,10 @@ class PhotonWriter {
   /// Appends a block that encode_block(block, header.columns) has encoded, so that callers can compute checksums in
   /// parallel. Serial cost besides the sink: exact sum and range check, about 3 ns per photon.
   void write_encoded(std::string_view bytes, const PhotonBlock& block);
-  /// Writes the end block and returns the totals. photon_count and stored_flux are the writer's own. `ledger` has an
-  /// entry for every group, ascending; in an overlay, which must have a ledger, for the groups that it holds. With a
-  /// ledger, emitted, escaped and absorbed flux are its sums; without, they come from `totals`.
+  /// Writes the ledger and the end block, and returns the totals of the file. The writer itself has counted
+  /// photon_count and stored_flux. Emitted, escaped and absorbed flux are the sums over the ledger; without a ledger
+  /// they come from `totals`. The ledger has one entry per group, ascending: in an overlay per group of the overlay. An
+  /// overlay or a file with tentative photons must have a ledger.
   PhotonTotals finish(const PhotonTotals& totals, std::span<const GroupFlux> ledger = {});
 
  private:

@@ -8,8 +8,9 @@ namespace tempolux {
 /// Ratio of the axes of the ellipsoid in which density estimates search photons. The short axis is along the normal, so
 /// that photons on a parallel surface close by are left out.
 inline constexpr float kFlattening = 10;
-/// Smallest cosine between the normals of a place and of a photon or surface that counts there, so that photons on the
-/// other side of a thin wall do not count: 84 degrees, the slope of the ellipsoid's diagonal.
+/// A photon or a surface counts at a place only if the cosine between its normal and the place's normal is above
+/// kMinCos, so the angle is below 84 degrees. Photons on the other side of a thin wall therefore do not count. The
+/// diagonal of the ellipsoid's axes makes about the same angle with the normal.
 inline constexpr float kMinCos = 1 / kFlattening;
 
 struct IrradianceOptions {

@@ -24,7 +24,8 @@ namespace tempolux {
 struct BrightOptions {
   std::uint64_t seed = 0;
   int light_samples = 16;  ///< shadow rays of a site at a point whose direct light is not uniform
-  /// Photons of lamps close to surfaces; their points must be marked (PointLookup::note_lamp)
+  /// Photons of lamps that are close to surfaces (lamp_light.h). The points that represent the photons' places must be
+  /// marked (PointLookup::note_lamp); note_lamps_beside() marks them.
   std::span<const LampPhoton> beside_lamps = {};
 };
 

@@ -36,11 +36,11 @@ struct PlacedPoints {
   float spacing = 1;
 };
 
-/// Places points uniformly by area on both sides of every surface with a Lambert lobe, without irradiance. With
-/// options.seen, only surfaces inside those spheres (spheres_with_points) get points. The points of a surface depend
-/// only on that surface, the seed, the spheres and the spacing, and the spacing depends on the static area. Points on
-/// static surfaces come first: they have the same positions and indices in all frames of a segment. Points on movers
-/// move with their triangles.
+/// Places points uniformly by area on both sides of every surface with a Lambert lobe. Their irradiance is not yet
+/// estimated. If options.seen has spheres, only the parts of surfaces inside chosen spheres (spheres_with_points) get
+/// points. The points of a surface depend only on that surface, the seed, the chosen spheres and the spacing, and the
+/// spacing depends on the area of static surfaces. Points on static surfaces come first: they have the same positions
+/// and indices in all frames of a segment. Points on movers move with their triangles.
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 
 /// A place on one side of a surface, and the area that it represents [m^2].
@@ -57,7 +57,8 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
                                     const AimSphere& around, double area, std::uint64_t seed,
                                     const std::function<bool(Vec3)>& wanted);
 
-/// The place of a point as a start of rays, which begin `offset` [m] above the surface. Both normals are the point's.
+/// A surface point from which rays can start, at the place of an irradiance point. Rays start `offset` [m] above the
+/// surface. The shading normal and the geometric normal are both the irradiance point's normal.
 inline SurfacePoint surface_of(const IrradiancePoint& point, float offset) {
   SurfacePoint surface{};
   surface.position = point.position;

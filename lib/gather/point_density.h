@@ -37,7 +37,8 @@ struct DensityOptions {
 /// out, points in corners would be too dark.
 class PointDensity {
  public:
-  /// max_radius over photon_reach(): where photons are up to 4^2 times as sparse as usual, k photons are still found.
+  /// The ratio of max_radius to photon_reach(). Where photons are 16 times as sparse as in the rest of the scene, k
+  /// photons still lie within max_radius, because the area of the disc is 4^2 times as large.
   static constexpr float kSparser = 4;
 
   /// Uses the photons of these kinds (kind_bit), moved by `shift` [m] into scene space.

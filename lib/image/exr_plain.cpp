@@ -19,8 +19,8 @@ struct Stretch {
   char* to = nullptr;  ///< destination of the first line
 };
 
-/// The places of the image's channels in a line; empty if a sample of them does not have 4 bytes. `line_bytes` receives
-/// the bytes of all channels in a line.
+/// The places of the image's channels in a line of the file. Empty if one of the image's channels is stored as half
+/// floats, or if two channels have the same name. `line_bytes` receives the bytes of a line: all channels of the file.
 std::vector<Stretch> stretches(const ExrClaims& claims, Image& image, std::size_t& line_bytes) {
   std::vector<const ExrClaims::ClaimedChannel*> claimed;
   for (const ExrClaims::ClaimedChannel& channel : claims.channels) claimed.push_back(&channel);

@@ -24,7 +24,7 @@ std::vector<ChannelStatistics> channel_statistics(const Image& image);
 struct ChannelDifference {
   std::string name;
   std::uint64_t differing = 0;  ///< pixels whose bits differ; -0 equals 0 and NaN equals NaN
-  double largest = 0;           ///< largest |a - b| over pixels where both are finite; also for ids
+  double largest = 0;           ///< largest |a - b| over pixels where both are finite; ids are subtracted like values
   int x = 0, y = 0;             ///< first pixel of the largest difference in row order, from the top left
 };
 /// Compares each channel that both images have, in the order of `a`. Throws std::invalid_argument if the sizes

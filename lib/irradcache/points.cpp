@@ -180,8 +180,8 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   return uneven;
 }
 
-/// The answer if the first entry of the table does not hold it: reads a later entry, or searches the cell and stores
-/// the result.
+/// The slow part of answer(), for questions that the first entry of the table does not answer. Reads a later entry, or
+/// searches the cell and stores the result.
 std::uint32_t PointLookup::find_answer(const Question& q) const {
   if (q.cell == 0) {
     const Light* light = search(q);

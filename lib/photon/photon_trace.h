@@ -87,22 +87,22 @@ struct PhotonBatch : FluxBalance, PhotonCounts {
 ///
 /// A photon is recorded at every surface with a Lambert lobe, before it is scattered, with
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
-/// so that  rho/pi x density  is the radiance that the Lambert lobe reflects, with shading normals n_s and geometric
-/// normals n_g [Veach 1997, 5.3]. (Where the shading normal faces away from the camera, the camera uses the geometric
-/// normal, and photons are scattered accordingly.) On a flat matte surface this is the arriving flux. n_s of a normal
-/// map is the normal at the map's finest level, as for gather rays (RayCone).
+/// Here n_s is the shading normal and n_g the geometric normal. With this factor  rho/pi x density  is the radiance
+/// that the Lambert lobe reflects [Veach 1997, 5.3]; on a flat matte surface the factor is 1. (Where the shading normal
+/// faces away from the camera, the camera uses the geometric normal, and photons are scattered accordingly.) With a
+/// normal map, n_s is the normal at the map's finest level, as for gather rays (RayCone).
 ///
-/// A pixel looks up caustic photons itself, with the mean normal of a normal map over the pixel's footprint. So if
-/// directions are stored (stores_directions) a caustic photon has the flux x |wi.n_v| / |wi.n_g|, where n_v is the
-/// normal without the map, and the reader applies the map and the coat (received_share). Inside glass the flux is
-/// divided by the squared index of refraction (bsdf.h). Light that solids absorb counts as absorbed. On a surface of
+/// A pixel that looks up caustic photons uses the mean normal of a normal map over the pixel's footprint. Therefore, if
+/// directions are stored (stores_directions), a caustic photon is recorded with  flux x |wi.n_v| / |wi.n_g|, where n_v
+/// is the normal without the map. The reader then applies the map and the coat (received_share). Inside glass the flux
+/// is divided by the squared index of refraction (bsdf.h). Light that solids absorb counts as absorbed. On a surface of
 /// alpha mode BLEND the share alpha of the photons hits the surface, and their recorded flux is divided by alpha.
 /// Russian roulette keeps the flux of a path about constant, without bias.
 ///
-/// In media (SceneFrame::media) a photon flies by null collisions under the media's majorants, which are raised so that
-/// a mean crossing of their box has at least ten tentative collisions. Random numbers are keyed by (seed, i, bounce,
-/// step). At a tentative collision, real or null, a photon of kind tentative is recorded with probability volume_share
-/// and
+/// In media (SceneFrame::media) free paths are sampled by tentative collisions against the media's majorants. The
+/// majorants are raised until a mean crossing of their box has at least ten tentative collisions. Random numbers are
+/// keyed by (seed, i, bounce, step). At each tentative collision, whether real or not, a photon of kind tentative is
+/// recorded with the probability volume_share. The photon stores
 ///     flux / (majorant x volume_share)     [W m].
 /// The sum over a region is the integral of fluence over the region, whatever the density of the medium. A real
 /// collision scatters the albedo's share of the flux by the phase function, with Russian roulette as at surfaces.

@@ -40,9 +40,10 @@ double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t>
 double mean_to_white(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
 
 /// Measures noise by pixels that are rendered a second time, with different random numbers and the same numbers of
-/// samples. For the two means x and y, E (x - y)^2 / 2 is the variance of x, which includes the gain by stratification.
-/// The two halves of one pixel's samples would not give this variance: they are stratified together and have opposite
-/// errors, so their squared difference is up to 4 times too large.
+/// samples. Let x and y be a pixel's means in the two renderings. Then the expectation of (x - y)^2 / 2 is the variance
+/// of x. Stratified samples make this variance smaller than that of independent samples. A comparison of the two halves
+/// of one rendering would not find the true variance: both halves are stratified together and have opposite errors, so
+/// their squared difference is up to 4 times too large.
 class NoiseCheck {
  public:
   /// Takes one pixel of each square. The edge of the squares is 5 to 8 pixels, such that about 1024 pixels are taken,

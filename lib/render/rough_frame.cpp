@@ -214,7 +214,8 @@ class RoughLight {
     const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
     if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
   }
-  /// Known light for samples of pixels, without bright points: usually only records sample these explicitly.
+  /// The light that samples of pixels may read from the points. Bright points are left out, because usually only
+  /// records sample bright points explicitly.
   KnownLight known() const {
     KnownLight known;
     known.points = &*lookup_;

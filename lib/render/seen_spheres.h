@@ -24,16 +24,18 @@ struct SeenAround {
   std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras whose places were added
 };
 
-/// Adds the places that representatives of a camera see. A lattice divides all cameras into cells, and all cameras of
-/// one cell have the same representatives. So a camera that moves or turns a little needs the same photons, and a
-/// second camera of a cell adds nothing. Adds nothing, too, if the camera sees no surface.
+/// Adds places that stand-in cameras see in place of the given camera. A lattice divides the positions and directions
+/// of all cameras into cells. All cameras of one cell that see the same octants (below) have the same stand-ins. So a
+/// camera that moves or turns a little needs the same photons, and a second such camera adds nothing. A camera that
+/// sees no surface adds nothing either.
 ///
-/// The positions of a cell form a cube of edge 2^k m, the largest that is neither longer than the median distance of
-/// visible surfaces nor than half the height of the picture at this distance; its directions lie within a third of the
-/// angle of view. Up to eight cameras represent a cell: one at the centre of each octant of the cube, if the given
-/// camera sees this centre. Their pictures are half as wide again. Each sends kPlacesOfEye rays through stratified
-/// positions of its picture, which pass mirrors and glass (seen_through) and then make up to two cosine-distributed
-/// bounces. Only the ratio of the picture's `width` and `height` matters.
+/// The positions of a cell form a cube. Its edge is 2^k m: the largest such edge that exceeds neither the median
+/// distance of visible surfaces nor half the height of the picture at this distance. The directions of a cell span a
+/// third of the angle of view. The stand-ins are at the centres of the cube's octants, as far as the given camera sees
+/// these centres; if it sees none, the given camera represents itself. The picture of a stand-in is 1.5 times as wide
+/// and high. Each stand-in sends kPlacesOfEye rays through stratified positions of its picture. The rays pass mirrors
+/// and glass (seen_through) and then make up to two cosine-distributed bounces. `width` and `height` give only the
+/// aspect ratio of the picture.
 void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen);
 
 /// Divides world space into the cells of an octree and returns a sphere around each cell that holds places. The edge of

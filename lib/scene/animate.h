@@ -13,8 +13,8 @@ namespace tempolux {
 /// Writes the value of a track at a time [s] to `out`, which has room for the track's components. Before the first key
 /// the value is the first key's, after the last key the last key's. LINEAR rotations turn along the shorter arc at
 /// constant speed (slerp); splines of rotations are normalised. Files store times as float32: if a time equals a key's
-/// after both are rounded to float32, the value is exactly the key's. Between two equal keys the value is exactly
-/// theirs. Source: glTF 2.0, 3.11 and appendix C.
+/// after both are rounded to float32, the value is exactly the key's. Between two keys with equal values the result is
+/// exactly this value; in a spline the tangents must be zero, too. Source: glTF 2.0, 3.11 and appendix C.
 void evaluate(const AnimationTrack& track, double time_s, std::span<double> out);
 /// The value of a track of up to four components: xyz, or a unit quaternion xyzw. Missing components are 0.
 std::array<double, 4> evaluate(const AnimationTrack& track, double time_s);

@@ -98,11 +98,11 @@ struct TrianglePart {
 };
 
 /// Mean over a part of a triangle of emission times coverage, as a share of the material's emission; 1 if neither
-/// varies. The part is cut into similar pieces of about a texel, 4 to 64 on a whole triangle and at least 4 on a
-/// smaller part. Each piece is read at its centre, averaged over its size. The result is 0 if the texture is black
-/// everywhere on the part, else at least 0.01 of `whole`, so that no emitting part is sampled too rarely; `whole` is 1,
-/// or the share of the whole triangle. The result depends neither on the material's emission nor on the surface's
-/// shape.
+/// varies. A whole triangle is cut into 4 to 64 similar pieces of about a texel, a smaller part into at least 4 pieces.
+/// The textures are read at the centre of each piece; the value of emission is averaged over the piece. If the texture
+/// of emission is black everywhere on the part, the result is 0. Otherwise the result is at least 0.01 `whole`, so that
+/// no emitting part is sampled too rarely. `whole`: for a smaller part, the result of its whole triangle. The result
+/// depends neither on the material's emission nor on the surface's shape.
 Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle,
                         const TrianglePart& part = {}, Rgb whole = Rgb(1.0f));
 /// Texels of the textures that make emission or coverage vary, along the longer side of the triangle's bounding

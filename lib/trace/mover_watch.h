@@ -16,7 +16,7 @@ class MoverWatch {
   /// 1 to 64 intervals; the boxes of an interval hold all movers in any of its frames.
   explicit MoverWatch(std::vector<MovingBoxes> intervals);
 
-  /// touching() of a ray that meets boxes in all intervals.
+  /// The value of touching() for a ray that meets a box in every interval: one bit per interval.
   std::uint64_t all() const { return ~std::uint64_t(0) >> (64 - intervals_.size()); }
   /// Bit i is set if the ray meets a box of interval i before `t` times its direction; t may be infinite.
   std::uint64_t touching(const Ray& ray, float t) const;

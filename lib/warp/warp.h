@@ -74,10 +74,10 @@ struct WarpedFrame {
   std::vector<std::vector<std::vector<float>>> candidates;
 };
 
-/// Composes one or two keys. Both must have the same colour channels (else std::invalid_argument). The weight of a key
-/// that shows a point is linear in time, and divided by the key's magnification if it is above 1. All layers have the
-/// same weights. If all layers are there, R, G and B are their sum to the bit, as in rendered frames. A pixel that no
-/// key shows is 0 and masked.
+/// Composes one or two keys. Both must have the same colour channels (else std::invalid_argument). If a key shows a
+/// point, the key's weight falls linearly with its distance in time. A key that shows the point magnified has a weight
+/// that is divided by the magnification. All layers have the same weights. If the keys have all layers, R, G and B are
+/// the exact sum of the composed layers, as in rendered frames. A pixel that no key shows is 0 and masked.
 WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options);
 
 }  // namespace tempolux

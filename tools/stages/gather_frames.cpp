@@ -107,7 +107,8 @@ void GatherRun::continue_chain(const SceneFrame& frame, const FramePoints& point
   if (!before_) kept_ = {};
 }
 
-/// Position of the camera that a place sees, as in TemporalScene::eye.
+/// The camera's position as seen from a place (TemporalScene::eye): the origin of the camera ray through the place.
+/// Empty if the place is outside the picture.
 std::optional<Vec3> eye_from(const CameraView& view, Vec3 place) {
   const auto at = view.project(place);
   if (!at) return std::nullopt;
