@@ -59,8 +59,8 @@ double band_filter(int band, double frequency);
 double band_frequency(int band);
 /// Angle of orientation 1 to 6, radian: -90, -60, .. 60 degrees.
 double orientation_angle(int orientation);
-/// Weight of a frequency in an orientation; `cosine` is the cosine (of either sign) of the angle between them. The six
-/// weights add up to 1.
+/// The weight with which an orientation passes a frequency. `cosine`: of the angle between the orientation and the
+/// frequency's direction; its sign does not matter. The weights of a frequency in the six orientations add up to 1.
 double fan_filter(double cosine);
 
 /// Slope of masking in a band: the growth of thresholds with the contrast of the masking pattern.

@@ -11,10 +11,10 @@ namespace tempolux {
 /// position):
 ///
 ///     i = sum a_k b^k  ->  sum perm_k(a_k) b^(-k-1),
-/// for as many digits as fit into a 64-bit numerator. Digits are processed in blocks with tables of at most 2048
-/// entries. Indices that agree modulo b^m agree in the first m digits of the result, scrambled or not; photon groups
-/// rely on this (docs/methods/formulas.md). The sum is exact for every 64-bit index; it is rounded once to a value
-/// below 1.
+/// The sum has as many digits as fit into a 64-bit numerator. Digits are looked up in blocks, in tables of at most 2048
+/// entries. If two indices agree modulo b^m, their results agree in the first m digits, with or without the
+/// permutations; photon groups rely on this (docs/methods/formulas.md). The sum is exact for every 64-bit index and is
+/// then rounded once to a value below 1.
 class RadicalInverse {
  public:
   /// Every seed, also 0, scrambles; scramble = false gives the plain sequence, for tests.

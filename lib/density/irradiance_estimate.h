@@ -31,11 +31,12 @@ struct IrradianceEstimate {
 ///     E  =  ( sum of flux over all within R )     /  ( pi R^2 )        if fewer than k are within R
 ///     E  =  ( sum of flux over all within r_min ) /  ( pi r_min^2 )    if r_k <= r_min
 ///
-/// R is max_radius; r_min is the index's resolution, but at most R. The rule is unbiased for photons of uniform
-/// density: in a shrinking disc (photons inside) / area is a martingale, and each of the three cases stops the disc at
-/// a time that depends only on photons outside the disc. Without photons, E = 0. With fewer than k photons and no
-/// max_radius there is no area to divide by: E = 0, radius 0 (also if all photons are at the origin). Sums are in
-/// double, in the index's order: the same bits whatever `scratch` was used for.
+/// R is max_radius; r_min is the index's resolution, but at most R; r_k is the distance of the k-th photon. The rule is
+/// unbiased for photons of uniform density. Reason: if a disc shrinks, (photons inside) / area is a martingale, and in
+/// each of the three cases the disc stops at a size that depends only on photons outside the disc or on its edge. If
+/// there are no photons, E = 0. If there are fewer than k photons and max_radius is infinite, no area is known, and E
+/// and radius are 0. Sums are computed in double and in the index's order, so their bits do not depend on what
+/// `scratch` was used for.
 ///
 ///     point    m, in the photons' space
 ///     normal   unit, on the side whose irradiance is estimated

@@ -21,7 +21,8 @@ struct Moments {
   Float8 one{}, x{}, y{}, xx{}, xy{}, yy{};
 };
 
-/// Fits windows of 2 kRadius + 1 pixels a side; the compiler unrolls them.
+/// Fits eight pixels of a row at once, each in a window of 2 kRadius + 1 pixels a side. The radius is a template
+/// parameter, so the compiler unrolls the loops over a window.
 template <int kRadius>
 class StripFit {
  public:

@@ -40,15 +40,16 @@ struct LightGroup {
 };
 
 /// A frame as the filter reads it.
-/// Half 0 of a layer is LAYER + LAYER.noise, half 1 is LAYER - LAYER.noise; the noise of the two halves is uncorrelated
-/// (formats/frames/frames.md). A frame without channels of noise gets noise of random sign, whose square is the
-/// variance of the pixel:
-/// - The variance is read from the channels diffuse.variance or variance, and divided among the layers by their light.
+/// Half 0 of a layer is LAYER + LAYER.noise, half 1 is LAYER - LAYER.noise. The noise of the two halves is uncorrelated
+/// (formats/frames/frames.md). If no layer of matte light has channels of noise, the filter makes up noise n of random
+/// sign for these layers. The square of n is an estimate of the pixel's variance:
+/// - With the channels diffuse.variance or variance, n is the standard deviation of the sum of the layers. Each layer
+///   gets the share of n that it has in the light.
 /// - Without these channels, but with albedo, the variance is half the mean squared difference to the four neighbours
 ///   on the surface.
-/// - Without albedo there is no noise, and the filter only replaces values that are not finite.
-/// Values plus and minus random noise of this variance are uncorrelated, too [Oliveira, Lei, Tibshirani: Unbiased risk
-/// estimation in the normal means problem via coupled bootstrap techniques, 2021].
+/// - Without all of these channels n is 0, and the filter only replaces values that are not finite.
+/// The halves light + n and light - n are uncorrelated, too, if n has this variance [Oliveira, Lei, Tibshirani:
+/// Unbiased risk estimation in the normal means problem via coupled bootstrap techniques, 2021].
 class FrameLight {
  public:
   /// Group 0 is matte light, which is filtered by the surfaces that the pixel sees. Group 1 is emission and specular

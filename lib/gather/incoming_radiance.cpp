@@ -313,10 +313,10 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   return light;
 }
 
-/// Irradiance [W/m^2] at a hit from which the ray continues, without the light along that ray, which `to.further`
-/// receives. Caustic light is that of the point that represents the hit. Direct light is also that of the point if the
-/// hit is farther away than about a spacing, the distance over which the point's direct light is accurate; otherwise it
-/// is a light sample. If no point represents the hit, the ray that continues finds all light except direct light.
+/// Irradiance [W/m^2] at a hit from which the ray continues. The light along the continued ray is not included; the ray
+/// is added to `to.further`. Caustic light is read from the point that represents the hit. Direct light is read from
+/// the point, too, if it is uniform around the point and the hit is at least about a spacing away; otherwise a light
+/// sample estimates it. If no point represents the hit, the continued ray finds all light except direct light.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                                 const PathRandom& random, int depth, const Gathered& to) const {
   ++(point ? to.counts.near_hits : to.counts.unanswered);

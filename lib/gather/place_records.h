@@ -62,16 +62,17 @@ struct RecordPicture {
   const RecordSource* source = nullptr;       ///< makes the records; null: FinalGather::gather makes them
 };
 
-/// Adds records until the point of every pixel is covered. Tests the points at the pixel centres of lattices with a
-/// stride of 16, 8, 4, 2 and 1 pixels, each in a fixed shuffled order and in batches of fixed size. A batch is tested
-/// and gathered in parallel, and its records are added in order. Then tests four more points in each pixel at an edge
-/// or behind glass, so that a frame's samples find records there, too. Same records for any number of threads. Returns
-/// the number of added records.
+/// Adds records until every pixel's place is covered: the weights of the records there add up to at least
+/// options.min_weight. Tests the places that pixel centres see, on lattices with a stride of 16, 8, 4, 2 and 1 pixels.
+/// The places of a lattice are tested in a fixed shuffled order and in batches of fixed size. The places of a batch are
+/// tested and gathered in parallel, and their records are added in order. Then tests four more places in each pixel at
+/// an edge or behind glass, so that a frame's samples find records there, too. Same records for any number of threads.
+/// Returns the number of added records.
 ///
-/// Every fourth record of the coarsest lattice is gathered twice, with independent random numbers. Half of the squared
-/// difference of the two is the variance of one. The `noise` of all added records is multiplied by the square root of
-/// (that variance / mean square of `noise`), both summed in `counts` over all calls. Records of a `source` are gathered
-/// once.
+/// One in four records of the coarsest lattice is gathered twice, with independent random numbers. Half of the squared
+/// difference between both results estimates the true variance of one result. The `noise` of all added records is
+/// multiplied by the square root of (true variance / mean square of `noise`). Both values are weighted as errors are
+/// seen (compare()) and summed in `counts` over all calls. Records of a `source` are gathered once.
 std::size_t place_records(const FinalGather& gather, const RecordPicture& picture, const PlacementOptions& options,
                           RecordStore& store, GatherCounts& counts);
 

@@ -25,7 +25,9 @@ struct LightBounds {
   float cos_spread = 1;    ///< cosine of the largest angle between any light's normal and the axis
   float cos_reach = 0;     ///< cosine of the largest angle from its normal at which a light shines (at most pi/2)
   bool two_sided = false;  ///< true if any of the lights shines backwards, too
-  Box3 backs_within;       ///< holds all points that see the backs of lights in closed_parts(); empty: no such lights
+  /// Box around the closed parts (closed_parts()) to which two-sided lights belong. Only points in the box can see the
+  /// backs of these lights. Empty: no such lights.
+  Box3 backs_within;
 
   /// Adds the weight of a light with this normal (unit) to weight and means.
   void add_weight(Vec3 normal, double more);

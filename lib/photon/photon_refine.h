@@ -42,9 +42,10 @@ struct GroupMoments {
 GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer);
 
 /// Writes the map at `path` with `extra` further paths. A photon of group g then has the flux Phi / (N_g n_g). Phi is
-/// the flux of its light path if it were the only path, N_g the number of groups, and n_g the number of paths of the
-/// group. Existing photons are scaled by n_g before / n_g after. New paths continue the group's Halton sequence. Each
-/// group has 1 / N_g of the flux, so a group with many paths is not brighter. `header` is the header of the new map.
+/// the flux that the photon would have if its light path were the only path of the map, N_g is the number of groups,
+/// and n_g the number of paths in group g. If a group gets further paths, the flux of its existing photons is
+/// multiplied by (old n_g) / (new n_g). New paths continue the group's Halton sequence. All groups bring the same
+/// expected flux, so a group with many paths is not brighter. `header`: of the new map.
 PhotonMapResult write_refined_map(const PhotonTracer& tracer, formats::PhotonHeader header, const std::string& path,
                                   const GroupMoments& groups, std::uint64_t extra,
                                   const std::function<void(const void*, std::size_t)>& sink);

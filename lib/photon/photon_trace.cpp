@@ -473,8 +473,9 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   const bool aims =
       !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
   float aimed = 1;
-  bool both =
-      false;  // true if events by both normals are possible: one is chosen with probability 1/2 and counts twice
+  // True if the photon can be scattered by the shading normal and by the geometric normal. Each normal is then chosen
+  // with probability 1/2, and the photon gets the weight 2.
+  bool both = false;
   if (bsdf.has_specular() && at.bent()) {
     next = at.scatter_by_geometric_normal(bsdf, u_lobe, draw.u, travel);
     both = !is_black(next.weight);

@@ -63,7 +63,7 @@ struct GraphBuilder {
   /// Adds a file of state/ unless it is there already; returns its name. `concern` is its extension, `first` the first
   /// frame of its segment.
   std::string add_state(const char* concern, int first, const std::string& content);
-  /// The name that `make` returns. `make` is called once for each key.
+  /// Returns the name that `make` returns for this key. Calls `make` only the first time that a key is asked for.
   std::string once(const std::string& key, const std::function<std::string()>& make);
 };
 

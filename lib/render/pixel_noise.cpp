@@ -89,13 +89,15 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   state.onward_rays = float(double(onward_rays) / first_.onward);
 }
 
-/// Variance of one sample of the part own, whose light has edges: the mean variance within the neighbours, plus a share
-/// of the variance between neighbours that their samples do not explain. If each neighbour's samples agree but the
-/// neighbours differ, an edge may run through this pixel alone, such as the rim of a lamp that reaches into one row of
-/// pixels. The pixel's first samples may then miss the bright part or overestimate it. The
-/// variance is at most that of white, because the rim of a lamp is seen in white: if a lamp covers a share of a pixel,
-/// and all shares are equally likely, N samples all miss the lamp with the probability 1 / (N + 1), and the picture is
-/// then wrong by white at most.
+/// Variance of one sample of the part own, from the neighbours of the pixel.
+/// - Layer specular contributes its mean variance within the neighbours.
+/// - The light of the other layers has edges. It contributes kSharp of a sum: the mean variance within the neighbours,
+///   plus the share kBetween (with one sample per pixel: all) of the variance between the neighbours that their samples
+///   do not explain. If each neighbour's samples agree but the neighbours differ, an edge may run through this pixel
+///   alone, such as the rim of a lamp that reaches into one row of pixels. The pixel's first samples may then miss the
+///   bright part or overestimate it. The contribution is at most the square of white, because a lamp is shown as white.
+///   If the lamp covers a share of a pixel, and all shares are equally likely, N samples all miss the lamp with the
+///   probability 1 / (N + 1), and the picture is then wrong by white at most.
 double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {

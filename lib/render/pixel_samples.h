@@ -52,8 +52,8 @@ struct PixelSum {
   }
 };
 
-/// Changes `mean`, the mean over `first` samples, to the mean over these and `count` further samples. sum: over the
-/// further samples.
+/// Changes `mean`, the mean over `first` samples, to the mean over these samples and `count` further samples. `sum`:
+/// the sum of the further samples.
 inline void join(const LayersT<double>& sum, int first, int count, Layers& mean) {
   if (count == 0) return;
   const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);

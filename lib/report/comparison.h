@@ -63,7 +63,7 @@ class ComparisonBuilder {
   FlickerMeter flicker_;
 };
 
-/// The document of comparison.md. Equal comparisons give the same text.
+/// The comparison as JSON text (formats/comparison/comparison.md). Equal comparisons give the same text.
 std::string comparison_json(const Comparison& comparison);
 
 /// A table with one line per frame, then the total, flicker, the worst objects, and notes on the figures.

@@ -32,8 +32,9 @@ std::vector<SceneReport> scene_reports(const ReportInput& input);
 
 enum class PlotFormat { svg, png };
 
-/// A gnuplot script that draws error against time to its standard output, log-log: the points, the fitted curve
-/// sqrt(a/t + b), slope and floor in the key, and the given points. "" if there is no point.
+/// A gnuplot script that draws error against time, with logarithmic axes, and writes the picture to standard output. It
+/// draws the points of each curve, the fitted function sqrt(a/t + b) if it has a floor b, and the given points. The
+/// legend gives each curve's slope and floor. Empty text if there is nothing to draw.
 std::string plot_script(const SceneReport& report, PlotFormat format);
 
 }  // namespace tempolux

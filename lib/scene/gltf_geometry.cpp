@@ -132,8 +132,8 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   return uvs;
 }
 
-/// Reads vertex colours (glTF 2.0, 3.7.2.1: RGB or RGBA, linear) and notes in the material that it has some. Colours
-/// that are all white are dropped.
+/// Reads the vertex colours of a primitive (glTF 2.0, 3.7.2.1: RGB or RGBA, linear) and marks the material as one with
+/// vertex colours. If all colours are white, the primitive gets none, and the material is not marked.
 void read_colors(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("COLOR_0");
   if (found == source.attributes.end()) return;

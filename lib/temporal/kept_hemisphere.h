@@ -66,7 +66,7 @@ formats::RadsamplesFile head_of(const KeptHemispheres& kept);
 /// minus the frame's.
 void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift,
                   KeptHemispheres& kept);
-/// Takes the points' light and the hash of the high part from a file that has been read.
+/// Copies the points' light and the hash of the high part from a file that has been read to `kept`.
 void take_head(const formats::RadsamplesFile& head, KeptHemispheres& kept);
 
 }  // namespace tempolux

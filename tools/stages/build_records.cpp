@@ -38,8 +38,8 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
                      ": one cache cannot hold for both; make one for each");
 }
 
-/// The cameras for which records are placed. `at` returns the scene at a frame, or its static scene; `first` is its
-/// result for the first frame.
+/// The cameras for which records are placed. `at` returns the scene at a frame, or the static scene of the frame.
+/// `first`: the result of `at` for the first frame.
 RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
                          const SceneFrame& first, std::function<SceneFrame(int)> at) {
   RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {},
