@@ -316,7 +316,8 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
 /// Irradiance [W/m^2] at a hit from which the ray continues. The light along the continued ray is not included; the ray
 /// is added to `to.further`. Caustic light is read from the point that represents the hit. Direct light is read from
 /// the point, too, if it is uniform around the point and the hit is at least about a spacing away; otherwise a light
-/// sample estimates it. If no point represents the hit, the continued ray finds all light except direct light.
+/// sample estimates it. If there are bright points, one explicit sample is added. If no point represents the hit, the
+/// continued ray finds all light except direct light.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                                 const PathRandom& random, int depth, const Gathered& to) const {
   ++(point ? to.counts.near_hits : to.counts.unanswered);

@@ -66,7 +66,7 @@ formats::RadsamplesFile head_of(const KeptHemispheres& kept);
 /// minus the frame's.
 void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift,
                   KeptHemispheres& kept);
-/// Copies the points' light and the hash of the high part from a file that has been read to `kept`.
+/// Sets the points' light and the hash of the high part in `kept` to those of `head`.
 void take_head(const formats::RadsamplesFile& head, KeptHemispheres& kept);
 
 }  // namespace tempolux
