@@ -149,6 +149,23 @@ TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
   EXPECT_NEAR(Lights(frames[1], table).total_flux().r, 8 * M_PI, 1e-4);
 }
 
+// BLEND whose alpha is 1 in the first frame and falls to .3: no texture and no alpha makes the first frame's emission
+// vary, but the second frame's lamp lets only .3 of its emission be met, so samples and photons must not bring more.
+TEST(EmissiveTexture, AlphaThatFallsDimsTheLamp) {
+  HandMadeScene whole, faded;
+  for (HandMadeScene* scene : {&whole, &faded}) {
+    Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
+    lamp.double_sided = false;
+    lamp.alpha_mode = Material::Alpha::blend;
+    lamp.alpha = scene == &whole ? 1.0f : 0.3f;
+    scene->add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
+  }
+  const std::vector<SceneFrame> frames{whole.frame(), faded.frame()};
+  const EmissionTable table = build_emission_table(frames);
+  EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 8 * M_PI, 1e-4);
+  EXPECT_NEAR(Lights(frames[1], table).total_flux().r, 0.3 * 8 * M_PI, 1e-4);
+}
+
 /// kLamp with a texture of 32 x 32 texels, black but for three: white, grey (half), and white.
 HandMadeScene lamp_of_texels(const std::array<float, 6>& transform = {1, 0, 0, 0, 1, 0},
                              const std::vector<Vec2>& uvs = kLampUvs) {
