@@ -88,7 +88,7 @@ PunctualLight Animator::light(std::size_t index, double time_s) const {
       case Path::inner_cone: inner = v[0]; break;
       default: outer = v[0]; break;
     }
-    outer = std::clamp(outer, 1e-4, std::numbers::pi / 2);
+    outer = std::clamp(outer, kNarrowestSpot, kWidestSpot);
     light.outer_cone_rad = float(outer);
     light.inner_cone_rad = float(std::clamp(inner, 0.0, outer * kSharpestSpot));
   }

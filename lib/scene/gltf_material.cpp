@@ -15,8 +15,6 @@ using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
 
-constexpr double kNarrowestCone = 1e-12;  ///< rad; replaces an outer angle of 0 or less
-
 constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
 
 /// Clamps a number to [lower, upper], with a warning if it was outside; fails if it is not finite.
@@ -141,10 +139,9 @@ PunctualLight read_light(Import& import, std::size_t index) {
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
   if (light.kind == PunctualLight::Kind::spot) {
     // An animated angle is brought into the same range (animate_properties.cpp).
-    const double widest = std::numbers::pi / 2 + 1e-6,
-                 outer = std::clamp(source.spot.outerConeAngle, kNarrowestCone, widest);
+    const double outer = std::clamp(source.spot.outerConeAngle, kNarrowestSpot, kWidestSpot);
     light.outer_cone_rad =
-        limited(import, source.spot.outerConeAngle, kNarrowestCone, widest, place + ".spot.outerConeAngle");
+        limited(import, source.spot.outerConeAngle, kNarrowestSpot, kWidestSpot, place + ".spot.outerConeAngle");
     light.inner_cone_rad =
         std::min(limited(import, source.spot.innerConeAngle, 0, outer, place + ".spot.innerConeAngle"),
                  float(outer * kSharpestSpot));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -143,6 +144,8 @@ struct Camera {
 /// Largest inner cone of a spot, as a share of the outer cone. Blender writes inner = outer for a spot without a soft
 /// edge, which glTF forbids.
 inline constexpr double kSharpestSpot = 0.9999;
+/// Bounds of the outer cone's angle, rad. The lower one replaces an angle of 0 or less.
+inline constexpr double kNarrowestSpot = 1e-12, kWidestSpot = std::numbers::pi / 2 + 1e-6;
 
 /// A light of KHR_lights_punctual. It shines along the node's -Z; the node's scale has no effect. Light sampling,
 /// emission of photons and flux use the same falloff (SpotProfile in lib/light/punctual.h). A member that changes the
