@@ -80,7 +80,7 @@ Image mesh_picture(const std::string& path, const std::string& layer) {
                      ": holds light of one frame; gather-temporal density writes windows");
   const View view;
   const double infinity = std::numeric_limits<double>::infinity();
-  Vec3d lower(infinity), upper(-infinity);
+  Vec3d lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity};
   for (const MeshElement& e : file.elements)
     if (e.photons > 0) {
       const Vec3d p = view.of(Vec3d(vec_of(e.position)));
