@@ -22,8 +22,8 @@ inline constexpr std::size_t kTextureTransfers = 3;
 using Rgba = std::array<float, 4>;
 
 /// Level 0 is the image. Every further level is half as wide and high (rounded down, at least 1) and is made by
-/// reduce_texels(). Texels are stored as codes of the image's kind: sRGB or linear, 8 or 16 bits; alpha is linear. The
-/// coordinates (0, 0) are the top left corner, (1, 1) the lower right.
+/// reduce_texels(). Texels are stored as codes of the image's kind: sRGB or linear, 8 or 16 bits; alpha is linear.
+/// Texture coordinates are (0, 0) at the top left corner and (1, 1) at the bottom right corner.
 class TexturePyramid {
  public:
   TexturePyramid(CodedPixels pixels, TextureTransfer transfer);

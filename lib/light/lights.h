@@ -92,7 +92,8 @@ struct PhotonEmission {
 /// All lights of one frame: draws light samples and photons.
 class Lights {
  public:
-  /// Which lights shine: all; triangles, point and spot lights; directional lights and environment; punctual lights.
+  /// The lights that shine. all: every light. placed: triangles, point lights and spot lights. distant: directional
+  /// lights and the environment. punctual: point, spot and directional lights.
   enum class Which : std::uint8_t { all, placed, distant, punctual };
   /// Lights that do not shine keep their slots, with probability 0. At least one slot must shine if photons are
   /// emitted.

@@ -102,7 +102,7 @@ struct PhotonBatch : FluxBalance, PhotonCounts {
 /// In media (SceneFrame::media) free paths are sampled by tentative collisions against the media's majorants. The
 /// majorants are raised until a mean crossing of their box has at least ten tentative collisions. Random numbers are
 /// keyed by (seed, i, bounce, step). At each tentative collision, whether real or not, a photon of kind tentative is
-/// recorded with the probability volume_share. The photon stores
+/// recorded with the probability volume_share. In place of a flux [W] its record holds
 ///     flux / (majorant x volume_share)     [W m].
 /// The sum over a region is the integral of fluence over the region, whatever the density of the medium. A real
 /// collision scatters the albedo's share of the flux by the phase function, with Russian roulette as at surfaces.

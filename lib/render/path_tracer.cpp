@@ -105,7 +105,8 @@ class EyeTracer {
   bool leave(const Vertex& at, PathState& state) const;
   bool step(PathState& state) const;
   void go_onward(const Vertex& at, float u_lobe, float times, const PathState& state) const;
-  /// Adds rays to a counter, and their cost to counts_.onward if they belong to this part.
+  /// Adds `rays` to the counter `as`. If the path belongs to the part onward, also adds the rays' cost to
+  /// counts_.onward.
   void count(std::uint64_t rays, std::uint64_t& as, const PathState& state) const {
     as += rays;
     if (state.result == &parts_.onward)

@@ -76,14 +76,14 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   const auto both = [&](LayersT<double> PixelSum::*part) {
     return radiance_of(first.*part) + radiance_of(second.*part);
   };
-  const double mirrored = PixelSum::mirrored(first.own) + PixelSum::mirrored(second.own);
-  const double seen = both(&PixelSum::own) - mirrored, onward = both(&PixelSum::onward);
+  const double specular = PixelSum::specular(first.own) + PixelSum::specular(second.own);
+  const double seen = both(&PixelSum::own) - specular, onward = both(&PixelSum::onward);
   Pixel& state = pixels_[pixel];
   state.mean = (both(&PixelSum::own) + both(&PixelSum::lit)) / n + onward / first_.onward;
   state.lit_difference = radiance_of(first.lit) / a - (b > 0 ? radiance_of(second.lit) / b : 0);
   state.seen = seen / n;
   state.seen_variance = sample_variance(n, seen, first.seen_square + second.seen_square);
-  state.mirrored_variance = sample_variance(n, mirrored, first.mirrored_square + second.mirrored_square);
+  state.specular_variance = sample_variance(n, specular, first.specular_square + second.specular_square);
   state.onward = onward / first_.onward;
   state.onward_variance = sample_variance(first_.onward, onward, first.onward_square + second.onward_square);
   state.onward_rays = float(double(onward_rays) / first_.onward);
@@ -99,12 +99,12 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
 ///   If the lamp covers a share of a pixel, and all shares are equally likely, N samples all miss the lamp with the
 ///   probability 1 / (N + 1), and the picture is then wrong by white at most.
 double PixelNoise::own_variance(int x, int y) const {
-  double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
+  double within = 0, n = 0, sum = 0, square = 0, specular = 0;
   for_each_around(view_.width(), view_.height(), x, y, kNearSharp, [&](std::size_t at, int, int) {
     const Pixel& pixel = pixels_[at];
     ++n;
     within += pixel.seen_variance;
-    mirrored += pixel.mirrored_variance;
+    specular += pixel.specular_variance;
     sum += pixel.seen;
     square += pixel.seen * pixel.seen;
   });
@@ -112,7 +112,7 @@ double PixelNoise::own_variance(int x, int y) const {
   within /= n;
   const double between = sample_variance(n, sum, square) - within / options_.samples;
   const double sharp = kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between));
-  return std::min(sharp, white_ * white_) + mirrored / n;
+  return std::min(sharp, white_ * white_) + specular / n;
 }
 
 /// Sums over the pixels around a pixel.

@@ -52,7 +52,7 @@ class PixelNoise {
     double mean = 0;                         ///< radiance, mean of the channels; a float could not hold its square
     double lit_difference = 0;               ///< of the part lit: mean of the first half minus mean of the second half
     double seen = 0, seen_variance = 0;      ///< mean and variance of one sample of the part own without layer specular
-    double mirrored_variance = 0;            ///< variance of one sample of the part own in layer specular
+    double specular_variance = 0;            ///< variance of one sample of the part own in layer specular
     double onward = 0, onward_variance = 0;  ///< mean and variance of one sample of the part onward
     float onward_rays = 0;                   ///< cost of one sample of the part onward, in shadow rays
   };

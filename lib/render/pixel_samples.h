@@ -21,8 +21,8 @@ struct PartCounts {
 struct PixelSum {
   LayersT<double> own, lit, onward;
   StoredNoiseT<double> stored_noise;
-  /// Sums over samples of the squares of seen(own), mirrored(own) and radiance_of(onward).
-  double seen_square = 0, mirrored_square = 0, onward_square = 0;
+  /// Sums over samples of the squares of seen(own), specular(own) and radiance_of(onward).
+  double seen_square = 0, specular_square = 0, onward_square = 0;
   void add(const PathParts& sample) {
     own += sample.own;
     lit += sample.lit;
@@ -30,7 +30,7 @@ struct PixelSum {
     stored_noise += sample.stored_noise;
     const auto square = [](double v) { return v * v; };
     seen_square += square(seen(sample.own));
-    mirrored_square += square(mirrored(sample.own));
+    specular_square += square(specular(sample.own));
     onward_square += square(radiance_of(sample.onward));
   }
   /// The sum of the parts and the noise; the squares are not added.
@@ -42,13 +42,13 @@ struct PixelSum {
   }
   /// Mean channel of layer specular.
   template <class T>
-  static double mirrored(const LayersT<T>& layers) {
+  static double specular(const LayersT<T>& layers) {
     return channel_mean(Rgbd(layers[Layer::specular]));
   }
   /// Mean channel of the other layers.
   template <class T>
   static double seen(const LayersT<T>& layers) {
-    return radiance_of(layers) - mirrored(layers);
+    return radiance_of(layers) - specular(layers);
   }
 };
 

@@ -45,9 +45,9 @@ void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, in
 /// median distance of visible places. Cells with less than 1/512 of the weight get no sphere; uniform photons light
 /// them. The weight of a sphere is the weight of its cell over that of all places, rounded to a power of two.
 ///
-/// Returns no sphere if aiming gains less than a factor of 2. The gain is the density of photons aimed at the spheres
-/// (Aim) over the density of uniform photons on the disc of radius `scene_radius` [m], as the geometric mean over
-/// places. Reasons: docs/methods/aim.md.
+/// Returns no sphere if aim makes photons less than twice as dense. At each place this compares the density of photons
+/// aimed at the place's sphere (Aim) with the density of photons that are uniform on the scene's disc, whose radius is
+/// `scene_radius` [m]. The geometric mean of the ratio over all places decides. Reasons: docs/methods/aim.md.
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius);
 
 /// The spheres in scene space. `origin`: world-space position of the scene space's origin [m].

@@ -16,8 +16,9 @@
 namespace tempolux {
 
 struct TemporalOptions {
-  /// Share of the cells that a frame traces again, in all records whose light changed. Cells that the change concerns
-  /// come first; cells drawn by age fill up the share, and are at least a quarter of it.
+  /// Share of the cells of a record that a frame traces again if the record's light changed. Cells with a reason (their
+  /// ray or their point's light changed) are traced first. Cells drawn by age make up the rest of the share, at least a
+  /// quarter of the share.
   float refresh = 0.05f;
 };
 

@@ -63,7 +63,7 @@ std::string positional_words(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_positional() || option->get_group().empty()) continue;
     const std::string type = option->get_type_name();
-    const bool named = type.find(' ') != std::string::npos;  // a placeholder is shown instead of a type
+    const bool named = type.find(' ') != std::string::npos;  // words that the tool itself has set, no type of CLI11
     const std::string word = named ? type : option->get_single_name() + (option->get_expected_max() > 1 ? "..." : "");
     words += option->get_required() ? " " + word : " [" + word + "]";
   }

@@ -13,7 +13,7 @@ CLI::Validator number_between(double least, double most = std::numeric_limits<do
 /// A finite number greater than this.
 CLI::Validator number_above(double limit);
 
-/// The placeholder of an option's value: "N", "FILE...", "{raw,spec}".
+/// The word that help texts show for an option's value: "N", "FILE...", "{raw,spec}".
 std::string value_name(const CLI::Option& option);
 /// "1 to 512" if it has limits, else "".
 std::string limits_of(const CLI::Option& option);

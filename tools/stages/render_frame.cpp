@@ -59,8 +59,17 @@ struct Shot {
   const FrameOptions& options;
   const RenderedFrame& rendered;
 
+  mutable std::optional<double> hidden = {};  ///< the result of hidden_light(), once it is known
+
   /// These lights, with distant light aimed at what the camera sees.
   Lights aimed(Lights::Which which) const { return aimed_lights(scene.tracer, emission, view, which); }
+  /// Share of the picture that point, spot and sun lights bring by way of mirrors and smooth glass (hidden_share()).
+  /// Photons measure the share at the first call.
+  double hidden_light() const {
+    if (!hidden)
+      hidden = hidden_share(scene, aimed(Lights::Which::punctual), view, mean_to_white(rendered.mean.pixels, {}));
+    return *hidden;
+  }
 };
 
 /// Warns if the frame lacks light of point, spot and sun lights that mirrors or smooth glass send on: no camera path
@@ -74,22 +83,14 @@ void warn_of_missing_light(Tool& tool, const Shot& shot) {
       std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
   std::string share;
   if (known) {
-    const double missing = hidden_share(shot.scene, shot.aimed(Lights::Which::punctual), shot.view,
-                                        mean_to_white(shot.rendered.mean.pixels, {}));
-    if (!(missing > 0)) return;
-    share = formatted(" (%.2g %% of the picture)", 100 * missing);
+    if (!(shot.hidden_light() > 0)) return;
+    share = formatted(" (%.2g %% of the picture)", 100 * shot.hidden_light());
   }
   const std::string &material = frame.materials[first_smooth_material(frame)].name, &light = shines->light.name;
   tool.warn(frame.scene->path + ": materials" + (material.empty() ? "" : " \"" + material + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing" + share +
             (light.empty() ? "" : ", as that of light \"" + light + "\"") +
             ": no path finds it; photons do (--photons; make: INDIRECT=gather or records)");
-}
-
-/// True if panes reflect more light of suns than an audit tolerates.
-bool panes_hide_light(const Shot& shot) {
-  return may_hide_light(shot.scene.frame()) && hidden_share(shot.scene, shot.aimed(Lights::Which::punctual), shot.view,
-                                                            mean_to_white(shot.rendered.mean.pixels, {})) > 0;
 }
 
 /// Measures the bias of the frame's layers, with photons or camera paths of its own:
@@ -106,7 +107,8 @@ std::vector<AuditEntry> audit(Tool& tool, const RenderOptions& options, const Sh
   const CameraView& view = shot.view;
   const EnvironmentLight* const environment = shot.emission.environment.get();
   const bool suns = scene.lights.has_suns() || (environment && environment->has_sun()),
-             hidden = suns && (first_smooth_material(scene.frame(), false) != kNone || panes_hide_light(shot)),
+             hidden = suns && (first_smooth_material(scene.frame(), false) != kNone ||
+                               (may_hide_light(scene.frame()) && shot.hidden_light() > 0)),
              paths = scene.lights.has_distant() && !hidden, photons = hidden || scene.lights.has_placed(),
              specular = photons && !options.traces_paths() && !scene.frame().media;
   unbiased = paths && !photons && options.traces_paths();

@@ -130,18 +130,22 @@ TEST(EmissiveTexture, MeansOverATriangleOfAnySize) {
     for (const float mean : lamp(texels, 0, 1)) EXPECT_NEAR(mean, 0.5, 1.0 / 16) << texels;
 }
 
+/// kLamp, one-sided, of radiance 2 and with this alpha; MASK cuts at .5.
+HandMadeScene lamp_of_alpha(Material::Alpha mode, float alpha) {
+  HandMadeScene scene;
+  Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
+  lamp.double_sided = false;
+  lamp.alpha_mode = mode;
+  lamp.alpha_cutoff = 0.5f;
+  lamp.alpha = alpha;
+  scene.add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
+  return scene;
+}
+
 // MASK with an animated alpha: in the first frame the lamp is invisible, in the second it is complete. Values that the
 // table keeps from the first frame must not dim the second.
 TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
-  HandMadeScene hidden, shown;
-  for (HandMadeScene* scene : {&hidden, &shown}) {
-    Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
-    lamp.double_sided = false;
-    lamp.alpha_mode = Material::Alpha::mask;
-    lamp.alpha_cutoff = 0.5f;
-    lamp.alpha = scene == &hidden ? 0.4f : 0.6f;
-    scene->add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
-  }
+  HandMadeScene hidden = lamp_of_alpha(Material::Alpha::mask, 0.4f), shown = lamp_of_alpha(Material::Alpha::mask, 0.6f);
   const std::vector<SceneFrame> frames{hidden.frame(), shown.frame()};
   const EmissionTable table = build_emission_table(frames);
   EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 0.01 * 8 * M_PI,
@@ -152,14 +156,7 @@ TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
 // BLEND whose alpha is 1 in the first frame and falls to .3: no texture and no alpha makes the first frame's emission
 // vary, but the second frame's lamp lets only .3 of its emission be met, so samples and photons must not bring more.
 TEST(EmissiveTexture, AlphaThatFallsDimsTheLamp) {
-  HandMadeScene whole, faded;
-  for (HandMadeScene* scene : {&whole, &faded}) {
-    Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
-    lamp.double_sided = false;
-    lamp.alpha_mode = Material::Alpha::blend;
-    lamp.alpha = scene == &whole ? 1.0f : 0.3f;
-    scene->add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
-  }
+  HandMadeScene whole = lamp_of_alpha(Material::Alpha::blend, 1), faded = lamp_of_alpha(Material::Alpha::blend, 0.3f);
   const std::vector<SceneFrame> frames{whole.frame(), faded.frame()};
   const EmissionTable table = build_emission_table(frames);
   EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 8 * M_PI, 1e-4);
