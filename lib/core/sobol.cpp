@@ -12,6 +12,15 @@ std::uint32_t reverse_bits(std::uint32_t x) {
   return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
 }
 
+/// Both halves of x, each with its bits reversed.
+std::uint64_t reverse_halves(std::uint64_t x) {
+  x = (x & 0x5555555555555555u) << 1 | (x >> 1 & 0x5555555555555555u);
+  x = (x & 0x3333333333333333u) << 2 | (x >> 2 & 0x3333333333333333u);
+  x = (x & 0x0f0f0f0f0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0f0f0f0f0fu);
+  x = __builtin_bswap64(x);
+  return x << 32 | x >> 32;
+}
+
 /// Laine-Karras style hash on reversed bits: each bit depends on itself and lower bits only. Constants: Vegdahl, "Owen
 /// scrambling based hash functions", 2021.
 std::uint32_t permute_low_to_high(std::uint32_t x, std::uint32_t seed) {
@@ -40,22 +49,22 @@ std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
   return reverse_bits(permute_low_to_high(reverse_bits(index), seed));
 }
 
-/// Owen scrambling of a coordinate that is given with reversed bits; in [0, 1).
-float scrambled(std::uint32_t reversed, std::uint32_t seed) {
-  return unit_float(reverse_bits(permute_low_to_high(reversed, seed)));
-}
 
 }  // namespace
 
+// Owen scrambling permutes reversed bits, then reverses them: of both coordinates at once.
 Vec2 sobol_owen_2d(std::uint32_t index, std::uint64_t key) {
   const std::uint64_t a = mix64(key), b = mix64(key ^ 0x5851f42d4c957f2dull);
   const std::uint32_t x = shuffled(index, std::uint32_t(a));
-  return {scrambled(x, std::uint32_t(a >> 32)), scrambled(reversed_second(x), std::uint32_t(b))};
+  const std::uint64_t both = reverse_halves(std::uint64_t(permute_low_to_high(x, std::uint32_t(a >> 32))) << 32 |
+                                            permute_low_to_high(reversed_second(x), std::uint32_t(b)));
+  return {unit_float(std::uint32_t(both >> 32)), unit_float(std::uint32_t(both))};
 }
 
 float sobol_owen_1d(std::uint32_t index, std::uint64_t key) {
   const std::uint64_t a = mix64(key);
-  return scrambled(shuffled(index, std::uint32_t(a)), std::uint32_t(a >> 32));
+  const std::uint32_t x = shuffled(index, std::uint32_t(a));
+  return unit_float(reverse_bits(permute_low_to_high(x, std::uint32_t(a >> 32))));
 }
 
 }  // namespace tempolux

@@ -1,6 +1,7 @@
 // lib/trace/surface_points.cpp -- computes surface points from hits, and rays that leave them.
 #include <cmath>
 
+#include "lib/core/lanes.h"
 #include "lib/trace/trees.h"
 
 namespace tempolux {
@@ -17,36 +18,42 @@ constexpr float kSmallestBarycentric = 0x1p-18f;
   const auto& corner = surface.triangles[hit.triangle];
   SurfaceArrays::Own own;
   const SurfaceArrays::Corners at = surface.corner_positions(corner, own);
-  const Vec3 a = *at.a, b = *at.b, c = *at.c;
+  const __m128 a = lanes::load(*at.a), b = lanes::load(*at.b), c = lanes::load(*at.c);
   float u = std::max(hit.u, kSmallestBarycentric), v = std::max(hit.v, kSmallestBarycentric);
   float w = std::max(1 - hit.u - hit.v, kSmallestBarycentric);
   const float scale = 1 / (u + v + w);
   u *= scale;
   v *= scale;
   w *= scale;
+  const auto mix = [&](__m128 at_a, __m128 at_b, __m128 at_c) {
+    return at_a * _mm_set1_ps(w) + at_b * _mm_set1_ps(u) + at_c * _mm_set1_ps(v);
+  };
 
-  // Both normals stay in registers until `point` is filled: copying a vector that was just stored stalls.
-  Vec3 normal_geometric = normalize(cross(b - a, c - a));
-  if (surface.flipped) normal_geometric = -normal_geometric;
-  Vec3 normal = normal_geometric;
+  const __m128 sign = _mm_set1_ps(-0.0f);
+  __m128 normal_geometric = lanes::normalize(lanes::cross(b - a, c - a));
+  if (surface.flipped) normal_geometric = _mm_xor_ps(normal_geometric, sign);
+  __m128 normal = normal_geometric;
   if (surface.smooth) {
     const SurfaceArrays::Corners normals = surface.corner_normals(corner, own);
-    const Vec3 n = normalize(*normals.a * w + *normals.b * u + *normals.c * v);
-    if (length2(n) > 0) {
-      const bool behind = dot(n, normal_geometric) < 0;
-      normal = {behind ? -n.x : n.x, behind ? -n.y : n.y, behind ? -n.z : n.z};
+    const __m128 n =
+        lanes::normalize(mix(lanes::load(*normals.a), lanes::load(*normals.b), lanes::load(*normals.c)));
+    if (_mm_cvtss_f32(lanes::dot(n, n)) > 0) {
+      const __m128 behind = _mm_cmp_ps(lanes::dot(n, normal_geometric), _mm_setzero_ps(), _CMP_LT_OQ);
+      normal = _mm_xor_ps(n, _mm_and_ps(behind, sign));
     }
   }
 
   SurfacePoint point;
-  point.position = a * w + b * u + c * v;
-  point.normal_geometric = normal_geometric;
-  point.normal = normal;
+  point.position = lanes::to_vec(mix(a, b, c));
+  point.normal_geometric = lanes::to_vec(normal_geometric);
+  point.normal = lanes::to_vec(normal);
   if (const Vec2* uv = surface.uvs)
     point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * u + uv[corner[2]].x * v,
                 uv[corner[0]].y * w + uv[corner[1]].y * u + uv[corner[2]].y * v};
-  point.offset =
-      surface.instance ? surface.instance_offset : kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
+  point.offset = surface.instance ? surface.instance_offset
+                                  : kOffsetScale * max_component(lanes::to_vec(_mm_max_ps(
+                                                       _mm_max_ps(_mm_andnot_ps(sign, a), _mm_andnot_ps(sign, b)),
+                                                       _mm_andnot_ps(sign, c))));
   point.surface = hit.surface;
   point.triangle = hit.triangle;
   point.object = surface.object;

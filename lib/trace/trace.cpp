@@ -3,9 +3,11 @@
 #include "lib/trace/trace.h"
 
 #include <embree3/rtcore.h>
+#include <immintrin.h>
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 #include "formats/error.h"
@@ -15,144 +17,152 @@
 #include "lib/image/texture_images.h"
 #include "lib/scene/texture_lookup.h"
 #include "lib/trace/trees.h"
+#include "lib/trace/triangle_hit.h"
 
 namespace tempolux {
 namespace {
 
-constexpr unsigned kAllBlend = 1;  ///< RTCRay::id of a ray with all_blend
-
 /// kOffsetScale of instances: the share of the sum in instance_offset().
 constexpr float kInstanceOffsetScale = 2 * kOffsetScale;
 
+/// Embree multiplies by an estimate of 1 / den whose last bits differ between makers of processors, so Embree's distance
+/// must not decide. Hits behind the nearest one are looked at as far as this share of the distance. Embree's distance
+/// errs by about 4 ulp (2^-21) over the cosine between ray and normal: the share covers cosines down to 1/128.
+constexpr float kMargin = 0x1p-14f;
+/// The ray's range is longer by this share at both ends for Embree, so that our own arithmetic decides at the ends: 4
+/// ulp, where makers differ by 2. A larger share would make shadow rays meet the lamp at which they end.
+constexpr float kEnds = 0x1p-21f;
+
+/// Robust: no ray slips between two triangles that share an edge.
+const RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+
 /// A number in [0, 1) that depends on the bits of ray and triangle only. So whether a ray hits a triangle does not
 /// depend on the order in which Embree finds hits, or on the thread.
-float chance(const RTCRay& ray, std::uint32_t surface, std::uint32_t triangle) {
+float chance(const Ray& ray, std::uint32_t surface, std::uint32_t triangle) {
   std::uint64_t key = mix64((std::uint64_t(surface) << 32 | triangle) + 0x616c706861ull);
-  for (const float x : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+  for (const float x :
+       {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z})
     key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
   return float(key >> 40) * 0x1p-24f;
 }
 
-/// Embree's filter for surfaces with alpha: rejects a hit in a hole (MASK), or with probability 1 - alpha (BLEND). Must
-/// not throw, so build() has decoded the texture.
-void pass_by_alpha(const RTCFilterFunctionNArguments* arguments) {
-  const auto& alpha = *static_cast<const AlphaSurface*>(arguments->geometryUserPtr);
-  for (unsigned i = 0; i < arguments->N; ++i) {
-    if (arguments->valid[i] == 0) continue;
-    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
-    const float coverage = coverage_at(*alpha.frame, alpha.surface, hit.primID, hit.u, hit.v);
-    if (coverage >= 1) continue;
-    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
-    if (!(ray.id == kAllBlend ? coverage > 0 : chance(ray, alpha.surface, hit.primID) < coverage))
-      arguments->valid[i] = 0;
-  }
-}
-
 /// True if the ray is finite, t_min >= 0, and its numbers are so small that Embree's squared lengths stay finite.
-/// Comparisons with NaN are false.
+/// Comparisons with NaN are false. The eight numbers of a Ray are compared at once.
 bool usable(const Ray& ray) {
   constexpr float kLargest = 1e18f;
-  const auto sum = [](Vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-  return sum(ray.origin) < kLargest && sum(ray.direction) < kLargest && ray.t_min >= 0 && !std::isnan(ray.t_max);
+  static_assert(offsetof(Ray, direction) == 12 && offsetof(Ray, t_min) == 24 && offsetof(Ray, t_max) == 28);
+  const __m256 numbers = _mm256_loadu_ps(&ray.origin.x);
+  const __m256 low = _mm256_setr_ps(-kLargest, -kLargest, -kLargest, -kLargest, -kLargest, -kLargest, 0, -INFINITY),
+               high = _mm256_setr_ps(kLargest, kLargest, kLargest, kLargest, kLargest, kLargest, INFINITY, INFINITY);
+  return _mm256_movemask_ps(_mm256_and_ps(_mm256_cmp_ps(numbers, low, _CMP_GE_OQ),
+                                          _mm256_cmp_ps(numbers, high, _CMP_LE_OQ))) == 0xff;
 }
 
-RTCRay to_embree(const Ray& ray) {
-  RTCRay r;
-  r.org_x = ray.origin.x;
-  r.org_y = ray.origin.y;
-  r.org_z = ray.origin.z;
-  r.tnear = ray.t_min;
-  r.dir_x = ray.direction.x;
-  r.dir_y = ray.direction.y;
-  r.dir_z = ray.direction.z;
-  r.tfar = ray.t_max;
-  r.time = 0;
-  r.mask = 0xffffffffu;
-  r.id = ray.all_blend ? kAllBlend : 0;
-  r.flags = 0;
-  return r;
+/// Order of hits: by distance; at equal distance by surface, so that what stands comes before what moves, then by
+/// triangle.
+bool before(const Hit& a, const Hit& b) {
+  return a.t != b.t ? a.t < b.t : a.surface != b.surface ? a.surface < b.surface : a.triangle < b.triangle;
 }
 
-bool may_hit(const Tree& tree, const RTCRay& ray) {
-  return tree.may_hit({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tnear, ray.tfar);
-}
+/// A ray on its way through the trees. Embree finds triangles and calls a filter for each; the filter decides by our own
+/// arithmetic.
+struct Query : RTCIntersectContext {
+  const SceneFrame& frame;
+  const SurfaceArrays* surfaces;
+  const Ray& ray;
+  const Tree* tree = nullptr;
+  Hit nearest;       ///< surface kNone, t infinite: none yet
+  RTCRayHit embree;  ///< Embree's view of the ray; take_nearest shortens it. What Embree writes into the hit is not read
 
-/// The surface of a hit: the geometry in this tree, or the instance in whose own tree the hit was found.
-std::uint32_t surface_of(const Tree& tree, std::uint32_t geometry, std::uint32_t instance) {
-  return tree.first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
-}
-
-bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(tree.scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit = {query.ray.tfar, surface_of(tree, query.hit.geomID, query.hit.instID[0]), query.hit.primID, query.hit.u,
-         query.hit.v};
-  return true;
-}
-
-constexpr std::size_t kPacket = 8;
-
-/// Eight rays in Embree's layout. Unusable rays, and lanes after the end of a list, have `valid` 0, and plain numbers
-/// with which Embree can compute.
-struct Packet {
-  RTCRayHit8 query;
-  alignas(32) int valid[kPacket];
-
-  bool may_hit(const Tree& tree, std::size_t i) const {
-    return query.ray.tfar[i] > query.ray.tnear[i] &&
-           tree.may_hit({query.ray.org_x[i], query.ray.org_y[i], query.ray.org_z[i]},
-                        {query.ray.dir_x[i], query.ray.dir_y[i], query.ray.dir_z[i]}, query.ray.tnear[i],
-                        query.ray.tfar[i]);
+  Query(const SceneFrame& frame_, const std::vector<SurfaceArrays>& surfaces_, const Ray& ray_,
+        RTCFilterFunctionN decide)
+      : frame(frame_), surfaces(surfaces_.data()), ray(ray_) {
+    rtcInitIntersectContext(this);
+    filter = decide;
+    nearest.t = INFINITY;
+    RTCRay& r = embree.ray;
+    _mm_storeu_ps(&r.org_x, _mm_loadu_ps(&ray.origin.x));     // and tnear, which the next line sets
+    r.tnear = ray.t_min * (1 - kEnds);
+    _mm_storeu_ps(&r.dir_x, _mm_loadu_ps(&ray.direction.x));  // and time
+    r.time = 0;
+    r.tfar = ray.t_max * (1 + kEnds);
+    r.mask = 0xffffffffu;
+    r.id = r.flags = 0;
+    embree.hit.geomID = embree.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
 
-  void set(std::size_t i, const Ray& ray, bool use) {
-    query.ray.org_x[i] = use ? ray.origin.x : 0;
-    query.ray.org_y[i] = use ? ray.origin.y : 0;
-    query.ray.org_z[i] = use ? ray.origin.z : 0;
-    query.ray.dir_x[i] = use ? ray.direction.x : 0;
-    query.ray.dir_y[i] = use ? ray.direction.y : 0;
-    query.ray.dir_z[i] = use ? ray.direction.z : 1;
-    query.ray.tnear[i] = use ? ray.t_min : 0;
-    query.ray.tfar[i] = use ? ray.t_max : 0;
-    query.ray.time[i] = 0;
-    query.ray.mask[i] = 0xffffffffu;
-    query.ray.id[i] = ray.all_blend ? kAllBlend : 0;
-    query.ray.flags[i] = 0;
-    valid[i] = use ? -1 : 0;
+  /// The triangle that Embree has found; t, u and v are not set.
+  Hit found(const RTCFilterFunctionNArguments& arguments) const {
+    const unsigned instance = instID[0], geometry = RTCHitN_geomID(arguments.hit, 1, 0);
+    return {0, tree->first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance),
+            RTCHitN_primID(arguments.hit, 1, 0)};
   }
 
-  /// Finds hits in this tree that are closer than earlier ones, and shortens the rays to them. everywhere: the tree
-  /// fills the scene, so testing its box would cost more than it saves.
-  void intersect(const Tree& tree, bool everywhere, Hit* hits) {
-    bool any = false;
-    alignas(32) int active[kPacket];
-    float limit[kPacket];
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      limit[i] = query.ray.tfar[i];
-      active[i] = valid[i] && (everywhere || may_hit(tree, i)) ? -1 : 0;
-      any |= active[i] != 0;
-      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    if (!any) return;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    // Packets marked as coherent visit the tree in another order than single rays, and the order decides between
-    // surfaces at equal distance.
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect8(active, tree.scene, &context, &query);
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      if (!active[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-      if (hits[i].surface != kNone && !(query.ray.tfar[i] < limit[i])) continue;
-      hits[i] = {query.ray.tfar[i], surface_of(tree, query.hit.geomID[i], query.hit.instID[0][i]), query.hit.primID[i],
-                 query.hit.u[i], query.hit.v[i]};
-    }
+  /// Sets t, u and v. False if the hit is not in the ray's range.
+  bool measure(Hit& hit) const {
+    const SurfaceArrays& surface = surfaces[hit.surface];
+    const auto& corner = surface.triangles[hit.triangle];
+    const TriangleHit met =
+        surface.instance
+            ? meet_instance(surface, corner)
+            : meet_plane(ray.origin, ray.direction, surface.positions[corner[0]], surface.positions[corner[1]],
+                         surface.positions[corner[2]]);
+    hit.t = met.t;
+    hit.u = met.u;
+    hit.v = met.v;
+    return hit.t > ray.t_min && hit.t < ray.t_max;
+  }
+  [[gnu::noinline]] TriangleHit meet_instance(const SurfaceArrays& surface,
+                                              const std::array<std::uint32_t, 3>& corner) const {
+    SurfaceArrays::Own own;
+    surface.instance_positions(corner, own);
+    return meet_plane(ray.origin, ray.direction, own[0], own[1], own[2]);
+  }
+
+  /// False in a hole (MASK), and with probability 1 - alpha (BLEND).
+  bool is_there(const Hit& hit) const { return !surfaces[hit.surface].passable || covered(hit); }
+  [[gnu::noinline]] bool covered(const Hit& hit) const {
+    const float coverage = coverage_at(frame, hit.surface, hit.triangle, hit.u, hit.v);
+    return coverage >= 1 || (ray.all_blend ? coverage > 0 : chance(ray, hit.surface, hit.triangle) < coverage);
   }
 };
+
+/// Embree's filter for the nearest hit: keeps the first in the order of `before`. Must not throw, so build() has decoded
+/// the textures.
+void take_nearest(const RTCFilterFunctionNArguments* arguments) {
+  auto& query = *static_cast<Query*>(arguments->context);
+  Hit hit = query.found(*arguments);
+  if (!query.measure(hit) || !before(hit, query.nearest) || !query.is_there(hit)) {
+    arguments->valid[0] = 0;
+    return;
+  }
+  query.nearest = hit;
+  RTCRayN_tfar(arguments->ray, 1, 0) = hit.t * (1 + kMargin);
+}
+
+/// Embree's filter for any hit. Only near the ends of the ray's range a hit is measured.
+void take_any(const RTCFilterFunctionNArguments* arguments) {
+  const auto& query = *static_cast<const Query*>(arguments->context);
+  Hit hit = query.found(*arguments);
+  const float about = RTCRayN_tfar(arguments->ray, 1, 0);
+  if (about > query.ray.t_min * (1 + kMargin) && about < query.ray.t_max * (1 - kMargin) &&
+      !query.surfaces[hit.surface].passable)
+    return;
+  if (!query.measure(hit) || !query.is_there(hit)) arguments->valid[0] = 0;
+}
+
+/// False only if the ray misses the tree's box: a few operations instead of a walk through the tree. A ray in the plane
+/// of a face gives 0 x infinity = NaN, in whose place max and min take the ray's ends, as second argument.
+bool may_hit(const Tree& tree, const RTCRay& ray) {
+  const __m128 origin = _mm_loadu_ps(&ray.org_x), inverse = _mm_div_ps(_mm_set1_ps(1), _mm_loadu_ps(&ray.dir_x));
+  const __m128 a = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(tree.lower), origin), inverse),
+               b = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(tree.upper), origin), inverse);
+  __m128 enter = _mm_max_ps(_mm_blendv_ps(a, b, inverse), _mm_set1_ps(ray.tnear)),
+         leave = _mm_min_ps(_mm_blendv_ps(b, a, inverse), _mm_set1_ps(ray.tfar));
+  enter = _mm_max_ps(enter, _mm_max_ps(_mm_shuffle_ps(enter, enter, 1), _mm_shuffle_ps(enter, enter, 2)));
+  leave = _mm_min_ps(leave, _mm_min_ps(_mm_shuffle_ps(leave, leave, 1), _mm_shuffle_ps(leave, leave, 2)));
+  return _mm_comile_ss(enter, leave);
+}
 
 }  // namespace
 
@@ -181,13 +191,8 @@ bool StaticTree::Kept::holds_for(const SceneFrame& frame) const {
     return a.primitive == b.primitive && a.positions.data() == b.positions.data() &&
            a.scene_from_node == b.scene_from_node;
   };
-  return !filtered && surfaces.size() == frame.static_count &&
-         std::equal(surfaces.begin(), surfaces.end(), frame.surfaces.begin(), same) && !passable(frame);
-}
-
-bool StaticTree::Kept::passable(const SceneFrame& frame) {
-  return std::any_of(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count),
-                     [&](const Surface& s) { return lets_rays_pass(frame.materials[s.material]); });
+  return surfaces.size() == frame.static_count &&
+         std::equal(surfaces.begin(), surfaces.end(), frame.surfaces.begin(), same);
 }
 
 StaticTree::StaticTree() = default;
@@ -216,7 +221,7 @@ const SharedTree& Tracer::Impl::shared_tree(const Primitive& primitive) {
   if (shared.scene) return shared;
   shared.scene = rtcNewScene(forest->device);
   rtcSetSceneBuildQuality(shared.scene, RTC_BUILD_QUALITY_MEDIUM);
-  rtcSetSceneFlags(shared.scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(shared.scene, kSceneFlags);
   const RTCGeometry geometry = triangles_of(primitive, primitive.positions.data());
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(shared.scene, geometry);
@@ -258,7 +263,7 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
   tree.scene = rtcNewScene(forest->device);
   // The build of low quality would be faster, but aborts in Debian's Embree 3.13 if all meshes lie in one plane.
   rtcSetSceneBuildQuality(tree.scene, RTC_BUILD_QUALITY_MEDIUM);
-  rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(tree.scene, kSceneFlags);
   for (std::size_t s = first; s < last; ++s) {
     const Surface& surface = frame->surfaces[s];
     if (surface.instanced()) {
@@ -267,14 +272,6 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
     }
     const RTCGeometry geometry = triangles_of(*surface.primitive, surface.positions.data());
     for (const Vec3 p : surface.positions) tree.bounds.add(p);
-    if (const Material& material = frame->materials[surface.material]; lets_rays_pass(material)) {
-      if (material.textures && material.textures->base_color)  // decoded here, since the filter must not throw
-        frame->images->pyramid(material.textures->base_color.image, base_color_transfer(material));
-      alpha.push_back({frame, std::uint32_t(s)});
-      rtcSetGeometryUserData(geometry, &alpha.back());
-      rtcSetGeometryIntersectFilterFunction(geometry, pass_by_alpha);
-      rtcSetGeometryOccludedFilterFunction(geometry, pass_by_alpha);
-    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(tree.scene, geometry, unsigned(s - first));
     rtcReleaseGeometry(geometry);
@@ -284,7 +281,10 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
   throw_on_error();
   const Vec3 largest = max(abs(tree.bounds.lower), abs(tree.bounds.upper));
   const float margin = 0x1p-18f * max_component(largest);
-  tree.bounds = {tree.bounds.lower - Vec3{margin, margin, margin}, tree.bounds.upper + Vec3{margin, margin, margin}};
+  for (int axis = 0; axis < 3; ++axis) {
+    tree.lower[axis] = tree.bounds.lower[axis] - margin;
+    tree.upper[axis] = tree.bounds.upper[axis] + margin;
+  }
 }
 
 Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
@@ -304,7 +304,6 @@ void Tracer::build(const SceneFrame& frame, StaticTree& static_scene) {
     const auto made = std::make_shared<StaticTree::Kept>();
     made->forest = impl_->forest;
     made->surfaces.assign(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count));
-    made->filtered = StaticTree::Kept::passable(frame);
     impl_->build(made->tree, 0, frame.static_count);
     static_scene.kept_ = made;
   }
@@ -313,8 +312,14 @@ void Tracer::build(const SceneFrame& frame, StaticTree& static_scene) {
   impl_->fixed = impl_->static_scene->tree;
   impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
   for (const Surface& surface : frame.surfaces) {
+    const Material& material = frame.materials[surface.material];
     impl_->surfaces.emplace_back(surface);
-    impl_->panes |= may_be_pane(frame.materials[surface.material]);
+    impl_->panes |= may_be_pane(material);
+    if (lets_rays_pass(material)) {
+      impl_->surfaces.back().passable = true;
+      if (material.textures && material.textures->base_color)  // decoded here, since Embree's filters must not throw
+        frame.images->pyramid(material.textures->base_color.image, base_color_transfer(material));
+    }
     if (surface.instanced()) impl_->surfaces.back().instance_offset = impl_->instance_offset(surface);
   }
 }
@@ -327,37 +332,21 @@ bool Tracer::intersect(const Ray& ray, Hit& hit) const {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  // The first call shortens the ray, so the second call reports closer hits only.
-  RTCRayHit query{to_embree(ray), {}};
-  bool found = false;
-  if (impl_->fixed.exists()) found = intersect_tree(impl_->fixed, query, hit);
-  if (impl_->moving.exists() && may_hit(impl_->moving, query.ray)) {
-    if (found && query.ray.tfar <= query.ray.tnear) return true;
-    Hit nearer;
-    const float limit = query.ray.tfar;
-    if (intersect_tree(impl_->moving, query, nearer) && (!found || nearer.t < limit)) {
-      hit = nearer;
-      found = true;
-    }
+  Query query(*impl_->frame, impl_->surfaces, ray, take_nearest);
+  for (const Tree* tree : {&impl_->fixed, &impl_->moving}) {
+    if (!tree->exists() || (tree == &impl_->moving && !may_hit(*tree, query.embree.ray))) continue;
+    query.tree = tree;
+    rtcIntersect1(tree->scene, &query, &query.embree);  // shortens the ray for the next tree
   }
-  return found;
+  if (query.nearest.surface == kNone) return false;
+  hit = query.nearest;
+  return true;
 }
 
 void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
   TEMPOLUX_CHECK(rays.size() == hits.size());
-  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
-    const std::size_t count = std::min(kPacket, rays.size() - first);
-    Packet packet;
-    for (std::size_t i = 0; i < kPacket; ++i) {
-      const bool use = i < count && usable(rays[first + i]);
-      packet.set(i, rays[first + (i < count ? i : 0)], use);
-      if (i < count && !use) impl_->refused.fetch_add(1, std::memory_order_relaxed);
-    }
-    Hit found[kPacket];
-    if (impl_->fixed.exists()) packet.intersect(impl_->fixed, true, found);
-    if (impl_->moving.exists()) packet.intersect(impl_->moving, false, found);
-    std::copy(found, found + count, hits.begin() + std::ptrdiff_t(first));
-  }
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!intersect(rays[i], hits[i])) hits[i] = {};
 }
 
 bool Tracer::occluded(const Ray& ray) const {
@@ -365,14 +354,12 @@ bool Tracer::occluded(const Ray& ray) const {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
+  Query query(*impl_->frame, impl_->surfaces, ray, take_any);
   for (const Tree* tree : {&impl_->fixed, &impl_->moving}) {
-    if (!tree->exists()) continue;
-    RTCRay query = to_embree(ray);
-    if (tree == &impl_->moving && !may_hit(*tree, query)) continue;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(tree->scene, &context, &query);
-    if (query.tfar < 0) return true;
+    if (!tree->exists() || (tree == &impl_->moving && !may_hit(*tree, query.embree.ray))) continue;
+    query.tree = tree;
+    rtcOccluded1(tree->scene, &query, &query.embree.ray);
+    if (query.embree.ray.tfar < 0) return true;
   }
   return false;
 }

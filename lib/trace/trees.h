@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <deque>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -28,14 +27,11 @@ inline constexpr float kOffsetScale = 0x1p-20f;
 struct Tree {
   RTCScene scene = nullptr;
   std::uint32_t first_surface = 0;
-  Box3 bounds;  ///< larger than its content by 2^-18 of the largest coordinate
+  Box3 bounds;  ///< of its content
+  /// The corners of a box that is larger than its content by 2^-18 of the largest coordinate.
+  alignas(16) float lower[4] = {}, upper[4] = {};
 
   bool exists() const { return scene != nullptr; }
-  /// False only if the ray misses the tree's box: a few operations instead of a walk through the tree.
-  bool may_hit(Vec3 origin, Vec3 direction, float enter, float leave) const {
-    const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
-    return meets_slabs(bounds, origin, origin, inverse, enter, leave);
-  }
 };
 
 /// The tree of a primitive that several instances share, in the primitive's space.
@@ -52,7 +48,7 @@ struct SurfaceArrays {
   const Vec2* uvs;
   const Surface* instance;  ///< the surface, if it is instanced and has no arrays; else null
   std::uint32_t object, material;
-  bool flipped, smooth;
+  bool flipped, smooth, passable = false;  ///< passable: lets_rays_pass()
   float instance_offset = 0;
 
   /// Positions or normals of a triangle's corners in scene space: pointers into the surface's arrays, since copying
@@ -92,12 +88,6 @@ struct SurfaceArrays {
         smooth(s.smooth()) {}
 };
 
-/// The data that the filter of a surface with alpha reads.
-struct AlphaSurface {
-  const SceneFrame* frame;
-  std::uint32_t surface;
-};
-
 /// The Embree device of all trees, and the trees that instances share.
 struct Forest {
   RTCDevice device;
@@ -115,13 +105,9 @@ struct StaticTree::Kept {
   /// The surfaces in the tree. Their arrays are kept, so an array of a later frame has the same address only if it is
   /// the same array.
   std::vector<Surface> surfaces;
-  /// True if the tree has filters for alpha. They point to the frame for which the tree was built, so the tree must not
-  /// be used for another frame.
-  bool filtered = false;
 
   ~Kept();
   bool holds_for(const SceneFrame& frame) const;  ///< true if the frame's Tracer can use this tree
-  static bool passable(const SceneFrame& frame);  ///< true if rays may pass static surfaces by alpha
 };
 
 struct Tracer::Impl {
@@ -130,7 +116,6 @@ struct Tracer::Impl {
   std::shared_ptr<const StaticTree::Kept> static_scene;  ///< owns `fixed`
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
-  std::deque<AlphaSurface> alpha;  ///< filters point to the elements, which a deque does not move
   bool panes = false;
   mutable std::atomic<std::uint64_t> refused{0};
 
