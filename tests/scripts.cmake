@@ -55,6 +55,9 @@ foreach(script hostile_names same_bytes two_makes)
   add_test(NAME pipelines.${script} COMMAND python3 -B tests/pipelines/${script}.py $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 endforeach()
 set_tests_properties(pipelines.known_walks pipelines.random_walk pipelines.hostile_names pipelines.same_bytes pipelines.two_makes PROPERTIES TIMEOUT 600)
+add_test(NAME pipelines.every_processor COMMAND python3 -B tests/pipelines/every_processor.py $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.every_processor PROPERTIES TIMEOUT 1200 SKIP_RETURN_CODE 77)
 add_test(NAME pipelines.textured_room COMMAND python3 -B tests/pipelines/textured_room.py $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}

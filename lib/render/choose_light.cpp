@@ -26,7 +26,6 @@ constexpr double kFilterGain = 2.4;
 /// does not show rarely changes a recipe. The least product of work and squared error is flat: half a step in the number
 /// of rays (a factor of the square root of 2) costs at most (2 + 2^.5 + 2^-.5) / 4 = 1.03 of the product.
 double on_grid(double number, int steps) { return std::exp2(std::round(std::log2(number) * steps) / steps); }
-constexpr int kStepsOfRays = 1, kStepsOfError = 4;
 
 /// Squared error of missed light after n samples; at most the square of all the light.
 double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
@@ -46,7 +45,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
   if (rough.wanted_of > 0 && variance > rough.wanted_of)
-    way.pixel_error = on_grid(error_for_variance(variance / rough.wanted_of), kStepsOfError);
+    way.pixel_error = on_grid(error_for_variance(variance / rough.wanted_of), 4);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);
@@ -60,7 +59,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (records) {
     const double ray = rough.records * rough.record_ray;
     const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
-    way.rays = int(on_grid(std::clamp(best, kFewestRays, kMostRays), kStepsOfRays));
+    way.rays = int(on_grid(std::clamp(best, kFewestRays, kMostRays), 1));
     way.work += ray * way.rays;
     way.error += rough.record_error / way.rays;
   }
