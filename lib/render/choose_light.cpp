@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "lib/core/grid.h"
 #include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/render/pixel_noise.h"
@@ -20,12 +21,6 @@ constexpr double kLeastError = 1e-12;
 /// Squared error of a raw frame over that of the filtered frame, without records: geometric mean of seven scenes
 /// (docs/pixels.md).
 constexpr double kFilterGain = 2.4;
-
-/// The nearest number of a grid with `steps` steps from each power of two to the next. A pilot's estimate errs by some
-/// per cent from seed to seed. Numbers in recipes come from a grid that is coarser, so that an edit which the picture
-/// does not show rarely changes a recipe. The least product of work and squared error is flat: half a step in the number
-/// of rays (a factor of the square root of 2) costs at most (2 + 2^.5 + 2^-.5) / 4 = 1.03 of the product.
-double on_grid(double number, int steps) { return std::exp2(std::round(std::log2(number) * steps) / steps); }
 
 /// Squared error of missed light after n samples; at most the square of all the light.
 double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
@@ -45,7 +40,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{method, map, 0, fixed + order.pixels * sample * samples, order.filtered ? wanted / kFilterGain : wanted};
   if (rough.wanted_of > 0 && variance > rough.wanted_of)
-    way.pixel_error = on_grid(error_for_variance(variance / rough.wanted_of), 4);
+    way.pixel_error = nearest_on_grid(error_for_variance(variance / rough.wanted_of), 4);
   way.measured = records ? rough.recorded : rough.gathered || method == IndirectMethod::paths;
   if (map) way.error += rough.map_error;
   else way.error += left_of(rough.missed_caustic, samples);
@@ -59,7 +54,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (records) {
     const double ray = rough.records * rough.record_ray;
     const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
-    way.rays = int(on_grid(std::clamp(best, kFewestRays, kMostRays), 1));
+    way.rays = int(nearest_on_grid(std::clamp(best, kFewestRays, kMostRays), 1));
     way.work += ray * way.rays;
     way.error += rough.record_error / way.rays;
   }

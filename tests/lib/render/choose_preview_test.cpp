@@ -83,9 +83,12 @@ TEST(ChoosePreview, ShrinksWithTheFourthRootOfThePhotons) {
   const PreviewChoice few = choose_preview({&pilot, 1}, 200, 10'000, 33),
                       many = choose_preview({&pilot, 1}, 200, 160'000, 33);
   EXPECT_NEAR(many.width / few.width, 0.5, 1e-12);
-  // As many photons as the pilot had: its kernel, s = sqrt(200 x 24 / (4 pi kPilotPaths)).
-  EXPECT_NEAR(choose_preview({&pilot, 1}, 200, kPilotPaths, 1).width,
-              std::sqrt(200 * 24 / (4 * std::numbers::pi * double(kPilotPaths))), 1e-12);
+  // As many photons as the pilot had: its kernel, s = sqrt(200 x 24 / (4 pi kPilotPaths)), on a grid of four steps from
+  // each power of two to the next.
+  const double width = std::sqrt(200 * 24 / (4 * std::numbers::pi * double(kPilotPaths)));
+  const double chosen = choose_preview({&pilot, 1}, 200, kPilotPaths, 1).width;
+  EXPECT_NEAR(std::log2(chosen / width), 0, 0.125);
+  EXPECT_NEAR(std::log2(chosen) * 4, std::round(std::log2(chosen) * 4), 1e-9);
 }
 
 }  // namespace
