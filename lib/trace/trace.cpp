@@ -64,92 +64,122 @@ bool before(const Hit& a, const Hit& b) {
   return a.t != b.t ? a.t < b.t : a.surface != b.surface ? a.surface < b.surface : a.triangle < b.triangle;
 }
 
-/// A ray on its way through the trees. Embree finds triangles and calls a filter for each; the filter decides by our own
-/// arithmetic.
-struct Query : RTCIntersectContext {
-  const SceneFrame& frame;
-  const SurfaceArrays* surfaces;
-  const Ray& ray;
-  const Tree* tree = nullptr;
-  Hit nearest;       ///< surface kNone, t infinite: none yet
-  RTCRayHit embree;  ///< Embree's view of the ray; take_nearest shortens it. What Embree writes into the hit is not read
+}  // namespace
 
-  Query(const SceneFrame& frame_, const std::vector<SurfaceArrays>& surfaces_, const Ray& ray_,
-        RTCFilterFunctionN decide)
-      : frame(frame_), surfaces(surfaces_.data()), ray(ray_) {
+/// A ray on its way through the trees. Embree finds triangles and calls a filter for each; the filter decides by our own
+/// arithmetic. It must not throw, so build() has decoded the textures that it reads.
+struct Tracer::Impl::Query : RTCIntersectContext {
+  const Impl& scene;
+  const Ray& ray;
+  std::uint32_t first_surface = 0;  ///< of the tree
+
+  Query(const Impl& scene_, const Ray& ray_, RTCFilterFunctionN decide) : scene(scene_), ray(ray_) {
     rtcInitIntersectContext(this);
     filter = decide;
-    nearest.t = INFINITY;
-    RTCRay& r = embree.ray;
-    _mm_storeu_ps(&r.org_x, _mm_loadu_ps(&ray.origin.x));     // and tnear, which the next line sets
+  }
+
+  /// The ray as Embree reads it.
+  void write(RTCRay& r) const {
+    _mm_storeu_ps(&r.org_x, _mm_loadu_ps(&ray.origin.x));  // and tnear, which the next line sets
     r.tnear = ray.t_min * (1 - kEnds);
     _mm_storeu_ps(&r.dir_x, _mm_loadu_ps(&ray.direction.x));  // and time
     r.time = 0;
     r.tfar = ray.t_max * (1 + kEnds);
     r.mask = 0xffffffffu;
     r.id = r.flags = 0;
-    embree.hit.geomID = embree.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   }
 
-  /// The triangle that Embree has found; t, u and v are not set.
-  Hit found(const RTCFilterFunctionNArguments& arguments) const {
-    const unsigned instance = instID[0], geometry = RTCHitN_geomID(arguments.hit, 1, 0);
-    return {0, tree->first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance),
-            RTCHitN_primID(arguments.hit, 1, 0)};
+  /// The surface of the triangle that Embree has found: the geometry in this tree, or the instance in whose own tree the
+  /// triangle was found.
+  std::uint32_t surface_of(const RTCFilterFunctionNArguments& found) const {
+    const unsigned instance = instID[0], geometry = RTCHitN_geomID(found.hit, 1, 0);
+    return first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
   }
 
-  /// Sets t, u and v. False if the hit is not in the ray's range.
-  bool measure(Hit& hit) const {
-    const SurfaceArrays& surface = surfaces[hit.surface];
-    const auto& corner = surface.triangles[hit.triangle];
-    const TriangleHit met =
-        surface.instance
-            ? meet_instance(surface, corner)
-            : meet_plane(ray.origin, ray.direction, surface.positions[corner[0]], surface.positions[corner[1]],
-                         surface.positions[corner[2]]);
+  bool in_range(float t) const { return t > ray.t_min && t < ray.t_max; }
+
+  /// Where the ray meets a triangle of a surface that is no instance.
+  TriangleHit meet(const SurfaceArrays& surface, std::uint32_t triangle) const {
+    const auto& corner = surface.triangles[triangle];
+    return meet_plane(ray.origin, ray.direction, surface.positions[corner[0]], surface.positions[corner[1]],
+                      surface.positions[corner[2]]);
+  }
+
+  /// The hit that Embree has found on any surface. False if it is not in the ray's range or there is nothing by alpha: a
+  /// hole (MASK), or with probability 1 - alpha (BLEND).
+  [[gnu::noinline]] bool measure(const RTCFilterFunctionNArguments& found, Hit& hit) const {
+    hit.surface = surface_of(found);
+    hit.triangle = RTCHitN_primID(found.hit, 1, 0);
+    const SurfaceArrays& surface = scene.surfaces[hit.surface];
+    SurfaceArrays::Own own;
+    const SurfaceArrays::Corners at = surface.corner_positions(surface.triangles[hit.triangle], own);
+    const TriangleHit met = meet_plane(ray.origin, ray.direction, *at.a, *at.b, *at.c);
     hit.t = met.t;
     hit.u = met.u;
     hit.v = met.v;
-    return hit.t > ray.t_min && hit.t < ray.t_max;
-  }
-  [[gnu::noinline]] TriangleHit meet_instance(const SurfaceArrays& surface,
-                                              const std::array<std::uint32_t, 3>& corner) const {
-    SurfaceArrays::Own own;
-    surface.instance_positions(corner, own);
-    return meet_plane(ray.origin, ray.direction, own[0], own[1], own[2]);
-  }
-
-  /// False in a hole (MASK), and with probability 1 - alpha (BLEND).
-  bool is_there(const Hit& hit) const { return !surfaces[hit.surface].passable || covered(hit); }
-  [[gnu::noinline]] bool covered(const Hit& hit) const {
-    const float coverage = coverage_at(frame, hit.surface, hit.triangle, hit.u, hit.v);
+    if (!in_range(hit.t)) return false;
+    if (!surface.passable) return true;
+    const float coverage = coverage_at(*scene.frame, hit.surface, hit.triangle, hit.u, hit.v);
     return coverage >= 1 || (ray.all_blend ? coverage > 0 : chance(ray, hit.surface, hit.triangle) < coverage);
   }
 };
 
-/// Embree's filter for the nearest hit: keeps the first in the order of `before`. Must not throw, so build() has decoded
-/// the textures.
-void take_nearest(const RTCFilterFunctionNArguments* arguments) {
-  auto& query = *static_cast<Query*>(arguments->context);
-  Hit hit = query.found(*arguments);
-  if (!query.measure(hit) || !before(hit, query.nearest) || !query.is_there(hit)) {
-    arguments->valid[0] = 0;
-    return;
-  }
-  query.nearest = hit;
-  RTCRayN_tfar(arguments->ray, 1, 0) = hit.t * (1 + kMargin);
-}
+/// Keeps the first hit in the order of `before`.
+struct Tracer::Impl::NearestQuery : Query {
+  Hit nearest;       ///< surface kNone, t infinite: none yet
+  RTCRayHit embree;  ///< take() shortens the ray. What Embree writes into the hit is not read
 
-/// Embree's filter for any hit. Only near the ends of the ray's range a hit is measured.
-void take_any(const RTCFilterFunctionNArguments* arguments) {
-  const auto& query = *static_cast<const Query*>(arguments->context);
-  Hit hit = query.found(*arguments);
-  const float about = RTCRayN_tfar(arguments->ray, 1, 0);
-  if (about > query.ray.t_min * (1 + kMargin) && about < query.ray.t_max * (1 - kMargin) &&
-      !query.surfaces[hit.surface].passable)
-    return;
-  if (!query.measure(hit) || !query.is_there(hit)) arguments->valid[0] = 0;
-}
+  NearestQuery(const Impl& scene_, const Ray& ray_) : Query(scene_, ray_, take) {
+    nearest.t = INFINITY;
+    write(embree.ray);
+    embree.hit.geomID = embree.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  }
+
+  /// Embree's filter. Most surfaces need no call from here, so that no register is saved.
+  static void take(const RTCFilterFunctionNArguments* found) {
+    auto& query = *static_cast<NearestQuery*>(found->context);
+    const std::uint32_t number = query.surface_of(*found);
+    const SurfaceArrays& surface = query.scene.surfaces[number];
+    if (surface.instance || surface.passable) [[unlikely]]
+      return take_measured(found);
+    const std::uint32_t triangle = RTCHitN_primID(found->hit, 1, 0);
+    const TriangleHit met = query.meet(surface, triangle);
+    query.keep(*found, {met.t, number, triangle, met.u, met.v}, query.in_range(met.t));
+  }
+  [[gnu::noinline]] static void take_measured(const RTCFilterFunctionNArguments* found) {
+    auto& query = *static_cast<NearestQuery*>(found->context);
+    Hit hit;
+    const bool there = query.measure(*found, hit);
+    query.keep(*found, hit, there);
+  }
+  void keep(const RTCFilterFunctionNArguments& found, const Hit& hit, bool there) {
+    if (!there || !before(hit, nearest)) {
+      found.valid[0] = 0;
+      return;
+    }
+    nearest = hit;
+    RTCRayN_tfar(found.ray, 1, 0) = hit.t * (1 + kMargin);
+  }
+};
+
+/// Takes any hit.
+struct Tracer::Impl::AnyQuery : Query {
+  RTCRay embree;
+
+  AnyQuery(const Impl& scene_, const Ray& ray_) : Query(scene_, ray_, take) { write(embree); }
+
+  /// Embree's filter. Only near the ends of the ray's range a hit is measured.
+  static void take(const RTCFilterFunctionNArguments* found) {
+    const auto& query = *static_cast<const AnyQuery*>(found->context);
+    const float about = RTCRayN_tfar(found->ray, 1, 0);
+    const bool inside = about > query.ray.t_min * (1 + kMargin) && about < query.ray.t_max * (1 - kMargin);
+    Hit hit;
+    if (!(inside && !query.scene.surfaces[query.surface_of(*found)].passable) && !query.measure(*found, hit))
+      found->valid[0] = 0;
+  }
+};
+
+namespace {
 
 /// False only if the ray misses the tree's box: a few operations instead of a walk through the tree. A ray in the plane
 /// of a face gives 0 x infinity = NaN, in whose place max and min take the ray's ends, as second argument.
@@ -332,10 +362,10 @@ bool Tracer::intersect(const Ray& ray, Hit& hit) const {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  Query query(*impl_->frame, impl_->surfaces, ray, take_nearest);
+  Impl::NearestQuery query(*impl_, ray);
   for (const Tree* tree : {&impl_->fixed, &impl_->moving}) {
     if (!tree->exists() || (tree == &impl_->moving && !may_hit(*tree, query.embree.ray))) continue;
-    query.tree = tree;
+    query.first_surface = tree->first_surface;
     rtcIntersect1(tree->scene, &query, &query.embree);  // shortens the ray for the next tree
   }
   if (query.nearest.surface == kNone) return false;
@@ -354,12 +384,12 @@ bool Tracer::occluded(const Ray& ray) const {
     impl_->refused.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
-  Query query(*impl_->frame, impl_->surfaces, ray, take_any);
+  Impl::AnyQuery query(*impl_, ray);
   for (const Tree* tree : {&impl_->fixed, &impl_->moving}) {
-    if (!tree->exists() || (tree == &impl_->moving && !may_hit(*tree, query.embree.ray))) continue;
-    query.tree = tree;
-    rtcOccluded1(tree->scene, &query, &query.embree.ray);
-    if (query.embree.ray.tfar < 0) return true;
+    if (!tree->exists() || (tree == &impl_->moving && !may_hit(*tree, query.embree))) continue;
+    query.first_surface = tree->first_surface;
+    rtcOccluded1(tree->scene, &query, &query.embree);
+    if (query.embree.tfar < 0) return true;
   }
   return false;
 }

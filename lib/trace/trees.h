@@ -126,6 +126,9 @@ struct Tracer::Impl {
   /// to scene space scales the rounding errors of that space, and its translation is rounded, too.
   float instance_offset(const Surface& surface) const;
   SurfacePoint point_of(const Hit& hit) const;
+  struct Query;
+  struct NearestQuery;
+  struct AnyQuery;
 
  private:
   void throw_on_error() const;
