@@ -56,9 +56,9 @@ void add_options(tools::Tool& tool, tools::RenderOptions& options) {
                      "samples per pixel; with --pixel-error the number of first samples");
   tool.number_option(
       "--pixel-error", options.pixel_error, -1.0, 1.0,
-      "relative error X that a pixel may have: noisy pixels get n = 12 (sigma / (12 X radiance))^0.875 "
-      "samples; 0: no further samples; -1: 0.01 with photons or a cache, else 0; with the channels halves and "
-      "coverage, for st-filter, edges between surfaces get more samples and the inside of surfaces fewer");
+      "relative error that a pixel may have: noisy pixels get further samples (docs/pixels.md); 0: no further "
+      "samples; -1: 0.01 with photons or a cache, else 0; with the channels halves and coverage, for st-filter, edges "
+      "between surfaces get more samples and the inside of surfaces fewer");
   tool.number_option(
       "--seen-error", options.frame.seen_error, 0.0, 255.0,
       "sample until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that maps "

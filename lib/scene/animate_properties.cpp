@@ -4,6 +4,7 @@
 
 #include "formats/error.h"
 #include "lib/scene/animate.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux {
 namespace {
@@ -22,47 +23,28 @@ void check_product(const Scene& scene, const char* array, int index, const Rgb& 
                      "]: its animation takes colour times strength beyond float32");
 }
 
-void set(Material& material, ColorFactors& emission, Path path, const std::array<double, 4>& v) {
-  switch (path) {
-    case Path::base_color:
-      material.base_color = limited_colour(v, 1);
-      material.alpha = limited(v[3], 0, 1);
-      break;
-    case Path::alpha_cutoff: material.alpha_cutoff = limited(v[0], 0); break;
-    case Path::metallic: material.metallic = limited(v[0], 0, 1); break;
-    case Path::roughness: material.roughness = limited(v[0], 0, 1); break;
-    case Path::emissive_factor: emission.color = limited_colour(v); break;
-    case Path::emissive_strength: emission.strength = limited(v[0], 0); break;
-    case Path::specular: material.specular = limited(v[0], 0, 1); break;
-    case Path::specular_color: material.specular_color = limited_colour(v); break;
-    case Path::ior: material.ior = v[0] <= 0 ? 0.0f : limited(v[0], 1); break;
-    case Path::transmission: material.transmission = limited(v[0], 0, 1); break;
-    default: break;
-  }
-}
-
 }  // namespace
 
 const char* kind_of(Path path) {
-  return path <= Path::weights        ? "node"
-         : path <= Path::transmission ? "material"
-         : path <= Path::outer_cone   ? "light"
-                                      : "camera";
+  return path <= Path::weights      ? "node"
+         : path == Path::material   ? "material"
+         : path <= Path::outer_cone ? "light"
+                                    : "camera";
 }
 
 std::vector<Material> Animator::materials(double time_s) const {
   std::vector<Material> materials = scene_->materials;
   for (const AnimationTrack* track : property_tracks_) {
-    if (track->path > Path::transmission) continue;
-    Material& material = materials[std::size_t(track->target)];
-    ColorFactors emission = scene_->emission_factors[std::size_t(track->target)];
+    if (track->path != Path::material) continue;
+    const std::size_t target = std::size_t(track->target);
+    ColorFactors emission = scene_->emission_factors[target];
     // The emission is a product of factors that may have separate tracks, so all of these tracks are evaluated.
-    const bool emits = track->changes_emission();
+    const bool emits = changes_emission(*track);
     for (const AnimationTrack* other : property_tracks_)
-      if (other == track || (emits && other->target == track->target && other->changes_emission()))
-        set(material, emission, other->path, evaluate(*other, time_s));
-    if (emits) material.emission = emission.color * emission.strength;
-    check_product(*scene_, "materials", track->target, material.emission);
+      if (other == track || (emits && other->target == track->target && changes_emission(*other)))
+        set_property(material_properties()[other->property], evaluate(*other, time_s), materials[target], emission);
+    if (emits) finish_emission(emission, materials[target]);
+    check_product(*scene_, "materials", track->target, materials[target].emission);
   }
   return materials;
 }

@@ -116,8 +116,4 @@ PlacedCamera SceneFrame::camera(int camera_node) const {
   return place_camera(*scene, cameras[std::size_t(scene->nodes[n].camera)], n, origin, world_from_node[n]);
 }
 
-SceneFrame scene_at_frame(const Scene& scene, const Segment& segment, int frame, const TimeOptions& options) {
-  return SegmentScene(scene, segment, options).at(frame);
-}
-
 }  // namespace tempolux

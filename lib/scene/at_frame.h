@@ -195,7 +195,4 @@ class SegmentScene {
   bool materials_stay_ = true;
 };
 
-/// SegmentScene(scene, segment, options).at(frame), for callers that need one frame.
-SceneFrame scene_at_frame(const Scene& scene, const Segment& segment, int frame, const TimeOptions& options);
-
 }  // namespace tempolux

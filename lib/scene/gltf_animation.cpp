@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_pointer.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -46,15 +48,14 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
 }
 
 /// Numbers per value of a track; for weights, the number of morph targets of the node's mesh.
-std::size_t components_of(const Import& import, Path path, int target, const std::string& place) {
+std::size_t components_of(const Import& import, Path path, std::size_t property, int target,
+                          const std::string& place) {
   switch (path) {
     case Path::weights: break;
-    case Path::rotation:
-    case Path::base_color: return 4;
+    case Path::material: return material_properties()[property].components();
+    case Path::rotation: return 4;
     case Path::translation:
     case Path::scale:
-    case Path::emissive_factor:
-    case Path::specular_color:
     case Path::light_color: return 3;
     default: return 1;
   }
@@ -84,15 +85,17 @@ void read_values(Import& import, const tinygltf::AnimationSampler& sampler, cons
   }
 }
 
-AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int sampler_index, Path path, int target,
+AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int sampler_index, const PointedAt& at,
                           const std::string& place) {
+  const auto [path, target, property] = at;
   if (sampler_index < 0 || std::size_t(sampler_index) >= source.samplers.size())
     import.fail(place + ".sampler", "sampler " + std::to_string(sampler_index) + " does not exist");
   const tinygltf::AnimationSampler& sampler = source.samplers[std::size_t(sampler_index)];
   AnimationTrack track;
   track.target = target;
   track.path = path;
-  track.components = components_of(import, path, target, place);
+  track.property = property;
+  track.components = components_of(import, path, property, target, place);
   const std::optional<Interpolation> interpolation = interpolation_of(sampler.interpolation);
   track.interpolation = interpolation.value_or(Interpolation::linear);  // glTF's default; the keys stay valid
   track.times_s = read_numbers(import, sampler.input, 1, place + ".input");
@@ -153,7 +156,7 @@ std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool 
       Path path{};
       if (!wanted(import, source.channels[c], place, path)) return;
       const int target = import.node_from_source[std::size_t(source.channels[c].target_node)];
-      tracks.push_back(read_track(import, source, source.channels[c].sampler, path, target, place));
+      tracks.push_back(read_track(import, source, source.channels[c].sampler, {path, target}, place));
     });
   for (const PointerChannel& channel : import.gated->pointers)
     attempt([&] {
@@ -161,7 +164,7 @@ std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool 
       if (channel.animation != index || !resolve_pointer(import, channel.pointer, at)) return;
       const std::string place =
           place_of("animations", index, source.name) + ": pointer " + one_line(channel.pointer, 100);
-      tracks.push_back(read_track(import, source, channel.sampler, at.path, at.target, place));
+      tracks.push_back(read_track(import, source, channel.sampler, at, place));
     });
   return tracks;
 }
@@ -170,7 +173,7 @@ std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool 
 
 void import_animations(Import& import, const std::string& only) {
   if (!only.empty()) check_name(import, only);
-  std::set<std::pair<int, Path>> animated;
+  std::set<std::tuple<int, Path, std::size_t>> animated;
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
     const tinygltf::Animation& source = import.model.animations[a];
     if (!only.empty() && name_of(source, a) != only) continue;
@@ -178,7 +181,7 @@ void import_animations(Import& import, const std::string& only) {
     Animation animation;
     animation.name = source.name;
     for (AnimationTrack& track : tracks) {
-      if (!animated.insert({track.target, track.path}).second) {
+      if (!animated.insert({track.target, track.path, track.property}).second) {
         import.ignore(
             "further animation of a property that an earlier animation moves already "
             "(--animation NAME chooses one)");

@@ -17,6 +17,7 @@
 #include "lib/scene/gltf_extensions.h"
 #include "lib/scene/gltf_json.h"
 #include "lib/scene/gltf_unpack.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -27,14 +28,19 @@ constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
 // Extensions that this program reads. Properties of them that it does not render cause warnings (gltf_material.cpp).
-const std::set<std::string> kKnown{"KHR_lights_punctual",     "KHR_materials_emissive_strength",
-                                   "KHR_materials_specular",  "KHR_materials_ior",
-                                   "KHR_mesh_quantization",   "KHR_materials_transmission",
-                                   "KHR_materials_volume",    "KHR_materials_unlit",
-                                   "KHR_texture_transform",   "EXT_mesh_gpu_instancing",
-                                   "KHR_animation_pointer",   "KHR_draco_mesh_compression",
-                                   "EXT_meshopt_compression", "KHR_meshopt_compression",
-                                   "EXT_texture_webp"};
+/// The extensions that this program reads: those of materials by the table of their properties.
+const std::set<std::string> kKnown = [] {
+  std::set<std::string> known{"KHR_lights_punctual",        "KHR_mesh_quantization",  "KHR_texture_transform",
+                              "EXT_mesh_gpu_instancing",    "KHR_animation_pointer",  "EXT_texture_webp",
+                              "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"};
+  constexpr std::string_view kPrefix = "/extensions/";
+  for (const MaterialProperty& property : material_properties())
+    if (property.pointer.starts_with(kPrefix)) {
+      const std::string_view rest = property.pointer.substr(kPrefix.size());
+      known.emplace(rest.substr(0, rest.find('/')));
+    }
+  return known;
+}();
 
 /// The JSON text, and the position of the binary chunk (length 0: none).
 struct Container {

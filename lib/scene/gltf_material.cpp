@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lib/scene/gltf_model.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
-
-constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
 
 /// Clamps a number to [lower, upper], with a warning if it was outside; fails if it is not finite.
 float limited(Import& import, double value, double lower, double upper, const std::string& place) {
@@ -43,85 +42,120 @@ void ignore_texture(const ExtensionReader& reader, const char* key) {
                          reader.place.substr(0, reader.place.find(".extensions")));
 }
 
-/// Textures of the core specification.
-template <class Info>
-Texture read_texture(Import& import, const Info& info, const std::string& place) {
-  const auto transform = info.extensions.find("KHR_texture_transform");
-  return read_texture(
-      import, TextureUse{info.index, info.texCoord, transform == info.extensions.end() ? nullptr : &transform->second},
-      place);
-}
+/// A JSON pointer inside a material, taken apart.
+struct PropertyPlace {
+  std::string extension, parent, key;  ///< extension: empty for the core specification; parent: before the key
 
-void read_extension(const ExtensionReader& reader, const std::string& name, Material& material,
-                    MaterialTextures& textures, double& emissive_strength) {
-  Import& import = reader.import;
-  if (!reader.object.IsObject()) import.fail(reader.place, "is not an object");
-  if (name == "KHR_materials_emissive_strength") {
-    emissive_strength = limited(import, reader.number("emissiveStrength", 1), 0, kNoUpper, reader.place);
-  } else if (name == "KHR_materials_specular") {
-    material.specular = limited(import, reader.number("specularFactor", 1), 0, 1, reader.place);
-    material.specular_color =
-        limited_colour(import, reader.numbers("specularColorFactor", 3), Rgb{1.0f}, kNoUpper, reader.place);
-    ignore_texture(reader, "specularTexture");
-    ignore_texture(reader, "specularColorTexture");
-  } else if (name == "KHR_materials_ior") {
-    const double ior = reader.number("ior", 1.5);
-    material.ior = ior == 0 ? 0.0f : limited(import, ior, 1, kNoUpper, reader.place);
-  } else if (name == "KHR_materials_transmission") {
-    material.transmission = limited(import, reader.number("transmissionFactor", 0), 0, 1, reader.place);
-    if (reader.object.Has("transmissionTexture"))
-      textures.transmission =
-          read_texture(import, reader.object.Get("transmissionTexture"), reader.place + ".transmissionTexture");
-  } else if (name == "KHR_materials_volume") {
-    material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
-    material.attenuation_color =
-        limited_colour(import, reader.numbers("attenuationColor", 3), Rgb{1.0f}, 1, reader.place);
-    if (reader.object.Has("attenuationDistance"))
-      material.attenuation_distance =
-          limited(import, reader.number("attenuationDistance", 1), kLeastDistance, kNoUpper, reader.place);
-    ignore_texture(reader, "thicknessTexture");
-  } else if (name == "KHR_materials_unlit") {
-    material.unlit = true;
+  explicit PropertyPlace(std::string_view pointer) {
+    constexpr std::string_view kPrefix = "/extensions/";
+    const auto slash = pointer.rfind('/');
+    parent = pointer.substr(0, slash);
+    key = pointer.substr(slash + 1);
+    if (!pointer.starts_with(kPrefix)) return;
+    const std::string_view rest = pointer.substr(kPrefix.size());
+    extension = rest.substr(0, rest.find('/'));
   }
+  /// As places are written in messages: ".extensions.NAME.key"; of the core specification the key alone.
+  std::string dotted() const { return (extension.empty() ? "." : ".extensions." + extension + ".") + key; }
+};
+
+/// The numbers of a property of a material; empty: the file has none, and the default holds.
+std::vector<double> numbers_of(Import& import, const tinygltf::Material& source, const MaterialProperty& property,
+                               const std::string& place) {
+  const PropertyPlace at(property.pointer);
+  if (!at.extension.empty()) {
+    const auto extension = source.extensions.find(at.extension);
+    if (extension == source.extensions.end()) return {};
+    const std::string object = place + ".extensions." + at.extension;
+    if (!extension->second.IsObject()) import.fail(object, "is not an object");
+    if (property.role == PropertyRole::presence) return {1};
+    if (!extension->second.Has(at.key)) return {};
+    const ExtensionReader reader{import, extension->second, object};
+    return property.components() == 1 ? std::vector{reader.number(at.key.c_str(), 0)}
+                                      : reader.numbers(at.key.c_str(), property.components());
+  }
+  const tinygltf::ParameterMap& values = at.parent.empty() ? source.additionalValues : source.values;
+  const auto found = values.find(at.key);
+  if (found == values.end()) return {};
+  if (property.components() == 1)
+    return {found->second.has_number_value ? found->second.number_value : double(found->second.bool_value)};
+  if (found->second.number_array.size() < 3) import.fail(place + at.dotted(), "must have 3 numbers");
+  return found->second.number_array;
 }
 
-void read_alpha(Import& import, const tinygltf::Material& source, const std::string& place, Material& material) {
-  const std::vector<double>& factor = source.pbrMetallicRoughness.baseColorFactor;
+/// Fails for a number that is not finite; warns of one that set_property() will bring into its limits.
+void check_numbers(Import& import, const MaterialProperty& property, const std::vector<double>& numbers,
+                   const std::string& place) {
+  const std::string at = place + PropertyPlace(property.pointer).dotted();
+  for (const double number : numbers)
+    if (!(property.role == PropertyRole::value_or_zero && number == 0))
+      limited(import, number, property.lower, property.upper, at);
+}
+
+/// Textures that the specification has and this program does not read.
+void ignore_textures(Import& import, const tinygltf::Material& source, const std::string& place) {
+  for (const auto& [extension, texture] : {std::pair{"KHR_materials_specular", "specularTexture"},
+                                           {"KHR_materials_specular", "specularColorTexture"},
+                                           {"KHR_materials_volume", "thicknessTexture"}})
+    if (const auto found = source.extensions.find(extension); found != source.extensions.end())
+      ignore_texture({import, found->second, place + ".extensions." + extension}, texture);
+  if (source.occlusionTexture.index >= 0) import.ignore("occlusion textures (occlusion is computed)");
+}
+
+void read_alpha_mode(Import& import, const tinygltf::Material& source, const std::string& place, Material& material) {
   if (source.alphaMode == "MASK") material.alpha_mode = Material::Alpha::mask;
   else if (source.alphaMode == "BLEND") material.alpha_mode = Material::Alpha::blend;
   else if (source.alphaMode != "OPAQUE")
     import.fail(place + ".alphaMode", "\"" + one_line(source.alphaMode, 40) + "\" is not OPAQUE, MASK or BLEND");
-  if (factor.size() > 3) material.alpha = limited(import, factor[3], 0, 1, place + ".baseColorFactor");
-  material.alpha_cutoff = limited(import, source.alphaCutoff, 0, kNoUpper, place + ".alphaCutoff");
 }
 
-Material read_material(Import& import, std::size_t index) {
-  const tinygltf::Material& source = import.model.materials[index];
-  const std::string place = place_of("materials", index, source.name);
-  const auto& pbr = source.pbrMetallicRoughness;
-  Material material;
-  material.name = source.name;
-  material.base_color = limited_colour(import, pbr.baseColorFactor, Rgb{1.0f}, 1, place + ".baseColorFactor");
-  material.metallic = limited(import, pbr.metallicFactor, 0, 1, place + ".metallicFactor");
-  material.roughness = limited(import, pbr.roughnessFactor, 0, 1, place + ".roughnessFactor");
-  material.double_sided = source.doubleSided;
-  read_alpha(import, source, place, material);
-  double strength = 1;
+/// The reference to a texture of the core specification, by its key.
+TextureUse core_texture(const tinygltf::Material& source, std::string_view key) {
+  const auto use = [](const auto& info) {
+    const auto transform = info.extensions.find("KHR_texture_transform");
+    return TextureUse{info.index, info.texCoord, transform == info.extensions.end() ? nullptr : &transform->second};
+  };
+  return key == "baseColorTexture"           ? use(source.pbrMetallicRoughness.baseColorTexture)
+         : key == "metallicRoughnessTexture" ? use(source.pbrMetallicRoughness.metallicRoughnessTexture)
+         : key == "normalTexture"            ? use(source.normalTexture)
+                                             : use(source.emissiveTexture);
+}
+
+MaterialTextures read_textures(Import& import, const tinygltf::Material& source, const std::string& place) {
   MaterialTextures textures;
-  for (const auto& [name, value] : source.extensions)
-    read_extension({import, value, place + ".extensions." + name}, name, material, textures, strength);
-  material.emission = limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
-  material.emission *= float(strength);
-  if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
-  if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
-  textures.base_color = read_texture(import, pbr.baseColorTexture, place + ".baseColorTexture");
-  textures.metallic_roughness = read_texture(import, pbr.metallicRoughnessTexture, place + ".metallicRoughnessTexture");
-  textures.normal = read_texture(import, source.normalTexture, place + ".normalTexture");
+  for (const MaterialTexture& texture : material_textures()) {
+    const PropertyPlace at(texture.pointer);
+    const std::string there = place + at.dotted();
+    if (at.extension.empty()) {
+      textures.*texture.member = read_texture(import, core_texture(source, at.key), there);
+    } else if (const auto found = source.extensions.find(at.extension);
+               found != source.extensions.end() && found->second.Has(at.key)) {
+      textures.*texture.member = read_texture(import, found->second.Get(at.key), there);
+    }
+  }
   textures.normal_scale =
       limited(import, source.normalTexture.scale, -kNoUpper, kNoUpper, place + ".normalTexture.scale");
-  textures.emission = read_texture(import, source.emissiveTexture, place + ".emissiveTexture");
-  if (source.occlusionTexture.index >= 0) import.ignore("occlusion textures (occlusion is computed)");
+  return textures;
+}
+
+Material read_material(Import& import, std::size_t index, ColorFactors& emission) {
+  const tinygltf::Material& source = import.model.materials[index];
+  const std::string place = place_of("materials", index, source.name);
+  Material material;
+  material.name = source.name;
+  read_alpha_mode(import, source, place, material);
+  emission = {Rgb{0.0f}, 1};
+  for (const MaterialProperty& property : material_properties()) {
+    const std::vector<double> numbers = numbers_of(import, source, property, place);
+    check_numbers(import, property, numbers, place);
+    if (!numbers.empty()) set_property(property, numbers, material, emission);
+  }
+  finish_emission(emission, material);
+  if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
+  if (material.unlit) material.emission = Rgb(0.0f);  // an unlit material shows base_color only
+  const MaterialTextures textures = read_textures(import, source, place);
   if (textures.any()) material.textures = textures;
+  ignore_textures(import, source, place);
   return material;
 }
 
@@ -175,8 +209,9 @@ Camera read_camera(Import& import, std::size_t index) {
 
 void import_materials(Import& import) {
   for (std::size_t i = 0; i < import.model.materials.size(); ++i)
-    import.scene.materials.push_back(read_material(import, i));
+    import.scene.materials.push_back(read_material(import, i, import.emission_factors.emplace_back()));
   import.scene.materials.emplace_back();  // glTF's default material, for primitives without one
+  import.emission_factors.push_back({Rgb{0.0f}, 1});
 }
 
 void import_lights(Import& import) {

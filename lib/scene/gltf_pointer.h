@@ -10,7 +10,8 @@ namespace tempolux::gltf {
 /// The property of an object that a pointer names.
 struct PointedAt {
   AnimationTrack::Path path = AnimationTrack::Path::translation;
-  int target = 0;  ///< index in the scene
+  int target = 0;            ///< index in the scene
+  std::size_t property = 0;  ///< of a material: row of material_properties()
 };
 
 /// Finds the property that a pointer names. False, with a warning, if this program does not animate the property; false

@@ -6,6 +6,7 @@
 #include "formats/error.h"
 #include "lib/core/box_corners.h"
 #include "lib/scene/deform.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux {
 namespace {
@@ -42,7 +43,7 @@ bool may_emit(const Scene& scene, std::uint32_t material) {
   if (scene.materials[material].emissive()) return true;
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks)
-      if (track.changes_emission() && std::uint32_t(track.target) == material) return true;
+      if (changes_emission(track) && std::uint32_t(track.target) == material) return true;
   return false;
 }
 

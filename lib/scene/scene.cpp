@@ -1,5 +1,6 @@
 // lib/scene/scene.cpp -- cameras and lights of a scene.
 #include "lib/scene/scene.h"
+#include "lib/scene/material_properties.h"
 
 #include <algorithm>
 
@@ -66,7 +67,7 @@ void require_lights(const Scene& scene) {
   const auto emits = [&](const Primitive& primitive) { return scene.materials[primitive.material].emissive(); };
   for (const Animation& animation : scene.animations)  // a light may be dark at rest and shine at some time
     for (const AnimationTrack& track : animation.tracks)
-      if (track.changes_emission() || track.path == AnimationTrack::Path::light_color ||
+      if (changes_emission(track) || track.path == AnimationTrack::Path::light_color ||
           track.path == AnimationTrack::Path::light_intensity)
         return;
   for (const Node& node : scene.nodes) {

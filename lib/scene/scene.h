@@ -189,17 +189,7 @@ struct AnimationTrack {
     rotation,
     scale,
     weights,
-    // of a material
-    base_color,
-    alpha_cutoff,
-    metallic,
-    roughness,
-    emissive_factor,
-    emissive_strength,
-    specular,
-    specular_color,
-    ior,
-    transmission,
+    material,  ///< a property of a material
     // of a light
     light_color,
     light_intensity,
@@ -212,13 +202,11 @@ struct AnimationTrack {
   enum class Interpolation { linear, step, cubic_spline };
   int target = 0;  ///< index of the node, material, light or camera
   Path path = Path::translation;
+  std::size_t property = 0;  ///< of a material: row of material_properties()
   Interpolation interpolation = Interpolation::linear;
   std::size_t components = 3;   ///< numbers per value: 4 for a rotation, one per morph target for weights
   std::vector<double> times_s;  ///< strictly increasing
   std::vector<double> values;   ///< `components` numbers per key; a spline has in-tangent, value, out-tangent per key
-
-  /// True if the track changes the emission of a material.
-  bool changes_emission() const { return path == Path::emissive_factor || path == Path::emissive_strength; }
 };
 
 /// The factors of an emission or intensity: KHR_animation_pointer may animate only one of them.

@@ -5,6 +5,7 @@
 
 #include "formats/hash.h"
 #include "lib/image/texture_images.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux {
 namespace {
@@ -78,21 +79,22 @@ void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Tex
     hasher.add(number);
 }
 
-/// Adds properties that only some materials have; adds nothing for the others.
-void add_optional_parts(Hasher& hasher, const Scene& scene, const Material& material) {
-  if (material.unlit) hasher.add(std::string_view("unlit"));
-  if (material.alpha_mode != Material::Alpha::opaque) {
-    hasher.add(std::string_view(material.alpha_mode == Material::Alpha::mask ? "mask" : "blend"));
-    hasher.add(material.alpha);
-    if (material.alpha_mode == Material::Alpha::mask) hasher.add(material.alpha_cutoff);
+/// Adds all properties that scatter light. Emission is in lights_hash().
+void add_material(Hasher& hasher, const Scene& scene, const Material& material) {
+  for (const MaterialProperty& property : material_properties()) {
+    if (property.changes_emission() || property.role == PropertyRole::alpha_cutoff) continue;
+    if (const auto* number = std::get_if<float Material::*>(&property.member)) hasher.add(material.**number);
+    else if (const auto* colour = std::get_if<Rgb Material::*>(&property.member)) hasher.add(material.**colour);
+    else hasher.add(std::uint32_t(material.*std::get<bool Material::*>(property.member)));
   }
+  hasher.add(std::uint32_t(material.alpha_mode));
+  if (material.alpha_mode != Material::Alpha::opaque) hasher.add(material.alpha);
+  if (material.alpha_mode == Material::Alpha::mask) hasher.add(material.alpha_cutoff);
   if (!material.textures) return;
-  const MaterialTextures& textures = *material.textures;
-  add_texture(hasher, scene, "base colour", textures.base_color);
-  add_texture(hasher, scene, "metallic roughness", textures.metallic_roughness);
-  add_texture(hasher, scene, "normal", textures.normal);
-  if (textures.normal) hasher.add(textures.normal_scale);
-  add_texture(hasher, scene, "transmission", textures.transmission);
+  for (const MaterialTexture& texture : material_textures())
+    if (texture.member != &MaterialTextures::emission)
+      add_texture(hasher, scene, texture.name, (*material.textures).*texture.member);
+  if (material.textures->normal) hasher.add(material.textures->normal_scale);
 }
 
 }  // namespace
@@ -125,19 +127,10 @@ std::string materials_hash(const Scene& scene, std::span<const Material> materia
   for (std::size_t m = 0; m < numbers.size(); ++m)
     if (numbers[m] != kNone) ordered[numbers[m]] = &materials[m];
   Hasher hasher;
-  hasher.add(std::string_view("materials 1"));
+  hasher.add(std::string_view("materials 2"));
   for (const Material* material : ordered) {
     if (!material) break;
-    for (const Rgb& colour : {material->base_color, material->specular_color}) hasher.add(colour);
-    for (const float number :
-         {material->metallic, material->roughness, material->specular, material->ior, material->transmission,
-          material->thin_walled ? 1.0f : 0.0f, material->double_sided ? 1.0f : 0.0f})
-      hasher.add(number);
-    if (material->attenuation_distance < std::numeric_limits<float>::infinity()) {
-      hasher.add(material->attenuation_color);
-      hasher.add(material->attenuation_distance);
-    }
-    add_optional_parts(hasher, scene, *material);
+    add_material(hasher, scene, *material);
   }
   return hasher.hex();
 }

@@ -10,6 +10,7 @@
 #include "lib/scene/at_frame.h"
 #include "lib/scene/deform.h"
 #include "lib/scene/place_surfaces.h"
+#include "lib/scene/material_properties.h"
 
 namespace tempolux {
 namespace {
@@ -39,13 +40,22 @@ void set_borders(const Scene& scene, int frame, const TimeOptions& options, Segm
   (frame <= last ? segment.last : segment.first) = frame <= last ? last : last + 1;
 }
 
-const char* path_word(Path path) {
-  static const std::array<const char*, 20> words{
-      "translation", "rotation",     "scale",           "weights",           "base colour", "alpha cutoff",
-      "metallic",    "roughness",    "emissive factor", "emissive strength", "specular",    "specular colour",
-      "ior",         "transmission", "colour",          "intensity",         "inner cone",  "outer cone",
-      "yfov",        "ymag"};
-  return words[std::size_t(path)];
+/// The name of what a track changes.
+const char* word_of(const AnimationTrack& track) {
+  switch (track.path) {
+    case Path::translation: return "translation";
+    case Path::rotation: return "rotation";
+    case Path::scale: return "scale";
+    case Path::weights: return "weights";
+    case Path::material: return material_properties()[track.property].name;
+    case Path::light_color: return "colour";
+    case Path::light_intensity: return "intensity";
+    case Path::inner_cone: return "inner cone";
+    case Path::outer_cone: return "outer cone";
+    case Path::yfov: return "yfov";
+    case Path::ymag: return "ymag";
+  }
+  return "";
 }
 
 bool differs_in(const AnimationTrack& track, const Segment& segment, double fps) {
@@ -69,7 +79,7 @@ std::string reason(const Scene& scene, const Animator& animator, const Segment& 
   const Node& node = scene.nodes[n];
   for (const AnimationTrack* track : animator.tracks(n))
     if ((node.skin < 0 || track->path == Path::weights) && differs_in(*track, segment, fps))
-      properties += (properties.empty() ? "" : ", ") + std::string(path_word(track->path));
+      properties += (properties.empty() ? "" : ", ") + std::string(word_of(*track));
   if (!properties.empty()) return properties + " of " + name_of(node);
   if (node.skin >= 0)
     for (const int joint : scene.skins[std::size_t(node.skin)].joints)
@@ -116,7 +126,7 @@ void add_changes(const Scene& scene, const Animator& animator, double fps, Segme
                        : kind == "light"  ? scene.lights[i].name
                                           : scene.cameras[i].name;
     if (name.empty()) name = kind + " " + std::to_string(i);
-    segment.changes.push_back({name, std::string(path_word(track->path)) + " of " + name, kind});
+    segment.changes.push_back({name, std::string(word_of(*track)) + " of " + name, kind});
     if (kind == "camera") continue;
     for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
       const Node& node = scene.nodes[n];
@@ -128,7 +138,7 @@ void add_changes(const Scene& scene, const Animator& animator, double fps, Segme
                                                                    });
       if (!has || segment.node_moves[n]) continue;
       segment.node_moves[n] = 1;
-      segment.why_moves[n] = std::string(path_word(track->path)) + " of its " + kind;
+      segment.why_moves[n] = std::string(word_of(*track)) + " of its " + kind;
     }
   }
 }

@@ -25,6 +25,7 @@
 #include "lib/core/sampling.h"
 #include "lib/scene/gltf_load.h"
 #include "lib/scene/at_frame.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include "lib/render/known_light.h"
 #include "lib/scene/gltf_load.h"
 #include "tests/support/scenes.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux::test {
 

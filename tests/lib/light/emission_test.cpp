@@ -10,6 +10,7 @@
 #include "formats/error.h"
 #include "lib/core/halton.h"
 #include "tests/lib/light/light_scene.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

@@ -1,6 +1,7 @@
 // tests/lib/render/deforming_motion_test.cpp -- motion of points on deforming surfaces, against the closed form.
 #include "lib/render/data_channels.h"
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

@@ -11,6 +11,7 @@
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
 #include "lib/scene/gltf_load.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

@@ -3,6 +3,7 @@
 #include "lib/image/texture_images.h"
 #include "lib/scene/scene_hash.h"
 #include "tests/lib/scene/packed_scene.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

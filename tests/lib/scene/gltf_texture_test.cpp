@@ -8,6 +8,7 @@
 #include "lib/scene/texture_lookup.h"
 #include "tests/lib/scene/gltf_maker.h"
 #include "tests/support/png_bytes.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

@@ -7,6 +7,7 @@
 #include "lib/light/lights.h"
 #include "lib/scene/animate.h"
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

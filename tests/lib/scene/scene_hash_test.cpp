@@ -5,6 +5,7 @@
 
 #include "formats/error.h"
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

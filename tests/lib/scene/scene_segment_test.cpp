@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

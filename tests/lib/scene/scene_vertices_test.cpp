@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

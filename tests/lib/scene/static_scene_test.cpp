@@ -8,6 +8,7 @@
 #include "lib/scene/scene_hash.h"
 #include "tests/lib/scene/gltf_maker.h"
 #include "tests/support/scenes.h"
+#include "tests/support/scene_at_frame.h"
 
 namespace tempolux {
 namespace {

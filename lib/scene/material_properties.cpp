@@ -1,0 +1,102 @@
+#include "lib/scene/material_properties.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tempolux {
+namespace {
+
+using enum PropertyRole;
+using M = Material;
+
+constexpr double kNoUpper = std::numeric_limits<float>::max();
+constexpr double kLeastDistance = 1e-12;  ///< m; replaces an attenuationDistance of 0, which glTF forbids
+
+constexpr std::array kProperties{
+    MaterialProperty{"base colour", "/pbrMetallicRoughness/baseColorFactor", &M::base_color, 0, 1, colour_and_alpha},
+    MaterialProperty{"alpha cutoff", "/alphaCutoff", &M::alpha_cutoff, 0, kNoUpper, alpha_cutoff},
+    MaterialProperty{"metallic", "/pbrMetallicRoughness/metallicFactor", &M::metallic, 0, 1},
+    MaterialProperty{"roughness", "/pbrMetallicRoughness/roughnessFactor", &M::roughness, 0, 1},
+    MaterialProperty{"emissive factor", "/emissiveFactor", &M::emission, 0, kNoUpper, emission_colour},
+    MaterialProperty{"emissive strength", "/extensions/KHR_materials_emissive_strength/emissiveStrength", &M::emission,
+                     0, kNoUpper, emission_strength},
+    MaterialProperty{"specular", "/extensions/KHR_materials_specular/specularFactor", &M::specular, 0, 1},
+    MaterialProperty{"specular colour", "/extensions/KHR_materials_specular/specularColorFactor", &M::specular_color},
+    MaterialProperty{"ior", "/extensions/KHR_materials_ior/ior", &M::ior, 1, kNoUpper, value_or_zero},
+    MaterialProperty{"transmission", "/extensions/KHR_materials_transmission/transmissionFactor", &M::transmission, 0,
+                     1},
+    MaterialProperty{"thickness", "/extensions/KHR_materials_volume/thicknessFactor", &M::thin_walled, 0, kNoUpper,
+                     solid},
+    MaterialProperty{"attenuation colour", "/extensions/KHR_materials_volume/attenuationColor", &M::attenuation_color,
+                     0, 1},
+    MaterialProperty{"attenuation distance", "/extensions/KHR_materials_volume/attenuationDistance",
+                     &M::attenuation_distance, kLeastDistance},
+    MaterialProperty{"double sided", "/doubleSided", &M::double_sided},
+    MaterialProperty{"unlit", "/extensions/KHR_materials_unlit", &M::unlit, 0, kNoUpper, presence}};
+
+using T = MaterialTextures;
+constexpr std::array kTextures{
+    MaterialTexture{"base colour", "/pbrMetallicRoughness/baseColorTexture", &T::base_color},
+    MaterialTexture{"metallic roughness", "/pbrMetallicRoughness/metallicRoughnessTexture", &T::metallic_roughness},
+    MaterialTexture{"normal", "/normalTexture", &T::normal},
+    MaterialTexture{"emission", "/emissiveTexture", &T::emission},
+    MaterialTexture{"transmission", "/extensions/KHR_materials_transmission/transmissionTexture", &T::transmission}};
+
+// A new member changes these counts. It needs a row above, in which reader, hash and animation find it.
+[[maybe_unused]] constexpr auto members = [](const MaterialValues& values) {
+  [[maybe_unused]] const auto& [base_color, metallic, roughness, emission, specular, specular_color, ior, transmission, thin_walled,
+               attenuation_color, attenuation_distance, double_sided, unlit] = values;
+  return 13;
+};
+static_assert(kProperties.size() == 13 + 2);  // besides: alpha cutoff, the second factor of the emission
+[[maybe_unused]] constexpr auto members_of_textures = [](const MaterialTextures& values) {
+  [[maybe_unused]] const auto& [base_color, metallic_roughness, normal, emission, transmission, normal_scale, vertex_colors] = values;
+  return 7;
+};
+static_assert(kTextures.size() == 7 - 2);  // normal_scale and vertex_colors are no textures
+
+Rgb limited_colour(std::span<const double> numbers, const MaterialProperty& property) {
+  Rgb colour;
+  for (int c = 0; c < 3; ++c)
+    colour[c] = float(std::clamp(numbers[std::size_t(c)], property.lower, property.upper));
+  return colour;
+}
+
+}  // namespace
+
+std::size_t MaterialProperty::components() const {
+  return role == colour_and_alpha ? 4 : std::holds_alternative<Rgb Material::*>(member) && role != emission_strength ? 3 : 1;
+}
+
+std::span<const MaterialProperty> material_properties() { return kProperties; }
+std::span<const MaterialTexture> material_textures() { return kTextures; }
+
+bool changes_emission(const AnimationTrack& track) {
+  return track.path == AnimationTrack::Path::material && kProperties[track.property].changes_emission();
+}
+
+void set_property(const MaterialProperty& property, std::span<const double> numbers, Material& material,
+                  ColorFactors& emission) {
+  const auto number = [&] { return float(std::clamp(numbers[0], property.lower, property.upper)); };
+  switch (property.role) {
+    case emission_colour: emission.color = limited_colour(numbers, property); return;
+    case emission_strength: emission.strength = number(); return;
+    case solid: material.*std::get<bool Material::*>(property.member) = !(numbers[0] > 0); return;
+    case colour_and_alpha:
+      if (numbers.size() > 3) material.alpha = float(std::clamp(numbers[3], 0.0, 1.0));
+      break;
+    case value_or_zero:
+      if (numbers[0] == 0) {
+        material.*std::get<float Material::*>(property.member) = 0;
+        return;
+      }
+      break;
+    default: break;
+  }
+  if (const auto* one = std::get_if<float Material::*>(&property.member)) material.**one = number();
+  else if (const auto* colour = std::get_if<Rgb Material::*>(&property.member))
+    material.**colour = limited_colour(numbers, property);
+  else material.*std::get<bool Material::*>(property.member) = numbers[0] != 0;
+}
+
+}  // namespace tempolux
