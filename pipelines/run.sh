@@ -46,13 +46,15 @@ done
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh" \
   --recipes "$TOP/pipelines/show.sh"
 
-. "${0%/*}/ending.sh"
+. "${0%/*}/made.sh"
 plan=plan.mk folder=$OUT
 aside=$(mktemp -d) || exit 3
 trap 'rm -rf "$aside"' EXIT
-makes() {   # runs in a subshell
+export FAILED="$aside/failed" CLAIMS="$aside/claims"
+mkdir "$CLAIMS" || exit 3
+makes() {   # runs in a subshell; after an error all that does not need the lost file is made (-k)
   goal=$1; shift
-  exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
+  exec ${MAKE:-make} -k --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
   ending $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
@@ -67,8 +69,16 @@ if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which
   plan=$aside/plan.mk
   [ -d "$OUT" ] || folder=$aside
 else
+  # scene-plan rewrites only what has changed. Statistics are new after each run: they show that RUN has run it.
+  ran=
+  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null; then
+    ran=$OUT/state/planned.json
+    set -- "$@" --stats "$ran"
+  fi
+  wanted=plan.mk
   # shellcheck disable=SC2086
-  ending $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+  made ${ran:+"$ran"} -- $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+  wanted=
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
   plan=state/.plan.mk.tmp.$(uname -n).$$
   trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
@@ -103,6 +113,7 @@ alone -s
 failed() {
   alone -n -x ||
     echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
+  (cd "$OUT" && PLAN=$plan sh "$PIPELINES/progress.sh" failed "$goal") >&2
   exit "$1"
 }
 if [ -s "$aside/commands" ]; then
@@ -110,6 +121,10 @@ if [ -s "$aside/commands" ]; then
 elif [ -z "$quiet" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
+# Raw frames that a killed make had filtered and not removed yet.
+raw=$(set +f; cd "$OUT" && ls raw/*.exr 2> /dev/null)
+# shellcheck disable=SC2086
+[ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
 [ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
 [ "$goal" != report ] || echo "look at $OUT/report/index.html"
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }

@@ -40,14 +40,9 @@ void add_report(GraphBuilder& g, int frame) {
   collect_stats(g, picture_name, seen, g.graph.spent[g.graph.errors[frame]]);
 }
 
-/// A raw picture is large, so the command that reads it removes it. A picture that two commands read stays, since
-/// either may run first.
+/// A raw picture is large, so it is removed as soon as all pictures that are filtered from it are there.
 void remove_when_read(GraphBuilder& g) {
-  std::map<std::string, int> readers;
-  for (const GraphFile& file : g.graph.files)
-    for (const std::string& input : file.inputs) ++readers[input];
-  for (GraphFile& file : g.graph.files)
-    file.passing = g.wish.filter == 1 && file.stage == stage::raw.name && readers[file.name] == 1;
+  for (GraphFile& file : g.graph.files) file.passing = file.stage == stage::raw.name;
 }
 
 }  // namespace

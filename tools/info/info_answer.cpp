@@ -20,8 +20,8 @@ int check_files(Tool& tool, const Request& request) {
   int code = exit_ok;
   for (const std::string& file : request.files) {
     try {
-      facts_of(file, false);
-      if (!request.json) std::cout << file << ": valid\n";
+      request.whole ? check_end(file) : void(facts_of(file, false));
+      if (!request.json) std::cout << file << (request.whole ? ": whole\n" : ": valid\n");
     } catch (const InputError& error) {
       if (file != "-" && (!std::filesystem::exists(file) || std::filesystem::is_directory(file))) throw;
       tool.warn(error.what());
@@ -74,7 +74,7 @@ int answer(Tool& tool, Request& request) {
     if (request.json || !equal || !facts["differing"].empty()) print(facts, request.json);
     return equal ? exit_ok : exit_differs;
   }
-  if (request.check) return check_files(tool, request);
+  if (request.check || request.whole) return check_files(tool, request);
   if (request.account) {
     const FramesAccount account = account_of_frames(request.files);
     if (!account.line.empty()) std::cout << account.line << '\n';
