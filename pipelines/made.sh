@@ -65,8 +65,13 @@ tool_of() {   # tool_of COMMAND...: the tool of a command that may begin with th
   echo "${1##*/}"
 }
 
+show() {   # show COMMAND...: prints a command that can be typed
+  for word; do case $word in *[!A-Za-z0-9_./:=,+%@-]*) printf "'%s' " "$word";; *) printf '%s ' "$word";; esac; done
+  echo
+}
+
 # The command of made()'s arguments: run_it N WORD1 ... WORDN -- COMMAND...
-run_it() { shift $(($1 + 2)); ending "$@"; }
+run_it() { shift $(($1 + 2)); [ -z "$V" ] || show "$@" >&2; ending "$@"; }
 name_it() { shift $(($1 + 2)); tool_of "$@"; }
 
 # Sets `why` to the reason if the command, which ended with the code $1, has not made its files; else to "".

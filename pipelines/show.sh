@@ -44,6 +44,7 @@ case $marker in
   shown/exposure-*)
     ! given_up "$marker" || exit 3
     part_of "$marker"
+    [ -z "$V" ] || show $RUN "$BIN/tempolux-info" "$1" --json >&2
     ending $RUN "$BIN/tempolux-info" "$1" --json > "$part" || exit
     stops=$(sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' "$part")
     [ -n "$stops" ] || { not_made "$marker" tempolux-info 'has printed no exposure'; exit 3; }

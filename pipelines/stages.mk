@@ -18,17 +18,17 @@ drawn  = $(scene) $(seed)
 seen   = $(drawn) --camera "$$CAMERA"
 # Other random numbers, for `make measure` alone: it has its own folder, because keys do not include the seed.
 seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}
-quiet  = $(if $V,,@)
 say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
-# Runs a tool and looks whether it has made its files (made.sh). exec: what stops make stops the command.
+# Runs a tool and looks whether it has made its files; with V=1 shows the command (made.sh). exec: what stops make stops
+# the command.
 made   = exec sh "$$PIPELINES/made.sh" $1 -- $(RUN) "$$BIN"
-run    = $(quiet)$(say)$(call made,$@)
-unless = $(quiet)test -f $@ || { $(say)# of files that follow.sh may have made before make comes to them
+run    = @$(say)$(call made,$@)
+unless = @test -f $@ || { $(say)# of files that follow.sh may have made before make comes to them
 # make runs a line that contains $(MAKE) even with -n: here a variable holds it.
 dry    = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 make_files = MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"'
 # After a picture: what waits for it alone is made at once, so that frames are shown while others are rendered.
-follow = $(if $(dry),,$(if $(filter demo,$(MAKECMDGOALS)),+$(quiet)exec env $(make_files) \
+follow = $(if $(dry),,$(if $(filter demo,$(MAKECMDGOALS)),+@exec env $(make_files) \
   sh "$$PIPELINES/follow.sh" next $@))
 .SUFFIXES:
 .PHONY: demo report
@@ -43,7 +43,7 @@ demo: $(frames) $(previews) sheet.png $(log)
 photons/%.photons:
 	$(run)/photon-trace $(drawn) -o $@ --stats photons/$*.json
 stands/%.photons stands/%.paths:
-	$(quiet)$(say)$(call made,stands/$*.photons stands/$*.paths)/photon-trace $(drawn) -o stands/$*.photons \
+	@$(say)$(call made,stands/$*.photons stands/$*.paths)/photon-trace $(drawn) -o stands/$*.photons \
 	  --paths stands/$*.paths --stats stands/$*.json
 moved/%.photons:
 	$(run)/photon-trace $(drawn) -o $@ --stats moved/$*.json
@@ -57,7 +57,7 @@ points/%.irradpoints:
 stands_points/%.irradpoints:
 	$(run)/irradcache-build points $(drawn) -o $@ --stats stands_points/$*.json
 split/%.low.irradpoints split/%.high.irradpoints:
-	$(quiet)$(say)$(call made,split/$*.low.irradpoints split/$*.high.irradpoints)/photonmap-split $(words) \
+	@$(say)$(call made,split/$*.low.irradpoints split/$*.high.irradpoints)/photonmap-split $(words) \
 	  --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
 
 # Indirect light, gathered in records where the cameras need them. kept: records that keep their gathered light over
@@ -67,7 +67,7 @@ cache/%.irradcache:
 stands_cache/%.irradcache:
 	$(run)/irradcache-build records $(seen) -o $@ --stats stands_cache/$*.json
 kept/%.irradcache kept/%.radsamples:
-	$(quiet)$(say)$(call made,kept/$*.irradcache kept/$*.radsamples)/gather-temporal final $(seen) \
+	@$(say)$(call made,kept/$*.irradcache kept/$*.radsamples)/gather-temporal final $(seen) \
 	  -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
 # In previews: light textures, which count photons in elements of the surfaces and smooth them. windows: the
 # photons of many frames.
@@ -86,7 +86,7 @@ raw/%.exr:
 	$(follow)
 filtered/%.exr:
 	$(unless)$(call made,$@)/st-filter $(words) -o $@ --stats filtered/$*.json; }
-	$(quiet)sh "$$PIPELINES/follow.sh" read $(filter $(passing),$|)
+	@sh "$$PIPELINES/follow.sh" read $(filter $(passing),$|)
 	$(follow)
 smoky/%.exr:
 	$(unless)$(call made,$@)/volume-compose $(seen) -o $@ --stats smoky/$*.json; }
@@ -99,9 +99,9 @@ keys/%.exr:
 walk/%.done:
 	$(walk_rule)
 walked/%.exr:
-	$(quiet)$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+	@$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
 	$(follow)
-walk_rule = $(if $(dry),,+)$(quiet)$(say)exec env $(make_files) SHARED="$(shared)" \
+walk_rule = $(if $(dry),,+)@$(say)exec env $(make_files) SHARED="$(shared)" \
   sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
 # Files that a user looks at: frames, previews, the sheet, a walkthrough's log (show.sh). shown/WHAT-KEY is the marker
@@ -109,13 +109,13 @@ walk_rule = $(if $(dry),,+)$(quiet)$(say)exec env $(make_files) SHARED="$(shared
 marker = $(firstword $(filter shown/%,$@ $|))
 show = exec sh "$$PIPELINES/show.sh" $(marker) $(filter-out $(frames) $(marker),$|)
 shown/%:
-	$(quiet)test -f $@ || $(show)
+	@test -f $@ || $(show)
 $(frames) $(previews) sheet.png walk.log:
-	$(quiet)test -f $@ || $(show)
+	@test -f $@ || $(show)
 
 # Compares frames with path tracing in two halves, whose noise is known, and adds up the cost of all stages.
 path/%.exr path/%_a.exr path/%_b.exr:
-	$(quiet)$(say)$(call made,path/$*.exr path/$*_a.exr path/$*_b.exr)/frame-render $(seen) -o path/$*.exr \
+	@$(say)$(call made,path/$*.exr path/$*_a.exr path/$*_b.exr)/frame-render $(seen) -o path/$*.exr \
 	  --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
@@ -123,8 +123,8 @@ title = "$$(basename -- "$$SCENE"): error against time"
 write_report = sh "$$PIPELINES/made.sh" report/index.html -- $(RUN) "$$BIN"/error-report -o report --title $(title) \
   $(report_runs) && rm -f shown/report-* && touch $(marker)
 shown/report-%:
-	$(quiet)$(write_report)
+	@$(write_report)
 report/index.html:
-	$(quiet)test -f $@ || { $(write_report); }
+	@test -f $@ || { $(write_report); }
 report: report/index.html
 	@cat report/report.md

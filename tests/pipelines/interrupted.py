@@ -34,11 +34,11 @@ for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):   # independent of the make th
 
 SMALL = {"SIZE": "32x18", "PHOTONS": "1k", "POINTS": "--point-count 300 --light-samples 1", "CACHE": "--rays 20 --error-bound 1", "ERROR": "0.05",
          "QUALITY": "draft", "INDIRECT": "records"}
-METHODS = {"frames": {"FRAMES": "0-2", "MOVING": "light"}, "window": {"FRAMES": "0-2", "FILTER": "3", "MOVING": "anew"},
-           "walkthrough": {"FRAMES": "0-4", "METHOD": "walkthrough", "KEY_DISTANCE": "4", "FILTER": "1"},
-           "preview": {"FRAMES": "0-1", "METHOD": "preview", "INDIRECT": ""},
-           "smoke": {"FRAMES": "0-2", "UPDATE": "20%", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-7"},
-           "temporal": {"FRAMES": "0-2", "MOVING": "time", "SPLIT": "on"}}
+METHODS = {"frames": {"FRAMES": "0-1", "MOVING": "light"}, "window": {"FRAMES": "0-1", "FILTER": "3", "MOVING": "anew"},
+           "walkthrough": {"FRAMES": "0-2", "METHOD": "walkthrough", "KEY_DISTANCE": "2", "FILTER": "1"},
+           "preview": {"FRAMES": "0-1", "METHOD": "preview", "INDIRECT": "", "TIME": "--segment 2"},
+           "smoke": {"FRAMES": "0-1", "UPDATE": "20%", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-7"},
+           "temporal": {"FRAMES": "0-1", "MOVING": "time", "SPLIT": "on"}}
 SKY, OTHER_SKY = "1,1,1", ".2,.3,.4"
 
 
@@ -106,9 +106,11 @@ class Chain:
         self.commands, self.clean = self.ran(), self.pictures(self.folder / "clean")
 
     def old_pictures(self):
-        """OUT with the pictures of the other sky."""
+        """OUT with the pictures of the other sky, and with the decisions for this one, which pilots take as long as all else."""
         shutil.rmtree(self.out, ignore_errors=True)
         shutil.copytree(self.other, self.out)
+        for decided in (self.folder / "clean" / "state").glob("*.decided"):
+            shutil.copy2(decided, self.out / "state")
 
     def wrong(self, what):
         self.failed += 1
