@@ -9,7 +9,7 @@ Run at the top of the tree; BIN is the folder with the tools. Tiny scenes. make 
   cut, late    the file of a command is cut off: as above; it is seen a second later: make waits for it
   killed       one of the frame-renders is killed with -9: all other frames are shown, one is rendered the next time
   stopped      SIGINT to make's processes while raw frames wait for their filter: they are kept, and not rendered again
-  disk         raw frames that are there at once: few, not the whole range
+  disk         raw frames that are there at once, and rendered frames that are not shown yet: few, not the whole range
 
 --makefile: Makefile.example of another version, to see it fail.
 """
@@ -39,6 +39,8 @@ METHODS = {"frames": {"FRAMES": "0-1", "MOVING": "light"}, "window": {"FRAMES": 
            "preview": {"FRAMES": "0-1", "METHOD": "preview", "INDIRECT": "", "TIME": "--segment 2"},
            "smoke": {"FRAMES": "0-1", "UPDATE": "20%", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-7"},
            "temporal": {"FRAMES": "0-1", "MOVING": "time", "SPLIT": "on"}}
+LONG = {"frames": {"FRAMES": "0-2"}, "window": {"FRAMES": "0-2"}, "walkthrough": {"FRAMES": "0-4", "KEY_DISTANCE": "4", "THRESHOLD": "0%"},
+        "preview": {"FRAMES": "0-2"}, "smoke": {"FRAMES": "0-2"}, "temporal": {"FRAMES": "0-2"}}
 SKY, OTHER_SKY = "1,1,1", ".2,.3,.4"
 
 
@@ -49,7 +51,7 @@ class Chain:
         self.folder, self.method, self.arguments = folder / method, method, arguments
         self.folder.mkdir()
         self.out, self.log, self.failed = self.folder / "out", self.folder / "log", 0
-        self.values = SMALL | METHODS[method] | {"SCENE": str(self.scene()), "BIN": str(arguments.bin)}
+        self.values = SMALL | METHODS[method] | (LONG[method] if arguments.long else {}) | {"SCENE": str(self.scene()), "BIN": str(arguments.bin)}
         if method == "smoke":
             self.values["VOLUME"] = str(self.folder / "smoke_####.vdb")
         self.values = {name: value for name, value in self.values.items() if value}
@@ -222,18 +224,20 @@ def stopped(chain, frames, after):
 
 
 def disk(chain, frames):
-    """How many raw frames are there at once, and how many frames are shown when the last one is rendered."""
+    """How many raw frames are there at once, and how many rendered frames are not shown yet."""
     shutil.rmtree(chain.out, ignore_errors=True)
     make = subprocess.Popen(chain.command(chain.out, FRAMES=f"0-{frames - 1}"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    most = 0
+    most = behind = 0
     while make.poll() is None:
+        shown = len(list((chain.out / "frames").glob("*.exr")))
         most = max(most, len(list((chain.out / "raw").glob("[0-9]*.exr"))))
+        behind = max(behind, min(frames, len(list((chain.out / "raw").glob("*.json")))) - shown)
         time.sleep(.005)
     window = int(chain.values.get("FILTER", 1))
     limit = window + 4   # two jobs, each with a raw frame under way and one to be filtered
-    if make.returncode or most > limit:
-        chain.wrong(f"disk: exit {make.returncode}, {most} raw frames at once, at most {limit} are needed")
-    return f"at most {most} of {frames} raw frames at once"
+    if make.returncode or most > limit or behind > limit:
+        chain.wrong(f"disk: exit {make.returncode}, {most} raw frames at once, {behind} frames not shown yet, at most {limit} are needed")
+    return f"at most {most} of {frames} raw frames at once, {behind} not shown yet"
 
 
 def main():

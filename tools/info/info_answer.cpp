@@ -1,5 +1,6 @@
 #include "tools/info/info_answer.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -66,6 +67,8 @@ const std::string& only_file(const Request& request, const char* option) {
 }  // namespace
 
 int answer(Tool& tool, Request& request) {
+  if (request.whole && std::ranges::find(request.files, "-") != request.files.end())
+    throw InputError("--whole: looks at the ends of files; --check reads standard input");
   for (const std::string& file : request.files) tool.depends_on(file);
   if (request.diff) {
     if (request.files.size() != 2) throw InputError("--diff: takes two files");
