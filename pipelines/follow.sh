@@ -21,7 +21,7 @@ waiting() {
 
 next() {
   lines=$(waiting "$1")
-  while read -r target bar inputs; do
+  while read -r target _ inputs; do
     [ -n "$target" ] && [ ! -e "$target" ] || continue
     for input in $inputs; do there "$input" || continue 2; done
     [ -z "$CLAIMS" ] || mkdir "$CLAIMS/${target##*/}" 2> /dev/null || continue
@@ -40,14 +40,14 @@ readers() {
 }
 
 read_by_all() {
-  lines=$(readers "$@") done= kept=
+  lines=$(readers "$@") all= kept=
   while read -r raw reader; do
-    done="$done $raw"
+    all="$all $raw"
     [ -e "$reader" ] || kept="$kept $raw"
   done << END
 $lines
 END
-  for raw in $done; do case " $kept " in *" $raw "*) ;; *) rm -f "$raw";; esac; done
+  for raw in $all; do case " $kept " in *" $raw "*) ;; *) rm -f "$raw";; esac; done
 }
 
 case $1 in
