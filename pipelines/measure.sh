@@ -12,18 +12,19 @@ runs=$OUT/measure
 table=$OUT/measured.json
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
-trap 'exit 130' INT TERM
+. "${0%/*}/made.sh"
 
 render() {   # render SEED FRAME PHOTONS
   FRAMES=$2 PHOTONS=$3 MEASURE_SEED=$1 OUT=$runs/$1 MEASURED='' \
-    sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 || { tail -3 "$work/log" >&2; exit 3; }
+    ending sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 || { tail -3 "$work/log" >&2; exit 3; }
 }
 
-compare() {   # compare FRAME [--either]: percent of the pixels in which a viewer sees a difference
+compare() {   # compare FRAME [--either]: sets `percent` of the pixels in which a viewer sees a difference
   name=$(printf %04d "$1").exr
   shift
-  "$BIN/aqm-compare" "$runs/1/frames/$name" "$runs/2/frames/$name" "$@" --metric aqm --json "$work/c.json" -q || exit 3
-  sed -n 's/^ *"percent": *\([0-9.e+-]*\),*$/\1/p' "$work/c.json" | head -1   # of the whole picture
+  made "$runs/compared.json" -- $RUN "$BIN/aqm-compare" "$runs/1/frames/$name" "$runs/2/frames/$name" "$@" --metric aqm \
+    --json "$runs/compared.json" -q || exit 3
+  percent=$(sed -n 's/^ *"percent": *\([0-9.e+-]*\),*$/\1/p' "$runs/compared.json" | head -1)   # of the whole picture
 }
 
 tell() {   # tell FRAME PHOTONS PERCENT: prints a result and adds it to the list
@@ -37,7 +38,7 @@ goes_on() {   # goes_on PERCENT: true if it is above AQM and one of the last two
   [ $worse -lt 2 ] && [ "$n" -le $most ] && awk "BEGIN { exit !($1 > ${AQM%\%}) }"
 }
 
-segment() {   # segment FIRST LAST: prints its line of the table
+segment() {   # segment FIRST LAST: adds its line to the table
   frame=$(sed -n 's/^frames := //p' "$OUT/plan.mk" | tr ' ' '\n' | sed 's|^frames/0*\([0-9]\)|\1|; s|[.]exr$||' |
     awk -v a="$1" -v b="$2" '$1 >= a && $1 <= b { d = $1 - int((a + b) / 2); d = d < 0 ? -d : d
                                                   if (best == "" || d < least) { best = $1; least = d } } END { print best }')
@@ -47,18 +48,19 @@ segment() {   # segment FIRST LAST: prints its line of the table
     render $one "$frame" "$n"
     while :; do
       render $two "$frame" $((2 * n))
-      percent=$(compare "$frame") || exit 3
+      compare "$frame"
       tell "$frame" "$n" "$percent"
       n=$((2 * n)) one=$two two=$((3 - two))
       goes_on "$percent" || break
     done
   else
     render 1 "$frame" "$PHOTONS" && render 2 "$frame" "$PHOTONS"
-    percent=$(compare "$frame" --either) || exit 3
+    compare "$frame" --either
     tell "$frame" '' "$percent"
   fi
   picture=$(sed -n "s/^ *\"$(printf %04d "$frame")\": \"\([^\"]*\)\",*\$/\1/p" "$runs/1/plan.json")
-  echo "  {\"first\": $1, \"frame\": $frame, \"picture\": \"$picture\", \"tried\": [$tried]}"
+  list="$list${list:+,
+}  {\"first\": $1, \"frame\": $frame, \"picture\": \"$picture\", \"tried\": [$tried]}"
 }
 
 case $AQM in
@@ -69,9 +71,7 @@ list=
 sed -n '/^ "segments"/,$ s/^   "\(first\|last\)": \([0-9]*\),$/\2/p' "$OUT/plan.json" |
   paste -d ' ' - - > "$work/segments"
 while read -r first last; do
-  line=$(segment "$first" "$last" < /dev/null) || exit 3
-  list="$list${list:+,
-}$line"
+  segment "$first" "$last" < /dev/null
 done < "$work/segments"
 printf '{"format": "tempolux measured", "version": "1.0", "segments": [\n%s\n]}\n' "$list" > "$table.$$" &&
   mv -f "$table.$$" "$table" && rm -rf "$runs"

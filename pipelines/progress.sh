@@ -4,9 +4,11 @@
 #     progress.sh begin        how much there is to do
 #     progress.sh say FILE     before the command that makes FILE:  [12/97] 0:41, about 4:50 left: frame 3, pixels
 #     progress.sh end          after the last one: what the frames cost, how noisy they are, where to look
+#     progress.sh failed GOAL  after a make that failed: what was made, which file was not and why
 #
 # The environment has PROGRESS, a file that gets a line for each command that has begun; TOTAL, the number of commands;
-# WEIGHT, their estimated cost in all (progress.sh weigh); BEGAN, the time at which the first one began (date +%s).
+# WEIGHT, their estimated cost in all (progress.sh weigh); BEGAN, the time at which the first one began (date +%s);
+# FAILED, a file with a line for each command that has not made its file (made.sh).
 clock() {
   if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60))
   else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi
@@ -147,8 +149,26 @@ end() {
       }'
 }
 
+shown() {   # number of frames that show what the plan wants
+  awk '/^frames\/[^:]*[.]exr: [|] shown/ { print $3 }' "${PLAN:-plan.mk}" |
+    while read -r marker; do [ ! -e "$marker" ] || echo; done | wc -l
+}
+
+failed() {   # failed GOAL
+  said=
+  [ "$1" != demo ] || said="$(shown) of $(of "$(count frames)" frame) made. "
+  if [ -s "$FAILED" ]; then
+    IFS='	' read -r file tool why < "$FAILED"
+    said="${said}Not made: $(in_words "$file") ($file): $tool $why. "
+    others=$(($(wc -l < "$FAILED") - 1))
+    [ $others = 0 ] || said="${said}$(of $others 'more command') failed. "
+  fi
+  echo "${said}Type the same command again: it makes what is missing"
+}
+
 case $1 in
   say) say "$2";;
+  failed) failed "$2";;
   begin | weigh | end) $1;;
   *) echo "progress.sh: '$1' is none of begin, say, weigh, end" >&2; exit 2;;
 esac

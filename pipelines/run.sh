@@ -21,6 +21,7 @@ quiet=; case "${MAKEFLAGS%% *}" in *s*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && q
 export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
 [ -x "$BIN/scene-plan" ] || [ -n "$dry" ] ||
   { echo "BIN=$BIN: holds no scene-plan; name the folder of the tools, or leave BIN out to build them" >&2; exit 2; }
+case $WAIT in *[!0-9]*) echo "WAIT=$WAIT: give whole seconds" >&2; exit 2;; esac
 case $goal in
   tidy) exec sh "$PIPELINES/tidy.sh" "$OUT";;
   compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
@@ -46,13 +47,15 @@ done
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh" \
   --recipes "$TOP/pipelines/show.sh"
 
-. "${0%/*}/ending.sh"
+. "${0%/*}/made.sh"
 plan=plan.mk folder=$OUT
 aside=$(mktemp -d) || exit 3
 trap 'rm -rf "$aside"' EXIT
-makes() {   # runs in a subshell
+export FAILED="$aside/failed" CLAIMS="$aside/claims"
+mkdir "$CLAIMS" || exit 3
+makes() {   # runs in a subshell; after an error all that does not need the lost file is made (-k)
   goal=$1; shift
-  exec ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
+  exec ${MAKE:-make} -k --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"
 }
 estimate() {   # makes the first picture at two small sizes; prints options of scene-plan
   ending $RUN "$BIN/scene-plan" "$@" --estimate "$aside" || exit
@@ -67,8 +70,16 @@ if [ -n "$dry" ]; then   # make -n: the plan is written to another folder, which
   plan=$aside/plan.mk
   [ -d "$OUT" ] || folder=$aside
 else
+  # scene-plan rewrites only what has changed. Statistics are new after each run: they show that RUN has run it.
+  ran=
+  if [ -n "$RUN" ] && mkdir -p "$OUT/state" 2> /dev/null; then
+    ran=$OUT/state/planned.json
+    set -- "$@" --stats "$ran"
+  fi
+  wanted=plan.mk
   # shellcheck disable=SC2086
-  ending $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+  made ${ran:+"$ran"} -- $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+  wanted=
   # A walkthrough reads its plan again and again, and a second make in OUT may write another one meanwhile.
   plan=state/.plan.mk.tmp.$(uname -n).$$
   trap 'rm -rf "$aside" "$OUT/$plan"' EXIT
@@ -103,6 +114,7 @@ alone -s
 failed() {
   alone -n -x ||
     echo "$OUT: another make runs here and may have removed a file that this one was to read; type this again" >&2
+  (cd "$OUT" && PLAN=$plan sh "$PIPELINES/progress.sh" failed "$goal") >&2
   exit "$1"
 }
 if [ -s "$aside/commands" ]; then
@@ -110,6 +122,10 @@ if [ -s "$aside/commands" ]; then
 elif [ -z "$quiet" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
+# Raw frames that a killed make had filtered and not removed yet.
+raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do grep -s "^passing :=.* $file" "$plan" > /dev/null && echo "$file"; done)
+# shellcheck disable=SC2086
+[ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
 [ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
 [ "$goal" != report ] || echo "look at $OUT/report/index.html"
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }

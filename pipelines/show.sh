@@ -10,14 +10,17 @@
 #     shown/walk-KEY INTERVAL...            walk.log, where keys were placed and why
 #
 # The environment has BIN, RUN, PIPELINES and PLAN.
-. "${0%/*}/ending.sh"
+. "${0%/*}/made.sh"
 marker=$1; shift
 what=${marker#shown/}
 what=${what%-*}
 part=
 trap 'rm -f "$part"' EXIT
-info() { ending $RUN "$BIN/tempolux-info" "$@"; }
-part_of() { part=${1%/*}/.${1##*/}.tmp.$(uname -n).$$; }   # a name that make tidy knows
+# drawn OPTION...: tempolux-info makes the file $part. A message names the file that is shown.
+drawn() { wanted=$file; made "$part" -- $RUN "$BIN/tempolux-info" "$@"; }
+part_of() {   # a name that make tidy knows
+  case $1 in */*) part=${1%/*}/.${1##*/}.tmp.$(uname -n).$$;; *) part=.$1.tmp.$(uname -n).$$;; esac
+}
 
 # The text of a marker: digests of the shown frames, and $1. A command may have made the same picture again: then the
 # text is equal and nothing is shown anew.
@@ -27,24 +30,38 @@ shows() {
 }
 is_shown() { [ -f "$file" ] && [ "$now" = "$(cat "$@" 2> /dev/null)" ]; }   # is_shown OLD_MARKER...
 
-# Two makes that show different pictures of a frame run one after the other: the marker always fits the shown file.
+# Two makes that show different pictures of a frame run one after the other: the marker always fits the shown file. It
+# is written only where the file was drawn, or is the right one already (is_shown).
 lock() { exec 9> shown/.lock; ! command -v flock > /dev/null || flock 9; }
-publish() { rm -f "$@"; [ ! -f "$part" ] || mv -f "$part" "$file"; echo "$now" > "$marker"; }   # publish OLD_MARKER...
+publish() {   # publish OLD_MARKER...
+  rm -f "$@"
+  [ -z "$part" ] || mv -f "$part" "$file" || exit 3
+  echo "$now" > "$marker"
+}
 
 now=
 case $marker in
   shown/exposure-*)
+    ! given_up "$marker" || exit 3
     part_of "$marker"
-    info "$1" --json | sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' | grep . > "$part" &&
-      mv -f "$part" "$marker";;
+    [ -z "$V" ] || show $RUN "$BIN/tempolux-info" "$1" --json >&2
+    ending $RUN "$BIN/tempolux-info" "$1" --json > "$part" || exit
+    stops=$(sed -n 's/^ *"auto_exposure_stops": *\([^,]*\),*$/\1/p' "$part")
+    [ -n "$stops" ] || { not_made "$marker" tempolux-info 'has printed no exposure'; exit 3; }
+    echo "$stops" > "$part" && mv -f "$part" "$marker";;
   shown/sheet-*)
     file=sheet.png frames=$(sed -n 's/^frames := *//p' "$PLAN") marks=
     ! grep -q '^log :=' "$PLAN" || marks=$(sh "$PIPELINES/walkthrough.sh" marks)
     shows "$(cat "$1") $marks $frames" $frames
-    is_shown shown/sheet-* || info --sheet $file --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames || exit
+    if ! is_shown shown/sheet-*; then
+      part_of $file
+      drawn --sheet "$part" --columns 8 --tile 160 --exposure "$(cat "$1")" $marks $frames || exit
+    fi
     publish shown/sheet-*;;
   shown/walk-*)
-    sh "$PIPELINES/walkthrough.sh" log "$@" > walk.log || exit
+    file=walk.log
+    part_of $file
+    sh "$PIPELINES/walkthrough.sh" log "$@" > "$part" || exit
     publish shown/walk-*;;
   *.png)
     file=frames/$what.png
@@ -53,7 +70,7 @@ case $marker in
     if ! is_shown "shown/$what"-*.png; then
       exec 9>&-
       part_of "$file"
-      info --png "$part" --exposure "$(cat "$2")" "$1" || exit
+      drawn --png "$part" --exposure "$(cat "$2")" "$1" || exit
       lock
     fi
     publish "shown/$what"-*.png;;

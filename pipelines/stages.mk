@@ -7,6 +7,7 @@
 # of everything that the file is made from, including the rules of this page. So a file that exists is up to date, and
 # times are not compared. To replace a stage by a program of your own, change its rule here.
 PLAN = plan.mk
+export PLAN
 include $(PLAN)
 # An empty variable leaves out its option. Names of files stay in the environment.
 shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment "$$SKY"} \
@@ -17,19 +18,33 @@ drawn  = $(scene) $(seed)
 seen   = $(drawn) --camera "$$CAMERA"
 # Other random numbers, for `make measure` alone: it has its own folder, because keys do not include the seed.
 seed   = $${MEASURE_SEED:+--seed "$$MEASURE_SEED"}
-quiet  = $(if $V,,@)
-run    = $(quiet)$(say)exec $(RUN) "$$BIN"# exec: what stops make stops the command
 say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
+# Runs a tool and looks whether it has made its files; with V=1 shows the command (made.sh). exec: what stops make stops
+# the command.
+made   = exec sh "$$PIPELINES/made.sh" $1 -- $(RUN) "$$BIN"
+run    = @$(say)$(call made,$@)
+unless = @test -f $@ || { $(say)# of files that follow.sh may have made before make comes to them
+# make runs a line that contains $(MAKE) even with -n: here a variable holds it.
+dry    = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+make_files = MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"'
+# After a picture: what waits for it alone is made at once, so that frames are shown while others are rendered.
+follow = $(if $(dry),,$(if $(filter demo,$(MAKECMDGOALS)),+@exec env $(make_files) \
+  sh "$$PIPELINES/follow.sh" next $@))
 .SUFFIXES:
 .PHONY: demo report
 demo: $(frames) $(previews) sheet.png $(log)
+# A finished file is never removed when make fails or is stopped. Raw frames that were read are not made again. (An empty
+# list would mean all files.)
+.SECONDARY: raw/none $(passing)
+.PRECIOUS: $(foreach f,pictures raw filtered smoky keys walked,$f/%.exr)
 
 # Light: the photons of a state of light. With movers, first the photons of the static scene, then the changes by
 # movers.
 photons/%.photons:
 	$(run)/photon-trace $(drawn) -o $@ --stats photons/$*.json
 stands/%.photons stands/%.paths:
-	$(run)/photon-trace $(drawn) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
+	@$(say)$(call made,stands/$*.photons stands/$*.paths)/photon-trace $(drawn) -o stands/$*.photons \
+	  --paths stands/$*.paths --stats stands/$*.json
 moved/%.photons:
 	$(run)/photon-trace $(drawn) -o $@ --stats moved/$*.json
 refined/%.photons:
@@ -42,7 +57,8 @@ points/%.irradpoints:
 stands_points/%.irradpoints:
 	$(run)/irradcache-build points $(drawn) -o $@ --stats stands_points/$*.json
 split/%.low.irradpoints split/%.high.irradpoints:
-	$(run)/photonmap-split $(words) --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
+	@$(say)$(call made,split/$*.low.irradpoints split/$*.high.irradpoints)/photonmap-split $(words) \
+	  --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
 
 # Indirect light, gathered in records where the cameras need them. kept: records that keep their gathered light over
 # time.
@@ -51,7 +67,8 @@ cache/%.irradcache:
 stands_cache/%.irradcache:
 	$(run)/irradcache-build records $(seen) -o $@ --stats stands_cache/$*.json
 kept/%.irradcache kept/%.radsamples:
-	$(run)/gather-temporal final $(seen) -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
+	@$(say)$(call made,kept/$*.irradcache kept/$*.radsamples)/gather-temporal final $(seen) \
+	  -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
 # In previews: light textures, which count photons in elements of the surfaces and smooth them. windows: the
 # photons of many frames.
 counts/%.meshirrad:
@@ -59,52 +76,55 @@ counts/%.meshirrad:
 windows/%.meshirrad:
 	$(run)/gather-temporal density $(scene) -o $@ --stats windows/$*.json
 
-.INTERMEDIATE: $(passing)# removed when read, not made again where what is made from it is there
-# Pixels. raw: frames in two halves of samples, for the filter; removed after a frame was filtered alone. keys: frames
-# for warping. smoky: frames with smoke.
+# Pixels. raw: frames in two halves of samples, for the filter; removed when they were filtered. keys: frames for
+# warping. smoky: frames with smoke.
 pictures/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats pictures/$*.json
+	$(follow)
 raw/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats raw/$*.json
+	$(follow)
 filtered/%.exr:
-	$(quiet)test -f $@ || { $(say). "$$PIPELINES/ending.sh" && \
-	  ending $(RUN) "$$BIN"/st-filter $(words) -o $@ --stats filtered/$*.json; } || test -f $@
-	$(quiet)rm -f $(filter $(passing),$|)
+	$(unless)$(call made,$@)/st-filter $(words) -o $@ --stats filtered/$*.json; }
+	@sh "$$PIPELINES/follow.sh" read $(filter $(passing),$|)
+	$(follow)
 smoky/%.exr:
-	$(run)/volume-compose $(seen) -o $@ --stats smoky/$*.json
+	$(unless)$(call made,$@)/volume-compose $(seen) -o $@ --stats smoky/$*.json; }
+	$(follow)
 keys/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
+	$(follow)
 # Between keys: an interval is warped or halved (walkthrough.sh decides); then each of its frames is warped and
 # completed.
 walk/%.done:
 	$(walk_rule)
 walked/%.exr:
-	$(quiet)$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
-# make runs a line that contains $(MAKE) even with -n: here a variable holds it.
-dry       = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-walk_rule = $(if $(dry),,+)$(quiet)$(say)exec env MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' \
-  SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
+	@$(say)exec env SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+	$(follow)
+walk_rule = $(if $(dry),,+)@$(say)exec env $(make_files) SHARED="$(shared)" \
+  sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
 # Files that a user looks at: frames, previews, the sheet, a walkthrough's log (show.sh). shown/WHAT-KEY is the marker
 # of a file: if it is missing, the file is made, and a file that was removed is made again.
 marker = $(firstword $(filter shown/%,$@ $|))
-show = exec env PLAN="$(PLAN)" sh "$$PIPELINES/show.sh" $(marker) $(filter-out $(frames) $(marker),$|)
+show = exec sh "$$PIPELINES/show.sh" $(marker) $(filter-out $(frames) $(marker),$|)
 shown/%:
-	$(quiet)$(show)
+	@test -f $@ || $(show)
 $(frames) $(previews) sheet.png walk.log:
-	$(quiet)test -f $@ || $(show)
+	@test -f $@ || $(show)
 
 # Compares frames with path tracing in two halves, whose noise is known, and adds up the cost of all stages.
 path/%.exr path/%_a.exr path/%_b.exr:
-	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
+	@$(say)$(call made,path/$*.exr path/$*_a.exr path/$*_b.exr)/frame-render $(seen) -o path/$*.exr \
+	  --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
 title = "$$(basename -- "$$SCENE"): error against time"
-write_report = $(RUN) "$$BIN"/error-report -o report --title $(title) $(report_runs) && \
-  rm -f shown/report-* && touch $(marker)
+write_report = sh "$$PIPELINES/made.sh" report/index.html -- $(RUN) "$$BIN"/error-report -o report --title $(title) \
+  $(report_runs) && rm -f shown/report-* && touch $(marker)
 shown/report-%:
-	$(quiet)$(write_report)
+	@$(write_report)
 report/index.html:
-	$(quiet)test -f $@ || { $(write_report); }
+	@test -f $@ || { $(write_report); }
 report: report/index.html
 	@cat report/report.md

@@ -13,31 +13,46 @@
 # is not filtered. The environment has BIN, RUN, SHARED, CAMERA and MAKE_FILES, the command that makes files of the
 # plan.
 set -e
-. "${0%/*}/ending.sh"
+. "${0%/*}/made.sh"
 command=$1; shift
 
 frame_of() { name=${1##*/}; echo "${name%%-*}"; }       # keys/0012-3fa94c21d0.exr -> 0012
 number() { n=${1#"${1%%[!0]*}"}; echo "${n:-0}"; }      # 0012 -> 12
 count_of() { sed -n "s/^ *\"$1\": *\([0-9.e+-]*\),*\$/\1/p" "$2" | head -n 1; }
 percent() { awk "BEGIN { printf \"%.1f%%\", 100 * $1 / $2 }"; }
-# SHARED: options in quotes, names in variables.
-tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; ending $RUN "$BIN/$name" "$@"; }
-warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
+# makes FILE... -- TOOL OPTION...: runs a tool on the scene. A message names the target. SHARED: options in quotes, names
+# in variables.
+makes() {
+  files=
+  while [ "$1" != -- ]; do files="$files $1"; shift; done
+  name=$2; shift 2
+  eval "set -- \"\$@\" $SHARED"
+  # shellcheck disable=SC2086
+  made $files -- $RUN "$BIN/$name" "$@"
+}
+warp() {   # warp FILE... -- OPTION...
+  files=
+  while [ "$1" != -- ]; do files="$files $1"; shift; done
+  shift
+  # shellcheck disable=SC2086
+  makes $files -- ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"
+}
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
 
 # Warps both keys to frame $1 in folder $2. Exits with 1 if a viewer sees the error of either warped picture in more
 # than the share $threshold of the pixels that are not masked. Appends the share in percent to $seen.
 differ() {
-  warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
+  warp "$2/w_1.exr" "$2/w_2.exr" "$2/why.exr" "$2/flow.exr" "$2/$1.warp.json" -- "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none \
     --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
-  code=0
-  ending $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" \
-    --fail-above "$threshold" --quiet --json "$2/compare.json" || code=$?
-  [ $code -le 1 ] || exit $code
+  answer=0 may_differ=yes
+  made "$2/compare.json" -- $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" \
+    --except "$2/why.exr" --fail-above "$threshold" --quiet --json "$2/compare.json" || answer=$?
+  may_differ=
+  [ $answer -le 1 ] || exit $answer
   seen="$seen $(count_of percent "$2/compare.json")"
-  return $code
+  return $answer
 }
 
 # Decides whether frames warped to one, two and three quarters of the interval are as good as rendered ones, and how
@@ -68,6 +83,7 @@ decide() {
 
 interval() {
   target=$1 a=$2 b=$3 middle=$4 middle_key=$5 threshold=$6 left=$7 right=$8
+  wanted=$target
   try=$target.try.$$
   mkdir -p "$try"
   trap 'rm -rf "$try"' EXIT
@@ -87,6 +103,7 @@ interval() {
 
 frame() {
   target=$1 interval=$2 frame=$3 channels=$4; shift 4
+  wanted=$target
   while read -r verdict x y left right < "$interval"; [ "$verdict" = split ]; do
     if [ "$frame" = "$x" ]; then cp "$y" "$target.part.$$" && mv "$target.part.$$" "$target"; return; fi
     if [ "$(number "$frame")" -lt "$(number "$x")" ]; then interval=$left; else interval=$right; fi
@@ -94,12 +111,17 @@ frame() {
   part=${target%.exr}.part.$$
   trap 'rm -f "$part".*' EXIT
   n=$(number "$frame")
-  warp "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" --compression none \
-    --stats "${target%.exr}.warp.json"
-  if [ "$channels" = - ]; then completed=$target; else completed=$part.raw.exr; set -- "$@" --compression none; fi
-  tool frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" --mask "$part.mask.exr" \
-    -o "$completed" --stats "${target%.exr}.json"
-  [ "$channels" = - ] || ending $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
+  # A completed frame that is still to be filtered has a key in its name: it is used again if it is there.
+  if [ "$channels" = - ]; then completed=$target; else completed=${target%.exr}.raw.exr; set -- "$@" --compression none; fi
+  if [ ! -f "$completed" ]; then
+    warp "$part.warp.exr" "$part.mask.exr" -- "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" \
+      --compression none --stats "${target%.exr}.warp.json"
+    makes "$completed" -- frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" \
+      --mask "$part.mask.exr" -o "$completed" --stats "${target%.exr}.json"
+  fi
+  [ "$channels" != - ] || return 0
+  made "$target" -- $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
+  rm -f "$completed"
 }
 
 # Prints the decisions, for an interval before its halves.

@@ -20,12 +20,14 @@ void declare(tools::Tool& tool, tools::Request& request) {
   tool.file_option("files", request.files, "files; -: a .photons, .irradpoints or .irradcache file on standard input")
       ->required();
   CLI::Option* check = app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
+  CLI::Option* whole =
+      app.add_flag("--whole", request.whole, "look at the end of each file only; exit 1 if one was cut off");
   CLI::Option* digest = app.add_flag("--digest", request.digest, "hash of the data, without header and history");
   CLI::Option* diff = app.add_flag("--diff", request.diff, "differences of two files; exit 1 if their data differ");
   CLI::Option* account =
       app.add_flag("--account", request.account, "bias of the light of several frames together, from their audits");
   tool.file_option("--scene", request.scene, "glTF scene of the files: its objects get their names beside their ids")
-      ->excludes(check, digest, diff, account);
+      ->excludes(check, whole, digest, diff, account);
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* exported = tool.output_option(
       request.exported, "photons, irradiance points or records as points, .ply or .csv; - is CSV on standard output",
@@ -48,7 +50,7 @@ void declare(tools::Tool& tool, tools::Request& request) {
       ->type_name("FILES")
       ->allow_extra_args(false)
       ->needs(sheet);
-  const std::vector<CLI::Option*> modes{check, digest, diff, account, exported, png, sheet};
+  const std::vector<CLI::Option*> modes{check, whole, digest, diff, account, exported, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);

@@ -40,14 +40,23 @@ void add_report(GraphBuilder& g, int frame) {
   collect_stats(g, picture_name, seen, g.graph.spent[g.graph.errors[frame]]);
 }
 
-/// A raw picture is large, so the command that reads it removes it. A picture that two commands read stays, since
-/// either may run first.
+/// Number of the animation's frames whose windows hold this frame.
+int windows_around(const GraphBuilder& g, int frame) {
+  const int beside = g.wish.filter / 2;
+  return g.clamped(frame + beside) - g.clamped(frame - beside) + 1;
+}
+
+/// A raw picture is large, so it is removed when all frames whose windows hold it are filtered. If the plan lacks some
+/// of these frames, as at the ends of a range, the picture stays for them.
 void remove_when_read(GraphBuilder& g) {
   std::map<std::string, int> readers;
   for (const GraphFile& file : g.graph.files)
     for (const std::string& input : file.inputs) ++readers[input];
-  for (GraphFile& file : g.graph.files)
-    file.passing = g.wish.filter == 1 && file.stage == stage::raw.name && readers[file.name] == 1;
+  for (GraphFile& file : g.graph.files) {
+    const std::string first_part = std::string(stage::raw.folder) + "/";
+    if (!file.name.starts_with(first_part)) continue;
+    file.passing = readers[file.name] == windows_around(g, std::stoi(file.name.substr(first_part.size())));
+  }
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct GraphFile {
   std::vector<std::string> beside;  ///< further files of the same command
   std::string stage;                ///< StageInfo::name
   std::string words;                ///< options of the command, inputs included
-  bool passing = false;             ///< large and read once: removed by the command that reads it
+  bool passing = false;             ///< large: removed when all files that are made from it are there
   std::vector<std::string> inputs;  ///< names of files that must exist first
 };
 

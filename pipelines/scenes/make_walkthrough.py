@@ -51,13 +51,17 @@ def add_accessor(gltf, binary, values, kind, form="f"):
 
 
 def animate(gltf, binary, node, path, keys):
-    """keys: {frame: value}, linear between them."""
+    """A channel of the scene's animation. keys: {frame: value}, linear between them.
+
+    All channels are in one animation: importers play one at a time.
+    """
     times = add_accessor(gltf, binary, [frame / FPS for frame in keys], "SCALAR")
     values = add_accessor(gltf, binary, list(keys.values()), "VEC3" if path == "translation" else "VEC4")
-    gltf.setdefault("animations", []).append({
-        "name": f"{path} of node {node}",
-        "samplers": [{"input": times, "output": values, "interpolation": "LINEAR"}],
-        "channels": [{"sampler": 0, "target": {"node": node, "path": path}}]})
+    if not gltf.get("animations"):
+        gltf["animations"] = [{"name": "Shot", "samplers": [], "channels": []}]
+    animation = gltf["animations"][0]
+    animation["samplers"].append({"input": times, "output": values, "interpolation": "LINEAR"})
+    animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": {"node": node, "path": path}})
 
 
 def about_y(degrees):

@@ -15,6 +15,22 @@ tempolux-info --check $to_refuse >out.txt 2>errors.txt
 tempolux-info --check no-such-file 2>/dev/null
 [ $? = 2 ] || bad 'a missing file is an error of the command: exit 2'
 
+# --whole looks at the ends alone: each type is whole, and without its last byte, or with less of it, it is not. A file of
+# no known type is whole unless it is empty.
+printf '{"words": [1, 2, 3, 4, 5, 6, 7, 8, 9]}' >whole.json
+for file in "$HERE"/../formats/*/accept/worked-example.* "$HERE"/../lib/image/example.exr "$HERE"/../fuzz/corpus/pictures/rgb.png whole.json; do
+  tempolux-info --whole "$file" >out.txt && grep -q ': whole$' out.txt || bad "$file: not whole"
+  size=$(wc -c <"$file")
+  for most in $((size - 1)) $((size - 9)) $((size / 2)) 20 5 1 0; do
+    head -c $most "$file" >cut
+    tempolux-info --whole cut >out.txt 2>errors.txt
+    [ $? = 1 ] && [ ! -s out.txt ] && [ "$(wc -l <errors.txt)" = 1 ] || bad "$file cut to $most bytes of $size: not noticed"
+  done
+done
+echo words >cut && tempolux-info --whole cut >out.txt || bad 'a file of no known type: not whole'
+tempolux-info --whole no-such-file 2>/dev/null
+[ $? = 2 ] || bad '--whole of a missing file: exit 2'
+
 # Facts of the worked example, computed from the page by the second reader.
 example=$accept/worked-example.photons
 tempolux-info --json "$example" >out.json || bad 'facts'

@@ -38,7 +38,7 @@ void set_word(std::string& bytes, std::size_t at, std::uint32_t word) {
   std::memcpy(bytes.data() + at, &word, sizeof word);
 }
 
-constexpr std::string_view kMarks[] = {"PHOT", "LEDG", "IRPT", "IRRC", "END!"};
+constexpr std::string_view kMarks[] = {"PHOT", "LEDG", "IRPT", "IRRC", "RADP", "RADR", "RADS", "PATH", "MESH", "END!"};
 
 std::size_t next_mark(const std::string& bytes, std::size_t from) {
   std::size_t next = bytes.size();

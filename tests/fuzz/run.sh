@@ -9,9 +9,8 @@ if [ "$1" = --one ]; then   # one target, built already
   [ -n "$FUZZ_RUNS" ] && limit=-runs=$FUZZ_RUNS
   found=build/fuzz/found/$target known=build/fuzz/known/$target
   mkdir -p "$found" "$known"
-  folders="tests/fuzz/corpus/$target"
+  folders="tests/fuzz/corpus/$target tests/formats/$target"
   case $target in
-    photons | irradpoints | irradcache) folders="$folders tests/formats/$target" ;;
     gltf) folders="$folders tests/data/packed/scenes" ;;
     pictures) folders="$folders tests/data/packed/webp" ;;
   esac
@@ -25,7 +24,7 @@ if [ "$1" = --one ]; then   # one target, built already
   [ $code = 0 ] || grep -E '^(SUMMARY|not as promised|.*Test unit written)' "$found/log"
   exit $code
 fi
-targets=${FUZZ_TARGETS:-photons irradpoints irradcache report gltf pictures arguments}
+targets=${FUZZ_TARGETS:-$(cd tests/fuzz && printf '%s\n' *_fuzz.cpp | sed 's/_fuzz[.]cpp$//')}
 command -v clang++ > /dev/null || { echo 'fuzz: needs clang++ (Debian: apt-get install clang)' >&2; exit 2; }
 test -f build/fuzz/build.ninja || cmake --preset fuzz > /dev/null || exit 2
 # shellcheck disable=SC2046

@@ -264,7 +264,7 @@ def written(command, out):
 def final(name):
     """What a file becomes that a rule writes beside it first: frames/.0012.png.tmp.HOST.31, walk/K.done.try.31/w.exr, walked/K.part.31.warp.exr."""
     name = re.sub(r"[.]done[.]try[.].*", ".done", re.sub(r"[.]part[.].*", ".exr", name))
-    return re.sub(r"^frames/[.](.*)[.]tmp[.].*", r"frames/\1", name)
+    return re.sub(r"(^|/)[.]([^/]*)[.]tmp[.][^/]*$", r"\1\2", name)
 
 
 def reads(command, option):

@@ -1,5 +1,6 @@
 #include "tools/info/info_answer.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -20,8 +21,8 @@ int check_files(Tool& tool, const Request& request) {
   int code = exit_ok;
   for (const std::string& file : request.files) {
     try {
-      facts_of(file, false);
-      if (!request.json) std::cout << file << ": valid\n";
+      request.whole ? check_end(file) : void(facts_of(file, false));
+      if (!request.json) std::cout << file << (request.whole ? ": whole\n" : ": valid\n");
     } catch (const InputError& error) {
       if (file != "-" && (!std::filesystem::exists(file) || std::filesystem::is_directory(file))) throw;
       tool.warn(error.what());
@@ -66,6 +67,8 @@ const std::string& only_file(const Request& request, const char* option) {
 }  // namespace
 
 int answer(Tool& tool, Request& request) {
+  if (request.whole && std::ranges::find(request.files, "-") != request.files.end())
+    throw InputError("--whole: looks at the ends of files; --check reads standard input");
   for (const std::string& file : request.files) tool.depends_on(file);
   if (request.diff) {
     if (request.files.size() != 2) throw InputError("--diff: takes two files");
@@ -74,7 +77,7 @@ int answer(Tool& tool, Request& request) {
     if (request.json || !equal || !facts["differing"].empty()) print(facts, request.json);
     return equal ? exit_ok : exit_differs;
   }
-  if (request.check) return check_files(tool, request);
+  if (request.check || request.whole) return check_files(tool, request);
   if (request.account) {
     const FramesAccount account = account_of_frames(request.files);
     if (!account.line.empty()) std::cout << account.line << '\n';

@@ -11,7 +11,7 @@ namespace tempolux::tools {
 
 struct Request {
   std::vector<std::string> files;
-  bool check = false, digest = false, diff = false, json = false, account = false;
+  bool check = false, whole = false, digest = false, diff = false, json = false, account = false;
   std::string exported, png, sheet, scene;
   PictureOptions picture;
 
@@ -20,7 +20,7 @@ struct Request {
 };
 
 /// Answers the request on standard output, or in the file that the request names. Returns the exit code: exit_differs
-/// if --check finds a file that is not valid, or --diff finds different data. Throws InputError for bad usage.
+/// if --check or --whole finds a file that is not valid, or --diff finds different data. Throws InputError for bad usage.
 int answer(Tool& tool, Request& request);
 
 }  // namespace tempolux::tools

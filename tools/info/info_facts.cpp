@@ -5,6 +5,7 @@
 #include "formats/error.h"
 #include "lib/core/formatted.h"
 #include "lib/core/json.h"
+#include "lib/image/exr_end.h"
 #include "tools/common/file_head.h"
 
 namespace tempolux::tools {
@@ -103,36 +104,49 @@ namespace {
 struct FileType {
   const char* magic;
   Facts (*facts)(const std::string& path, bool allow_nan);
+  /// Throws InputError if the file was cut off. Without: all of the file is read.
+  void (*check_end)(const std::string& path) = nullptr;
   void (*export_as)(const std::string& path, const std::string& format, Output& output) = nullptr;
 };
+
+/// `totals`: bytes between the mark of the end block and its chain, by the page of the format.
+template <std::size_t totals>
+void container_end(const std::string& path) {
+  check_container_end(path, totals);
+}
 
 template <Facts (*facts)(const std::string&)>
 Facts always_valid(const std::string& path, bool) {
   return facts(path);
 }
 
-constexpr FileType kPhotons{"\x89TPHOT", always_valid<photon_facts>, export_photons};
-constexpr FileType kJson{"{", always_valid<json_facts>};
+constexpr FileType kPhotons{"\x89TPHOT", always_valid<photon_facts>, container_end<104>, export_photons};
+constexpr FileType kJson{"{", always_valid<json_facts>, check_json_end};
 constexpr FileType kTypes[] = {kPhotons,
-                               {"\x89TPATH", always_valid<paths_facts>},
-                               {"\x89TIRPT", always_valid<irradpoints_facts>, export_irradpoints},
-                               {"\x89TIRRC", always_valid<irradcache_facts>, export_irradcache},
-                               {"\x89TRADS", always_valid<radsamples_facts>},
-                               {"\x89TMESH", always_valid<meshirrad_facts>},
-                               {"\x76\x2f\x31\x01", image_facts},
-                               {"\x89PNG", image_facts},
+                               {"\x89TPATH", always_valid<paths_facts>, container_end<16>},
+                               {"\x89TIRPT", always_valid<irradpoints_facts>, container_end<80>, export_irradpoints},
+                               {"\x89TIRRC", always_valid<irradcache_facts>, container_end<32>, export_irradcache},
+                               {"\x89TRADS", always_valid<radsamples_facts>, container_end<48>},
+                               {"\x89TMESH", always_valid<meshirrad_facts>, container_end<16>},
+                               {"\x76\x2f\x31\x01", image_facts, check_exr_end},
+                               {"\x89PNG", image_facts, check_png_end},
                                {"\xff\xd8\xff", image_facts},
                                {"#?", image_facts},
                                {"II*", image_facts},
                                {"MM", image_facts}};
 
+/// nullptr if the first bytes are of no type.
+const FileType* type_of_bytes(const std::string& head) {
+  for (const FileType& type : kTypes)
+    if (head.starts_with(type.magic)) return &type;
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  return first != std::string::npos && head.substr(first).starts_with(kJson.magic) ? &kJson : nullptr;
+}
+
 const FileType& type_of(const std::string& path) {
   const std::string head = head_of(path);
-  for (const FileType& type : kTypes)
-    if (head.starts_with(type.magic)) return type;
+  if (const FileType* type = type_of_bytes(head)) return *type;
   if (path == "-") return kPhotons;  // the reader of photons reports any error
-  const std::size_t first = head.find_first_not_of(" \t\r\n");
-  if (first != std::string::npos && head.substr(first).starts_with(kJson.magic)) return kJson;
   if (head.starts_with("glTF"))
     throw InputError(
         path + ": a scene, which is not listed here; scene-plan SCENE -o FOLDER writes what moves to FOLDER/plan.json");
@@ -158,6 +172,16 @@ Facts differing_facts(const Facts& a, const Facts& b) {
 bool is_meshirrad(const std::string& path) { return type_of(path).facts == always_valid<meshirrad_facts>; }
 
 Facts facts_of(const std::string& path, bool allow_nan) { return type_of(path).facts(path, allow_nan); }
+
+void check_end(const std::string& path) {
+  const std::string head = head_of(path);
+  const auto begins = [&](const FileType& type) { return std::string_view(type.magic).starts_with(head); };
+  const FileType* type = type_of_bytes(head);
+  if (!type && (begins(kPhotons) || std::ranges::any_of(kTypes, begins)))
+    throw InputError(path + ": byte " + std::to_string(head.size()) + ": the file is cut off; write it again");
+  if (!type) return;
+  type->check_end ? type->check_end(path) : void(type->facts(path, true));
+}
 
 Facts difference_of(const std::string& a, const std::string& b) {
   const auto type = type_of(a).facts;

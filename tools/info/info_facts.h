@@ -48,6 +48,15 @@ Facts image_facts(const std::string& path, bool allow_nan);
 Facts json_facts(const std::string& path);
 Facts facts_of(const std::string& path, bool allow_nan);
 
+/// Looks at the end of a file, which a file that was cut off lacks: a container's end block, the last lines of an EXR
+/// image, IEND of a PNG. Other files are read to their end; one of no known type is whole if it is not empty. Throws
+/// InputError if the end is missing.
+void check_end(const std::string& path);
+/// `totals`: bytes between the mark of the end block and its chain.
+void check_container_end(const std::string& path, std::size_t totals);
+void check_png_end(const std::string& path);
+void check_json_end(const std::string& path);
+
 /// The differences of two files of one type. "differing" has each fact that is not the same in both, by its place in
 /// the facts (a JSON Pointer), with both values; "equal" is true if the digests are equal, so history and identity do
 /// not count. Throws InputError if the types differ.

@@ -1,0 +1,110 @@
+#!/bin/sh
+# made.sh FILE... -- COMMAND... -- runs a command and looks whether it has made its files. All rules and scripts run the
+# tools of the chain by it; scripts read this file and call made().
+#
+# An exit code of 0 is not enough: srun ends with 0 when its node is lost, and a wrapper in RUN may run nothing. So
+# afterwards each FILE must
+#   - be there, and not be the file that was there before: tools give a finished file its name, so its inode is new;
+#   - be whole (tempolux-info --whole). The files of our tools are. A file that a user's program writes, or that a
+#     wrapper copies from another machine, may be cut off. It is removed, or the next make would take it for finished.
+#
+# A command without its files is named in one line on stderr and in $FAILED, a file of this make. This make does not run
+# it again. The exit code is the command's, or 3 if the command said 0. The environment has BIN, RUN, and WAIT: how many
+# seconds a file of another machine may need to appear here, if RUN is set.
+. "${0%/*}/ending.sh"
+
+inodes() {   # inodes FILE... --: the inode of each file; "-": there is none
+  while [ "$1" != -- ]; do
+    if [ -e "$1" ]; then ls -di "$1" | sed 's/^ *//; s/ .*//'; else echo -; fi
+    shift
+  done
+}
+
+is_lost() {   # is_lost INODES FILE... --: sets `missing` to the first file that is not there, or is the old one
+  missing=
+  for inode in $1; do
+    shift
+    [ -e "$1" ] && { [ "$inode" = - ] || [ "$inode" != "$(inodes "$1" --)" ]; } || { missing=$1; return 0; }
+  done
+  return 1
+}
+
+is_cut_off() {   # is_cut_off FILE... --: sets `missing` to the first file without an end
+  missing=
+  while [ "$1" != -- ]; do
+    whole=0
+    "$BIN/tempolux-info" --whole "$1" > /dev/null 2>&1 || whole=$?
+    [ $whole != 1 ] || { missing=$1; return 0; }
+    shift
+  done
+  return 1
+}
+
+# Looks again and again while RUN may have written the file on another machine. A host that lists a folder asks the file
+# server what is in it.
+look_for() {   # look_for INODES FILE... --: sets `missing`
+  tries=0
+  while is_lost "$@" && [ -n "$RUN" ] && [ $tries -lt $((5 * ${WAIT:-5})) ]; do
+    ending sleep .2
+    case $missing in */*) ls "${missing%/*}";; *) ls;; esac > /dev/null 2>&1
+    tries=$((tries + 1))
+  done
+  [ -z "$missing" ]
+}
+
+not_made() {   # not_made FILE TOOL WHY
+  [ -z "$FAILED" ] || printf '%s\t%s\t%s\n' "$@" >> "$FAILED"
+  case $3 in 'ended with '[23]) ;; *) echo "$1: not made: $2 $3" >&2;; esac   # our tools have said why they end with 2 or 3
+}
+
+# given_up FILE: true if this make has failed to make it.
+given_up() { [ -s "$FAILED" ] && cut -f1 "$FAILED" | grep -qxF -- "$1"; }
+
+tool_of() {   # tool_of COMMAND...: the tool of a command that may begin with the words of RUN
+  for word; do case $word in "$BIN"/*) echo "${word##*/}"; return;; esac; done
+  echo "${1##*/}"
+}
+
+show() {   # show COMMAND...: prints a command that can be typed
+  for word; do case $word in *[!A-Za-z0-9_./:=,+%@-]*) printf "'%s' " "$word";; *) printf '%s ' "$word";; esac; done
+  echo
+}
+
+# The command of made()'s arguments: run_it N WORD1 ... WORDN -- COMMAND...
+run_it() { shift $(($1 + 2)); [ -z "$V" ] || show "$@" >&2; ending "$@"; }
+name_it() { shift $(($1 + 2)); tool_of "$@"; }
+
+# Sets `why` to the reason if the command, which ended with the code $1, has not made its files; else to "".
+judge() {   # judge CODE INODES FILE... --
+  judged=$1 why=; shift
+  case $judged in
+    0) ;;
+    1) [ -n "$may_differ" ] || why='ended with 1';;
+    2) # Another make may have made the file and removed an input.
+       [ -n "$1" ] && ! is_lost "$@" || why='ended with 2'; return 0;;
+    1[3-9]?) why="was ended by signal $((judged - 128))";;
+    *) why="ended with $judged";;
+  esac
+  [ -z "$why" ] || return 0
+  look_for "$@" || { why="ended with $judged, but $missing is not there${RUN:+; RUN has lost the command}"; return 0; }
+  shift
+  ! is_cut_off "$@" || { why="ended with $judged, but $missing was cut off and is removed"; rm -f "$missing"; }
+}
+
+# made FILE... -- COMMAND... Variables: `wanted`: the file that messages name where FILE is a temporary one;
+# `may_differ`: not empty if exit code 1 is an answer (aqm-compare).
+made() {
+  files_wanted=0
+  for word; do [ "$word" != -- ] || break; files_wanted=$((files_wanted + 1)); done
+  named=${wanted:-$1}
+  ! given_up "$named" || return 3
+  old=$(inodes "$@") ended=0
+  run_it $files_wanted "$@" || ended=$?
+  judge $ended "$old" "$@"
+  [ -n "$why" ] || return $((ended == 1))
+  not_made "$named" "$(name_it $files_wanted "$@")" "$why"
+  [ $ended -gt 1 ] || ended=3
+  return $ended
+}
+
+case ${0##*/} in made.sh) made "$@";; esac
