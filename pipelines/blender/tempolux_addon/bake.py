@@ -70,8 +70,8 @@ class Baker:
     def alone(self, thing):
         layer = self.scene.view_layers[0]
         for other in layer.objects:
-            other.hide_render = other is not thing
-            other.select_set(other is thing)
+            other.hide_render = other != thing
+            other.select_set(other == thing)
         layer.objects.active = thing
         layer.update()
 
@@ -81,14 +81,16 @@ class Baker:
         """Pixels (size, size, 4), first row on top, of {slot: value or three numbers' values}."""
         thing, _, render = self.unwrap(topology)
         self.alone(thing)
-        image = bpy.data.images.new("tempolux bake", size, size, float_buffer=True)
+        image = bpy.data.images.new("tempolux bake", size, size, float_buffer=True, alpha=True)
+        image.generated_color = (0, 0, 0, 0)
         image.colorspace_settings.name = "Non-Color"
-        kept, copies = list(thing.data.materials) or [None], []
+        if not thing.data.materials:
+            thing.data.materials.append(None)
+        kept, copies = list(thing.data.materials), []
         try:
-            thing.data.materials.clear()
             for slot, material in enumerate(kept):
                 copies.append(self.copy(material, values.get(slot), image, render, normal))
-                thing.data.materials.append(copies[-1])
+                thing.data.materials[slot] = copies[-1]
             self.fill(thing)
             options = dict(type="NORMAL" if normal else "EMIT", margin=max(2, size // 64), use_clear=True, use_selected_to_active=False,
                            target="IMAGE_TEXTURES")
@@ -97,10 +99,11 @@ class Baker:
             bpy.ops.object.bake(**options)
             flat = numpy.empty(size * size * 4, "f4")
             image.pixels.foreach_get(flat)
+            if not flat[3::4].any():
+                raise RuntimeError("Cycles baked nothing")
         finally:
-            thing.data.materials.clear()
-            for material in kept:
-                thing.data.materials.append(material)
+            for slot, material in enumerate(kept):
+                thing.data.materials[slot] = material
             for copy in copies:
                 bpy.data.materials.remove(copy)
             bpy.data.images.remove(image)
@@ -143,9 +146,9 @@ class Baker:
         tree.links.new(shader.outputs[0], output.inputs["Surface"])
         node = tree.nodes.new("ShaderNodeTexImage")
         node.image = image
-        tree.nodes.active = node
         for other in tree.nodes:
-            other.select = other is node
+            other.select = other == node
+        tree.nodes.active = node
         return made
 
 
