@@ -45,7 +45,8 @@ def numbers(index):
     return struct.unpack_from(f"<{width * accessor['count']}f", binary, start)
 strength = {m["name"]: m["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] for m in shot["materials"]
             if "KHR_materials_emissive_strength" in m.get("extensions", {})}
-panel = 60 / (4 * 0.8 * 0.4)                        # Cycles: P / (4 area)
+old = int(shot["asset"]["generator"].split()[1].split(".")[0]) < 4
+panel = 60 * (1 / 4 if old else 1 / math.pi) / (0.8 * 0.4)   # Cycles of 3.4: P / (4 area); of 4.2 and later: P / (pi area)
 ball = 15 / (4 * math.pi ** 2 * 0.05 ** 2)          # P / 4 pi W/sr over the ball's outline, pi r^2
 assert all(abs(v / panel - 1) < 1e-5 for k, v in strength.items() if k.startswith(("Panel", "Holder Inner"))), strength
 assert sum(k.startswith(("Panel", "Holder Inner")) for k in strength) == 3, strength   # a lamp in an instanced collection too

@@ -1,6 +1,9 @@
 """Lamps with an extent as emitting meshes of the radiance that Cycles gives them; others as lamps of glTF."""
 import math
+import os
+import tempfile
 
+import bpy
 import numpy
 
 from .colour import rec709
@@ -37,7 +40,7 @@ class LampState:
             return self.area
         if self.kind == "SUN":
             return math.pi * math.tan(self.angle / 2) ** 2 if self.angle > 0 else 1.0
-        return math.pi * self.radius ** 2 if self.radius > 0 else 1.0
+        return 4 * math.pi * self.radius ** 2 if self.radius > 0 else 4.0
 
     def emits(self):
         """Is it a mesh in the file?"""
@@ -45,7 +48,7 @@ class LampState:
 
     def radiance(self):
         if self.kind == "AREA":
-            return self.power / (4 * self.area)
+            return self.power * area_gain() / self.area
         return self.power / (4 * math.pi ** 2 * self.radius ** 2) * self.radiance_gain()
 
     @staticmethod
@@ -76,6 +79,55 @@ class LampState:
         if self.kind == "SUN":
             return {"angle_rad": self.angle}
         return {"radius_m": self.radius} if self.kind == "SPOT" else {}
+
+
+def area_gain():
+    """Radiance of an area lamp of 1 W and 1 m^2: 1/4 in older versions of Cycles, 1/pi in newer ones. It is measured: a floor far below such a
+    lamp is rendered."""
+    if not MEASURED:
+        MEASURED.append(measured_gain())
+    return MEASURED[0]
+
+
+MEASURED = []            # once in a run
+HEIGHT, ALBEDO = 10.0, .8
+
+
+def measured_gain():
+    stage = bpy.data.scenes.new("tempolux lamp")
+    made = []
+    try:
+        stage.render.engine = "CYCLES"
+        stage.cycles.samples, stage.cycles.use_denoising, stage.cycles.device, stage.cycles.max_bounces = 16, False, "CPU", 0
+        stage.render.resolution_x = stage.render.resolution_y = 16
+        stage.render.resolution_percentage = 100
+        settings = stage.render.image_settings
+        settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGB"
+        lamp = bpy.data.lights.new("tempolux lamp", "AREA")
+        lamp.energy, lamp.shape, lamp.size = 1000, "SQUARE", 1
+        mesh = bpy.data.meshes.new("tempolux lamp")
+        mesh.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])   # without a material: matte of .8
+        lens = bpy.data.cameras.new("tempolux lamp")
+        lens.type, lens.ortho_scale = "ORTHO", .5
+        for data, height in ((lamp, HEIGHT), (mesh, 0), (lens, 1)):
+            made.append(bpy.data.objects.new("tempolux lamp", data))
+            made[-1].location.z = height
+            stage.collection.objects.link(made[-1])
+        stage.camera = made[-1]
+        with tempfile.TemporaryDirectory() as folder:
+            stage.render.filepath = os.path.join(folder, "lamp.exr")
+            bpy.ops.render.render(write_still=True, scene=stage.name)
+            image = bpy.data.images.load(stage.render.filepath)
+            pixels = numpy.empty(16 * 16 * 4, "f4")
+            image.pixels.foreach_get(pixels)
+            bpy.data.images.remove(image)
+        seen = float(pixels.reshape(-1, 4)[:, 0].mean())
+        gain = seen * math.pi * HEIGHT ** 2 / (ALBEDO * 1000)
+        return min((1 / 4, 1 / math.pi), key=lambda known: abs(known - gain)) if .2 < gain < .4 else gain or 1 / math.pi
+    finally:
+        for thing in made:
+            bpy.data.objects.remove(thing)
+        bpy.data.scenes.remove(stage)
 
 
 def lamp_state(lamp, place):

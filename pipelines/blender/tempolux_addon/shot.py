@@ -10,7 +10,7 @@ import numpy
 from . import gltf
 from .bake import Baker
 from .cameras import picture_size
-from .lamps import LampState
+from .lamps import area_gain
 from .looks import Look, look_of, matte
 from .materials import Materials, needs_bake
 from .notes import Damage, Notes
@@ -535,7 +535,7 @@ class Shot:
         """Radiance of a frame on the shape of the first frame: the power is that of the frame."""
         if state.kind == "POINT":
             return [float(c) for c in state.power / (4 * math.pi ** 2 * first.radius ** 2) * first.radiance_gain()]
-        return [float(c) for c in state.power / (4 * first.area)]
+        return [float(c) for c in state.power * area_gain() / first.area]
 
     # ---- cameras ----
 
