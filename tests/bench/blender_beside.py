@@ -34,7 +34,7 @@ cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.caustics_reflective = cycles.caustics_refractive = caustics
 if caustics:
     cycles.blur_glossy = 0
-    cycles.samples = 512
+    cycles.samples = 256
 cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 32
 cycles.pixel_filter_type = "BOX"
 cycles.filter_width = 1.0

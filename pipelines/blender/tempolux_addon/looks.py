@@ -64,6 +64,11 @@ def principled(node, stack):
         rough = pick(node.inputs, "Transmission Roughness")
         if rough is not None and is_constant(look["transmission"]) and as_number(look["transmission"]) > 0 and resolve(rough, stack) != 0:
             look.lose("Transmission Roughness is left out")
+    elif is_constant(look["base"]) and is_constant(look["transmission"]):
+        # Since 4.0 glass takes the root of the colour at each of its two surfaces.
+        look["base"] = tuple(max(c, 0.0) ** (1 - as_number(look["transmission"]) / 2) for c in as_tuple(look["base"]))
+    if is_constant(look["metallic"]) and .05 < look["metallic"] < .95:
+        look.lose("a Metallic between 0 and 1 is darker here")
     if pick(node.inputs, "Coat Tint") is not None and look["coat"] != 0 and resolve(pick(node.inputs, "Coat Tint"), stack) != WHITE:
         look.lose("the tint of its coat is left out")
     rough = pick(node.inputs, "Diffuse Roughness")
