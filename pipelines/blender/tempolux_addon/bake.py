@@ -20,19 +20,21 @@ class Baker:
     def open(self):
         if self.scene:
             return
-        window = bpy.context.window
-        self.before = window.scene if window else None
+        self.window = bpy.context.window or next(iter(bpy.context.window_manager.windows), None)
+        if self.window is None:
+            raise RuntimeError("Blender has no window to bake in")
+        self.before = self.window.scene
         self.scene = bpy.data.scenes.new("tempolux bake")
         self.scene.render.engine = "CYCLES"
         self.scene.cycles.device, self.scene.cycles.samples, self.scene.cycles.use_denoising = "CPU", SAMPLES, False
         if hasattr(self.scene.cycles, "use_adaptive_sampling"):
             self.scene.cycles.use_adaptive_sampling = False
         self.scene.frame_set(self.shot.first)
-        window.scene = self.scene
+        self.window.scene = self.scene
 
     def close(self):
         if self.scene:
-            bpy.context.window.scene = self.before
+            self.window.scene = self.before
             bpy.data.scenes.remove(self.scene)
             self.scene = None
 

@@ -1,6 +1,7 @@
 """Writes .glb: accessors, images, nodes, channels of animations."""
 import hashlib
 import json
+import math
 import struct
 
 import numpy
@@ -95,13 +96,24 @@ class Document:
             self.binary.append(0)
         if self.binary:
             self.json["buffers"] = [{"byteLength": len(self.binary)}]
-        text = json.dumps(self.json, separators=(",", ":"), allow_nan=False).encode()
+        text = json.dumps(scrubbed(self.json), separators=(",", ":"), allow_nan=False).encode()
         text += b" " * (-len(text) % 4)
         size = 28 + len(text) + len(self.binary) if self.binary else 20 + len(text)
         with open(path, "wb") as out:
             out.write(struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON") + text)
             if self.binary:
                 out.write(struct.pack("<I4s", len(self.binary), b"BIN\0") + self.binary)
+
+
+def scrubbed(value):
+    """The same without infinities and NaN, which JSON has not: a broken value of one material must not cost the file."""
+    if isinstance(value, dict):
+        return {key: scrubbed(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [scrubbed(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return 0.0
+    return value
 
 
 def thinned(values):

@@ -148,7 +148,7 @@ def hair(node, stack):
 SHADERS = {
     "BSDF_PRINCIPLED": principled, "BSDF_DIFFUSE": diffuse, "BSDF_GLOSSY": glossy, "BSDF_ANISOTROPIC": glossy, "BSDF_METALLIC": conductor,
     "BSDF_GLASS": glass, "BSDF_REFRACTION": glass, "BSDF_TRANSLUCENT": translucent, "SUBSURFACE_SCATTERING": subsurface,
-    "BSDF_SHEEN": sheen, "BSDF_VELVET": sheen, "EMISSION": emission, "BSDF_TRANSPARENT": transparent, "BSDF_HAIR": hair,
+    "BSDF_SHEEN": sheen, "BSDF_VELVET": sheen, "EMISSION": emission, "BACKGROUND": emission, "BSDF_TRANSPARENT": transparent, "BSDF_HAIR": hair,
     "BSDF_HAIR_PRINCIPLED": hair, "BSDF_TOON": hair, "EEVEE_SPECULAR": hair,
 }
 
@@ -286,6 +286,8 @@ def read_shader(socket, stack):
         look = matte(BLACK)
         look.lose("a holdout becomes black")
         return look
+    if output.type != "SHADER":                # Cycles takes a colour for light
+        return matte(BLACK, emission=Source(node, output, stack), strength=1.0)
     if node.type not in SHADERS:
         look = Look(roughness=1.0)
         look.lose(f"{node.bl_label} is not exported: it becomes grey; use Principled BSDF")

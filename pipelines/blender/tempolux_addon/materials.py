@@ -2,10 +2,11 @@
 import numpy
 
 from .colour import rec709, rec709_array
+from .factors import ANIMATED, as_number_or, leaves, plain_material, set_emission, set_extensions, unit
 from .images import file_bytes, picture_of, pixels_of, png, resized, to_srgb
 from .looks import fog_of
 from .notes import Damage
-from .values import Blend, Source, Times, as_number, as_tuple, is_constant, sources, times
+from .values import Source, as_number, as_tuple, is_constant, pick, resolve, times
 
 RENDERED = {"KHR_materials_specular", "KHR_materials_ior", "KHR_materials_transmission", "KHR_materials_volume",
             "KHR_materials_emissive_strength"}     # extensions that tempolux renders; others are written and named
@@ -13,7 +14,7 @@ WORDS = {"KHR_materials_clearcoat": "coat", "KHR_materials_sheen": "sheen", "KHR
          "KHR_materials_anisotropy": "anisotropy"}
 SINGLE = ("ior", "level", "tint", "coat", "coat_roughness", "sheen", "sheen_roughness", "sheen_tint", "film", "film_ior", "anisotropic",
           "anisotropic_rotation")                  # no texture of these: a mean
-SIGNED = {"srgb": "sRGB"}
+FLAT = .002                                        # scatter of a normal's two parts, as a map has them: half a step of 8 bits
 
 
 def linked(look):
@@ -43,7 +44,6 @@ def normal_map(value):
     """(picture, strength) of a normal map of tangent space; None for other normals."""
     if not isinstance(value, Source) or value.node.type != "NORMAL_MAP" or value.node.space != "TANGENT":
         return None
-    from .values import pick, resolve
     strength = resolve(pick(value.node.inputs, "Strength"), value.stack)
     picture = picture_of(resolve(pick(value.node.inputs, "Color"), value.stack))
     if picture is None or picture.channel is not None or not is_constant(strength):
@@ -126,98 +126,6 @@ class Materials:
             texts = {str(sorted((k, str(v)) for k, v in look.items() if is_constant(v))) for look in frames.values() if look is not None}
             self.shot.notes.lost(Damage.MOTION, f"material {material.name}", "changes in its nodes are left out: it looks as in the first frame"
                                  if len(texts) == 1 else "some of its changes are left out")
-
-
-ANIMATED = {"/pbrMetallicRoughness/baseColorFactor", "/pbrMetallicRoughness/metallicFactor", "/pbrMetallicRoughness/roughnessFactor",
-            "/emissiveFactor", "/extensions/KHR_materials_emissive_strength/emissiveStrength",
-            "/extensions/KHR_materials_specular/specularFactor", "/extensions/KHR_materials_specular/specularColorFactor",
-            "/extensions/KHR_materials_ior/ior", "/extensions/KHR_materials_transmission/transmissionFactor"}
-
-
-def as_number_or(value, other):
-    return as_number(value) if is_constant(value) else other
-
-
-def leaves(value, path=""):
-    """(pointer, number or list) of all numbers in a material."""
-    for key, inner in value.items():
-        if isinstance(inner, dict):
-            yield from leaves(inner, f"{path}/{key}")
-        elif isinstance(inner, (int, float, list)) and not isinstance(inner, bool):
-            yield f"{path}/{key}", inner
-
-
-def plain_material(look):
-    """A material of the constants of a look."""
-    result = {}
-    set_base(result, look["base"] if is_constant(look["base"]) else (1.0, 1.0, 1.0), as_number_or(look["alpha"], 1.0))
-    result["pbrMetallicRoughness"].update(metallicFactor=unit(as_number_or(look["metallic"], 1.0)),
-                                          roughnessFactor=unit(as_number_or(look["roughness"], 1.0)))
-    set_emission(result, times(look["emission"], look["strength"]))
-    set_extensions(result, look, {})
-    return result
-
-
-def unit(value):
-    return min(1.0, max(0.0, float(value)))
-
-
-def set_base(result, base, alpha):
-    result.setdefault("pbrMetallicRoughness", {})["baseColorFactor"] = [unit(c) for c in rec709(as_tuple(base))] + [unit(alpha)]
-
-
-def set_emission(result, emission):
-    if not is_constant(emission):
-        return
-    colour = [max(0.0, c) for c in rec709(as_tuple(emission))]
-    top = max(colour)
-    if top > 0:
-        result["emissiveFactor"] = [c / top for c in colour]
-        result.setdefault("extensions", {})["KHR_materials_emissive_strength"] = {"emissiveStrength": top}
-    else:
-        result["emissiveFactor"] = [0.0, 0.0, 0.0]
-
-
-def reflection(look, mean):
-    """(ior, specularFactor, specularColorFactor): what a dielectric reflects from in front is F0 of the IOR times twice the level."""
-    ior, level, tint = max(1.0, mean("ior")), max(0.0, mean("level")), rec709(as_tuple(mean("tint", colour=True)))
-    f0 = .04 if look.get("old_specular") and as_number_or(look["transmission"], 1) == 0 else ((ior - 1) / (ior + 1)) ** 2
-    f0 *= 2 * level
-    if level == 0 and as_number_or(look["transmission"], 1) == 0:
-        return 1.5, 0.0, [1.0, 1.0, 1.0]
-    if as_number_or(look["transmission"], 1) > 0:
-        return ior, 1.0 if level == .5 else min(1.0, 2 * level), list(tint)
-    root = min(f0, .998) ** .5
-    return (1 + root) / (1 - root), 1.0, list(tint)
-
-
-def set_extensions(result, look, means):
-    """Extensions of the constants; `means` of what is linked."""
-    extensions = result.setdefault("extensions", {})
-
-    def mean(key, colour=False):
-        value = look[key] if is_constant(look[key]) else means.get(key, (1.0, 1.0, 1.0) if colour else 0.0)
-        return as_tuple(value) if colour else as_number(value)
-    ior, specular, tint = reflection(look, mean)
-    if abs(ior - 1.5) > 1e-6:
-        extensions["KHR_materials_ior"] = {"ior": ior}
-    if specular != 1 or any(abs(c - 1) > 1e-6 for c in tint):
-        extensions["KHR_materials_specular"] = {"specularFactor": specular, "specularColorFactor": tint}
-    if not is_constant(look["transmission"]) or as_number(look["transmission"]) > 0:
-        extensions["KHR_materials_transmission"] = {"transmissionFactor": unit(as_number_or(look["transmission"], 1.0))}
-    if mean("coat") > 0:
-        extensions["KHR_materials_clearcoat"] = {"clearcoatFactor": unit(mean("coat")), "clearcoatRoughnessFactor": unit(mean("coat_roughness"))}
-    if mean("sheen") > 0:
-        extensions["KHR_materials_sheen"] = {"sheenColorFactor": [unit(mean("sheen") * c) for c in rec709(mean("sheen_tint", colour=True))],
-                                             "sheenRoughnessFactor": unit(mean("sheen_roughness"))}
-    if mean("film") > 0:
-        extensions["KHR_materials_iridescence"] = {"iridescenceFactor": 1.0, "iridescenceIor": mean("film_ior"),
-                                                   "iridescenceThicknessMinimum": mean("film"), "iridescenceThicknessMaximum": mean("film")}
-    if mean("anisotropic") > 0 and (not is_constant(look["metallic"]) or as_number(look["metallic"]) > 0 or True):
-        extensions["KHR_materials_anisotropy"] = {"anisotropyStrength": unit(mean("anisotropic")),
-                                                  "anisotropyRotation": 6.283185307179586 * mean("anisotropic_rotation")}
-    if not extensions:
-        del result["extensions"]
 
 
 class Maker:
@@ -387,6 +295,9 @@ class Maker:
             self.shot.notes.lost(Damage.DETAIL, self.name, "its bumps are left out")
             return
         pixels = self.bake("bumps", value, kind="normal")
+        if float(covered(pixels)[:, :2].std()) < FLAT:
+            self.baked[-1] = "bumps (flat to a quarter of a degree, left out)"
+            return
         result["normalTexture"] = self.info(self.document.texture(png(pixels[..., :3]), 33071, name=f"{self.name} bumps"))
 
     def emission(self, result):

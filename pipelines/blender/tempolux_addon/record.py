@@ -70,9 +70,12 @@ class Record:
                 name = f"{parent.name} {'' if parent == original else original.name + ' '}{'.'.join(map(str, numbers))}"
             item = self.items[key] = Item(name.strip(), kind, original, parent is not None)
             item.extras = own_properties(original)
-            item.flags = flags_of(original, depsgraph)
+            item.flags = flags_of(original, self.shot.layer)
         item = self.items[key]
         item.places[frame] = numpy.array(instance.matrix_world, "f8")
+        if not numpy.isfinite(item.places[frame]).all():
+            del item.places[frame]
+            raise ValueError("its place is not a number")
         if kind == "mesh":
             item.shapes[frame] = self.shape_key(depsgraph, thing, original, frame)
         elif kind == "light":
@@ -138,7 +141,7 @@ class Record:
     def take_camera(self, depsgraph, frame):
         bound = sorted((m for m in self.shot.scene.timeline_markers if m.camera), key=lambda m: m.frame)
         before = [m.camera for m in bound if m.frame <= frame]
-        camera = before[-1] if before else bound[0].camera if bound else self.shot.scene.camera
+        camera = before[-1] if before else bound[0].camera if bound else self.shot.camera
         if camera is None:
             return
         key = ("", (), camera.name_full, "camera")
@@ -214,17 +217,15 @@ def own_properties(thing):
     return found
 
 
-def flags_of(original, depsgraph):
+def flags_of(original, layer):
     """What Cycles hides of an object from which rays, and what it is in a compositor's hands."""
-    layer = depsgraph.view_layer
     flags = {name for name in ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_volume_scatter",
                                "visible_shadow") if not getattr(original, name, True)}
     if getattr(original, "is_shadow_catcher", False):
         flags.add("is_shadow_catcher")
-    real = bpy.context.scene.view_layers.get(layer.name) or bpy.context.view_layer
     for flag, ask in (("holdout", "holdout_get"), ("indirect_only", "indirect_only_get")):
         try:
-            if getattr(original, ask)(view_layer=real):
+            if getattr(original, ask)(view_layer=layer):
                 flags.add(flag)
         except (AttributeError, RuntimeError, TypeError):
             pass
@@ -234,6 +235,24 @@ def flags_of(original, depsgraph):
     if linking and (linking.receiver_collection or linking.blocker_collection):
         flags.add("light_linking")
     return flags
+
+
+TIMED = {"WAVE", "OCEAN", "BUILD", "MESH_CACHE", "MESH_SEQUENCE_CACHE", "NODES", "CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "EXPLODE",
+         "PARTICLE_SYSTEM", "PARTICLE_INSTANCE", "COLLISION", "SURFACE"}   # modifiers that may follow the time without a key
+
+
+def stands_still(scene):
+    """Can nothing change from frame to frame? Then one frame is enough."""
+    if scene.rigidbody_world or len(bpy.data.actions) or any(m.camera for m in scene.timeline_markers):
+        return False
+    owners = [block for name in ("objects", "meshes", "materials", "node_groups", "lights", "cameras", "worlds", "curves", "shape_keys",
+                                 "scenes", "armatures", "lattices", "metaballs") for block in getattr(bpy.data, name, ())]
+    owners += [block.node_tree for block in owners if getattr(block, "node_tree", None)]
+    if any(o.animation_data and (o.animation_data.drivers or o.animation_data.action or o.animation_data.nla_tracks) for o in owners):
+        return False
+    if any(image.source in ("SEQUENCE", "MOVIE") for image in bpy.data.images):
+        return False
+    return not any(m.type in TIMED for thing in bpy.data.objects for m in thing.modifiers)
 
 
 # ---- the render engine -------------------------------------------------------------------------------------
@@ -268,16 +287,25 @@ def record(shot):
 
     bpy.utils.register_class(TempoluxRecorder)
     render = scene.render
-    kept = {name: getattr(render, name) for name in ("engine", "use_compositing", "use_sequencer", "use_border", "filepath")
-            if hasattr(render, name)}
-    frame = scene.frame_current
+    kept = {name: getattr(render, name) for name in ("engine", "use_compositing", "use_sequencer", "use_multiview", "filepath")}
+    frame, eye, used = scene.frame_current, None, shot.layer.use
     TempoluxRecorder.job, TempoluxRecorder.trouble = walk, None
     try:
-        render.engine, render.use_compositing, render.use_sequencer = "TEMPOLUX_RECORD", False, False
-        bpy.ops.render.render(scene=scene.name, layer=bpy.context.view_layer.name)
-        if TempoluxRecorder.job is walk:
+        render.engine, shot.layer.use = "TEMPOLUX_RECORD", True
+        render.use_compositing = render.use_sequencer = render.use_multiview = False
+        if scene.camera is None:               # Blender renders nothing without one
+            eye = scene.camera = bpy.data.objects.new("tempolux record", bpy.data.cameras.new("tempolux record"))
+            shot.notes.lost(Damage.CAMERA, "the scene", "has no camera: tempolux looks at all of it")
+        bpy.ops.render.render(scene=scene.name, layer=shot.layer.name)
+        if TempoluxRecorder.job == walk:
             bpy.ops.render.render(scene=scene.name)
+        if TempoluxRecorder.job == walk:
+            raise RuntimeError("Blender renders no view layer of this scene")
     finally:
+        if eye:
+            scene.camera = None
+            bpy.data.objects.remove(eye)
+        shot.layer.use = used
         for name, value in kept.items():
             setattr(render, name, value)
         scene.frame_set(frame)

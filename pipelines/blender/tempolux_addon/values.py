@@ -1,4 +1,5 @@
 """Values of shader nodes: constants, or expressions of sockets that can be baked. Follows links through groups, reroutes, muted nodes."""
+import math
 
 
 class Source:
@@ -77,13 +78,17 @@ def sources(value):
 
 # ---- links ---------------------------------------------------------------------------------------------------
 
+def finite(value):
+    return float(value) if math.isfinite(value) else 0.0
+
+
 def plain(socket):
     """The value that an input has without a link."""
     value = getattr(socket, "default_value", 0.0)
     if isinstance(value, (int, float)):
-        return float(value)
+        return finite(value)
     try:
-        return tuple(float(v) for v in value)[:3]
+        return tuple(finite(v) for v in value)[:3]
     except TypeError:
         return 0.0
 
