@@ -34,7 +34,6 @@ cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
 cycles.caustics_reflective = cycles.caustics_refractive = caustics
 if caustics:
     cycles.blur_glossy = 0
-    cycles.samples = 256
 cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 32
 cycles.pixel_filter_type = "BOX"
 cycles.filter_width = 1.0
@@ -110,7 +109,7 @@ def main():
     line = shlex.split(" ".join(map(shlex.quote, sys.argv[6:]))) if len(sys.argv) > 6 else []
     out = pathlib.Path(out).resolve()
     out.mkdir(parents=True, exist_ok=True)
-    names = cycles(blend, blender, out, frames) if not os.environ.get("KEEP_CYCLES") else dict(
+    names = cycles(blend, blender, out, frames) if not (out / "names").exists() or not os.environ.get("KEEP_CYCLES") else dict(
         (int(n), name) for n, name in (t.split(" ", 1) for t in (out / "names").read_text().splitlines()))
     (out / "names").write_text("\n".join(f"{n} {name}" for n, name in names.items()))
     numbers = list(map(int, frames.split(":")[0].split(",")))

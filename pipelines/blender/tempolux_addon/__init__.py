@@ -35,7 +35,7 @@ def make_line(shot):
     if shot.world_file:
         words.append(f"ENVIRONMENT={shot.world_file}")
     if shot.smoke:
-        words.append(f"VOLUME={shot.smoke}")
+        words += [f"VOLUME={shot.smoke}", "VOLUME_OPTIONS=--volume-up z"]
     if len(shot.document.json.get("cameras", [])) > 1 and shot.camera_name:
         words.append(f"CAMERA={shot.camera_name}")
     return "make -f " + " ".join(map(shlex.quote, [makefile(), *words]))

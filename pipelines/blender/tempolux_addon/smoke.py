@@ -3,6 +3,7 @@ import os
 import re
 
 import bpy
+import numpy
 
 from .notes import Damage
 
@@ -13,14 +14,17 @@ class Smoke:
     def add_smoke(self, name, original):
         pattern = pattern_of(bpy.path.abspath(original.data.filepath, library=original.library)) if original.data.filepath else None
         self.take_smoke(name, pattern)
+        place = numpy.array(original.matrix_world)
+        if pattern and abs(place - numpy.eye(4)).max() > 1e-6:
+            self.notes.lost(Damage.LIGHT, name, "the place of the volume object is left out: apply it to the files")
 
     def take_smoke(self, name, pattern):
         if pattern is None:
             self.notes.lost(Damage.OBJECT, name, "smoke is left out: there is no .vdb file; bake the simulation, or name files by VOLUME=")
         elif self.smoke is None:
             self.smoke = pattern
-            self.notes.lost(Damage.OBJECT, name, "smoke is in the make line as VOLUME; its files lie in the axes and place of the .vdb, and its "
-                                                 "colours and density are set by VOLUME_OPTIONS")
+            self.notes.lost(Damage.LIGHT, name, "smoke is in the make line as VOLUME, where its files place it; its density and colour: --sigma-t and "
+                                                "--albedo in VOLUME_OPTIONS")
         else:
             self.notes.lost(Damage.OBJECT, name, "smoke is left out: VOLUME names one series of files")
 
