@@ -39,7 +39,9 @@ def is_module(blender):
 
 
 def run(words):
-    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=600)
+    """Debian's Blender takes the numpy of the first python3 on PATH."""
+    path = os.environ["PATH"] if is_module(words[0]) else "/usr/bin:" + os.environ["PATH"]
+    return subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path})
 
 
 def make(blender, case, blend, helper):

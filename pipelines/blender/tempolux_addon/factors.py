@@ -2,6 +2,9 @@
 from .colour import rec709
 from .values import as_number, as_tuple, is_constant, times
 
+STRENGTH = "/extensions/KHR_materials_emissive_strength/emissiveStrength"
+DEFAULTS = {"/extensions/KHR_materials_specular/specularFactor": 1.0, "/extensions/KHR_materials_specular/specularColorFactor": [1.0, 1.0, 1.0],
+            "/extensions/KHR_materials_ior/ior": 1.5, "/extensions/KHR_materials_transmission/transmissionFactor": 0.0}
 ANIMATED = {"/pbrMetallicRoughness/baseColorFactor", "/pbrMetallicRoughness/metallicFactor", "/pbrMetallicRoughness/roughnessFactor",
             "/emissiveFactor", "/extensions/KHR_materials_emissive_strength/emissiveStrength",
             "/extensions/KHR_materials_specular/specularFactor", "/extensions/KHR_materials_specular/specularColorFactor",

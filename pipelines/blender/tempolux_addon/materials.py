@@ -2,7 +2,7 @@
 import numpy
 
 from .colour import rec709, rec709_array
-from .factors import ANIMATED, as_number_or, leaves, plain_material, set_emission, set_extensions, unit
+from .factors import ANIMATED, DEFAULTS, STRENGTH, as_number_or, leaves, plain_material, set_emission, set_extensions, unit
 from .images import file_bytes, picture_of, pixels_of, png, resized, to_srgb
 from .looks import fog_of
 from .notes import Damage
@@ -53,18 +53,11 @@ def normal_map(value):
     return picture, strength
 
 
-class Part:
-    """What one material of one mesh becomes."""
-
-    def __init__(self):
-        self.textures, self.factors, self.colours = {}, {}, None   # {key: (texture info, factors)}; name of a colour attribute
-
-
 class Materials:
     """Makes the materials of the file. A material is shared by all meshes that need no bake of their own."""
 
     def __init__(self, shot, document, baker):
-        self.shot, self.document, self.baker, self.made, self.bakes = shot, document, baker, {}, {}
+        self.shot, self.document, self.baker, self.made = shot, document, baker, {}
 
     def material(self, material, shape, topology, slot, solid):
         """(index, UV layers, colour attribute): the file's material for one slot of a mesh. Layers: names, or None for the bake's."""
@@ -82,6 +75,8 @@ class Materials:
         maker = Maker(self, name, material, look, shape, topology, slot)
         result = {"name": material.name if material else "none", "doubleSided": True}
         maker.fill(result)
+        index = len(self.document.json.get("materials", []))
+        self.animate(material, index, result)
         extensions = result.get("extensions", {})
         if solid > 0 and "KHR_materials_transmission" in extensions and not as_number(look["sheet"]):
             body = extensions["KHR_materials_volume"] = {"thicknessFactor": solid}
@@ -96,8 +91,7 @@ class Materials:
                 self.shot.notes.lost(Damage.DETAIL, name, f"{WORDS[extension]} is written into the file; tempolux does not render it yet")
         if as_number_or(look["subsurface"], 1) > 0:
             self.shot.notes.lost(Damage.MATERIAL, name, "subsurface scattering is left out: it is matte")
-        index = self.document.append("materials", result)
-        self.animate(material, index, result)
+        self.document.append("materials", result)
         return index, maker.layers, maker.colours
 
     def animate(self, material, index, result):
@@ -105,27 +99,48 @@ class Materials:
         frames = self.shot.record.looks.get(material.name_full if material else "", {})
         if len(frames) < 2:
             return
-        known = dict(leaves(result))
-        series = {path: [] for path in known}
-        for frame in sorted(frames):
-            look = frames[frame]
-            values = dict(leaves(plain_material(look))) if look is not None else {}
-            for path, value in known.items():
-                series[path].append(values.get(path, value))
+        name = f"material {material.name}"
+        looks = [dict(leaves(plain_material(look))) if look is not None else {} for _, look in sorted(frames.items())]
+        light_emission(looks)
         moved = False
-        for path, values in series.items():
+        for path in dict.fromkeys(path for look in looks for path in look):
+            values = [look.get(path, DEFAULTS.get(path)) for look in looks]
             if all(v == values[0] for v in values):
                 continue
-            rows = numpy.array([numpy.atleast_1d(v) for v in values], "f4")
             moved = True
-            if path in ANIMATED:
-                self.document.channel(self.shot.times(sorted(frames)), rows, pointer=f"/materials/{index}{path}")
-            else:
-                self.shot.notes.lost(Damage.MOTION, f"material {material.name}", f"the change of {path.rsplit('/', 1)[-1]} is left out")
-        if not moved:
-            texts = {str(sorted((k, str(v)) for k, v in look.items() if is_constant(v))) for look in frames.values() if look is not None}
-            self.shot.notes.lost(Damage.MOTION, f"material {material.name}", "changes in its nodes are left out: it looks as in the first frame"
-                                 if len(texts) == 1 else "some of its changes are left out")
+            if path not in ANIMATED or None in values or not has_room(result, path, values[0]):
+                self.shot.notes.lost(Damage.MOTION, name, f"the change of {path.rsplit('/', 1)[-1]} is left out")
+                continue
+            rows = numpy.array([numpy.atleast_1d(v) for v in values], "f4")
+            self.document.channel(self.shot.times(sorted(frames)), rows, pointer=f"/materials/{index}{path}")
+        if moved:
+            self.shot.notes.keep("materials that change")
+        else:
+            self.shot.notes.lost(Damage.MOTION, name, "changes in its nodes are left out: it looks as in the frame that is open")
+
+
+def light_emission(looks):
+    """Frames without emission keep the colour of their neighbours, with strength 0."""
+    lit = next((look for look in looks if STRENGTH in look), None)
+    colour = lit["/emissiveFactor"] if lit else None
+    for look in looks if lit else ():
+        if STRENGTH in look:
+            colour = look["/emissiveFactor"]
+        else:
+            look["/emissiveFactor"], look[STRENGTH] = colour, 0.0
+
+
+def has_room(result, path, value):
+    """Puts the first frame's value where it is not in the material; False where a texture stands for it."""
+    *parents, last = path.strip("/").split("/")
+    if {"baseColorFactor": "baseColorTexture", "emissiveFactor": "emissiveTexture", "emissiveStrength": "emissiveTexture"}.get(last) in \
+            {**result, **result["pbrMetallicRoughness"]}:
+        return False
+    inner = result
+    for parent in parents:
+        inner = inner.setdefault(parent, {})
+    inner[last] = value
+    return True
 
 
 class Maker:

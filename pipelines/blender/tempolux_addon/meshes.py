@@ -10,7 +10,7 @@ from .nodes import distinct
 from .notes import Damage
 from .shapes import follow, reduce
 from .smoke import pattern_of
-from .values import as_number, is_constant
+from .values import as_number, as_tuple, is_constant, times
 
 
 class Meshes:
@@ -82,7 +82,8 @@ class Meshes:
 
     def shines(self, material):
         look = self.surface(material)[0]
-        return look is not None and not (is_constant(look["strength"]) and as_number(look["strength"]) == 0)
+        light = times(look["emission"], look["strength"]) if look is not None else 0.0
+        return not is_constant(light) or max(as_tuple(light)) > 0
 
     def without_shear(self, item, shapes):
         """Shapes in world space, for placements that are no translation, rotation and scale."""
