@@ -66,10 +66,10 @@ VolumeInput::VolumeInput(Tool& tool, const Scene& scene) : tool_(tool) {
   const bool none = options.files.size() == 1 && options.files.front() == "none";
   if (options.files.empty()) sources_ = volumes_of(scene);
   else if (!none) sources_ = sources_of(options);
-  if ((options.files.empty() || none) &&
-      (!options.sigma_t.empty() || !options.albedo.empty() || !options.phase_g.empty() || options.frames ||
-       options.up != "y"))
-    throw InputError("--volume-frames, --volume-up, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
+  if ((options.files.empty() || none) && (!options.sigma_t.empty() || !options.albedo.empty() ||
+                                          !options.phase_g.empty() || options.frames || options.up != "y"))
+    throw InputError(
+        "--volume-frames, --volume-up, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
 }
 
 int VolumeInput::last_frame() const {

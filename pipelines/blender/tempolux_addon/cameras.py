@@ -26,6 +26,15 @@ class CameraState:
         way = turn @ (across, up, -1)
         return place[:3, 3], way / numpy.linalg.norm(way)
 
+    def shows(self, place, point):
+        """Is a point of Blender's world in the picture, or a tenth of it beside?"""
+        local = (point - place[:3, 3]) @ (place[:3, :3] / numpy.linalg.norm(place[:3, :3], axis=0))
+        away = 1.0 if self.kind == "ORTHO" else -local[2]
+        if away <= 0:
+            return False
+        x, y = (local[k] / away / (2 * self.half) - self.shift[k] for k in (0, 1))
+        return abs(x) < .6 * self.aspect and abs(y) < .6
+
 
 def picture_size(render):
     """Width and height in square pixels: the border alone where the render is cropped to it."""

@@ -60,6 +60,14 @@ class Lamps:
             self.changes(frames, [[v["spot"]["outerConeAngle"]] for v in values], f"{at}/spot/outerConeAngle")
             self.changes(frames, [[v["spot"]["innerConeAngle"]] for v in values], f"{at}/spot/innerConeAngle")
 
+    def in_view(self, item):
+        """Is the middle of a thing in the picture, at some frame?"""
+        for frame in self.some(item):
+            eye = self.record.items.get(self.record.cameras.get(frame))
+            if eye is not None and frame in eye.states and eye.states[frame].shows(eye.places[frame], item.places[frame][:3, 3]):
+                return True
+        return not self.record.cameras
+
     def changes(self, frames, rows, pointer):
         if len(frames) == len(self.frames()) and moves(numpy.array(rows, "f4")):
             self.document.channel(self.times(frames), rows, pointer=pointer)
@@ -70,8 +78,8 @@ class Lamps:
         first, lost = states[frames[0]], self.notes.lost
         if first.kind == "AREA" and first.spread < math.pi - 1e-3:
             lost(Damage.LIGHT, item.label, "its spread is left out: it shines to all sides")
-        if "visible_camera" in item.flags:
-            lost(Damage.DETAIL, item.label, "the camera sees the shape of this lamp, which Blender hides")
+        if "visible_camera" in item.flags and self.in_view(item):
+            lost(Damage.CAMERA, item.label, "the camera sees the shape of this lamp, which Blender hides")
         if any(abs(states[f].area - first.area) > 1e-6 * first.area or abs(states[f].radius - first.radius) > 1e-6 for f in frames) \
                 and first.kind == "POINT":
             lost(Damage.MOTION, item.label, "its size stays that of the first frame; its power is kept")
