@@ -99,7 +99,7 @@ class Lamps:
         attributes = {"POSITION": make(points.astype("f4"), bounds=True, target=34962)}
         primitive = {"attributes": attributes, "indices": make(triangles.reshape(-1).astype("u2"), target=34963), "material": index}
         mesh = self.document.append("meshes", {"name": item.name, "primitives": [primitive]})
-        self.node(item, places, mesh=mesh)
+        self.node(item, places, mesh=mesh, extras={"hidden_from_camera": True} if "visible_camera" in item.flags else None)
         tops = [max(max(r), 1e-9) for r in rows]
         self.changes(frames, [[t] for t in tops], f"/materials/{index}/extensions/KHR_materials_emissive_strength/emissiveStrength")
         self.changes(frames, [[c / t for c in r] for r, t in zip(rows, tops)], f"/materials/{index}/emissiveFactor")

@@ -64,24 +64,29 @@ class Record:
         if kind == "mesh" and not len(self.mesh_of(thing)):
             return
         seen[key] = True
-        if key not in self.items:
+        place = numpy.array(instance.matrix_world, "f8")
+        if not numpy.isfinite(place).all():
+            raise ValueError("its place is not a number")
+        shape = state = None
+        if kind == "mesh":
+            shape = self.shape_key(depsgraph, thing, original, frame)
+        elif kind == "light":
+            state = lamp_state(thing.data, place)
+        else:
+            state = camera_state(thing, place, self.shot.scene)
+        if key not in self.items:                             # all that may fail has been done
             name = original.name
             if parent is not None:
                 name = f"{parent.name} {'' if parent == original else original.name + ' '}{'.'.join(map(str, numbers))}"
-            item = self.items[key] = Item(name.strip(), kind, original, parent is not None)
-            item.extras = own_properties(original)
-            item.flags = flags_of(original, self.shot.layer)
+            item = Item(name.strip(), kind, original, parent is not None)
+            item.extras, item.flags = own_properties(original), flags_of(original, self.shot.layer)
+            self.items[key] = item
         item = self.items[key]
-        item.places[frame] = numpy.array(instance.matrix_world, "f8")
-        if not numpy.isfinite(item.places[frame]).all():
-            del item.places[frame]
-            raise ValueError("its place is not a number")
-        if kind == "mesh":
-            item.shapes[frame] = self.shape_key(depsgraph, thing, original, frame)
-        elif kind == "light":
-            item.states[frame] = lamp_state(thing.data, item.places[frame])
+        item.places[frame] = place
+        if shape is not None:
+            item.shapes[frame] = shape
         else:
-            item.states[frame] = camera_state(thing, item.places[frame], self.shot.scene)
+            item.states[frame] = state
 
     @staticmethod
     def mesh_of(thing):
@@ -126,6 +131,15 @@ class Record:
         if topology in self.baking:
             return
         mesh = bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=depsgraph)
+        shape = self.shapes[key]
+        if len(mesh.loops) != len(shape.vertex):
+            bpy.data.meshes.remove(mesh)
+            return
+        for slot, material in enumerate(shape.materials):      # those of the object, where they are not the mesh's
+            if slot < len(mesh.materials):
+                mesh.materials[slot] = material
+            else:
+                mesh.materials.append(material)
         self.baking[topology] = mesh, numpy.array(thing.matrix_world, "f8")
 
     # ---- materials, camera ----

@@ -31,7 +31,7 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
         self.first, self.last = max(0, scene.frame_start), max(0, scene.frame_end)
         if scene.frame_start < 0:
             self.notes.lost(Damage.MOTION, "the scene", "frames below 0 are left out")
-        self.surfaces = {}
+        self.surfaces, self.wanted, self.camera_name = {}, {}, None
         self.camera = scene.camera
         self.layer = next((layer for layer in scene.view_layers if layer == bpy.context.view_layer or layer.use), scene.view_layers[0])
         self.still = stands_still(scene)
@@ -87,9 +87,9 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
         self.check()
         self.record = record(self)
         self.notes.shares = self.record.shares
-        self.list_others()
-        bake_world(self)
-        self.measure_bakes()
+        for step in (self.list_others, lambda: bake_world(self), self.measure_bakes):
+            with self.notes.guard(Damage.LIGHT, "the scene", "a part of it is left out"):
+                step()
         self.document = gltf.Document(f"Blender {bpy.app.version_string}, tempolux_export")
         baker = Baker(self)
         try:
@@ -98,8 +98,9 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
             for key, item in self.record.items.items():
                 with self.notes.guard(Damage.OBJECT, item.label, "is left out"):
                     {"mesh": self.add_mesh, "light": self.add_lamp, "camera": self.add_camera}[item.kind](key, item)
-            self.add_groups()
-            self.add_cut()
+            for step in (self.add_groups, self.add_cut):
+                with self.notes.guard(Damage.OBJECT, "the scene", "instances or cuts are left out"):
+                    step()
         finally:
             baker.close()
         self.warn_if_dark()
@@ -123,6 +124,10 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
             self.notes.lost(Damage.CAMERA, "the pixel aspect", f"pixels are square: the same picture as {size}")
         if render.use_motion_blur:
             self.notes.lost(Damage.CAMERA, "motion blur", "is not rendered (shutter kept in the camera's extras)")
+        for image in bpy.data.images:
+            path = bpy.path.abspath(image.filepath, library=image.library) if image.source == "FILE" and image.filepath else ""
+            if path and image.users and not image.packed_file and not os.path.isfile(path):
+                self.notes.lost(Damage.MATERIAL, f"image {image.name}", f"its file is missing: {path}")
         view = self.scene.view_settings
         if view.view_transform not in ("Standard", "Raw"):
             self.notes.lost(Damage.HINT, "the view transform", f"{view.view_transform} is not applied: previews are sRGB; compare the linear "
@@ -133,7 +138,6 @@ class Shot(Meshes, Nodes, Lamps, Cameras, Smoke):
 
     def measure_bakes(self):
         """Pixels that a texture of each mesh needs, by its size and distance from the camera over the shot."""
-        self.wanted = {}
         eyes = {frame: self.record.items[key] for frame, key in self.record.cameras.items()}
         height = picture_size(self.scene.render)[1]
         for item in self.record.items.values():
