@@ -4,7 +4,7 @@
 
 BLENDER: Python of a virtual environment with bpy, or a program. The line is run with SIZE=320x180, FRAMES and BIN put behind it. Cycles: 128
 samples and OIDN, without motion blur and depth of field, which we do not render; --caustics as words of FRAMES' end (1,18:caustics) keep its
-light through glass. Written: OUT/F_cycles.exr, OUT/ours/frames/*.exr, OUT/F.png: ours above, Cycles below, at one exposure.
+light through glass. SIZE=192x108 in the environment: a smaller picture. KEEP_CYCLES=1, KEEP_OURS=1: what is there is not rendered again. Written: OUT/F_cycles.exr, OUT/ours/frames/*.exr, OUT/F.png: ours above, Cycles below, at one exposure.
 """
 import os
 import pathlib
@@ -16,7 +16,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "tests/stress"))
 import exr  # noqa: E402
 
-SIZE, TILES = (320, 180), (8, 6)
+SIZE, TILES = tuple(map(int, os.environ.get("SIZE", "320x180").split("x"))), (8, 6)
 RENDER = """
 import bpy, sys
 blend, out, frames, width, height = sys.argv[-5:]

@@ -24,7 +24,7 @@ in_blender - tests/pipelines/from_blender_shot.py "$work/shot.blend" > "$work/lo
 export_shot "$work/shot.glb"
 grep -q "No module named 'numpy'" "$work/log" && { echo "the exporter needs python3-numpy"; exit 77; }
 [ -f "$work/shot.glb" ] || bad "$(tail -3 "$work/log")"
-for words in 'material Noisy: colour (' 'Domain: smoke is left out' 'material Odd: becomes grey (ValueError: the node group Empty has no output)' \
+for words in 'material Noisy: colour by nodes: baked' 'Domain: smoke is left out' 'material Odd: becomes grey (ValueError: the node group Empty has no output)' \
     'Wave: its deformation: '; do
   grep -qF "$words" "$work/log" || bad "does not say '$words': $(cat "$work/log")"
 done

@@ -193,6 +193,11 @@ def coated(matte_look, mirror, reflectance):
     return look
 
 
+def evenly(share):
+    """The share from in front whose mean over a ball, by Schlick's rise along the surface, is this one."""
+    return max(0.0, (share - 1 / 21) * 21 / 20)
+
+
 def mix(factor, a, b):
     """One look for a mixture of two."""
     switch, ior = path_switch(factor), angle_switch(factor, ())
@@ -218,7 +223,7 @@ def mix(factor, a, b):
     if is_constant(factor):
         for low, mirror, share in ((a, b, as_number(factor)), (b, a, 1 - as_number(factor))):
             if is_matte(low) and is_mirror(mirror) and low["base"] != mirror["base"] and share < 1:
-                look = coated(low, mirror, times(mirror["base"], share))
+                look = coated(low, mirror, times(mirror["base"], evenly(share)))
                 look.losses = low.losses + mirror.losses
                 look.lose("a mixture of matte and gloss is glossier seen along the surface")
                 return look

@@ -14,7 +14,7 @@ WORDS = {"KHR_materials_clearcoat": "coat", "KHR_materials_sheen": "sheen", "KHR
          "KHR_materials_anisotropy": "anisotropy"}
 SINGLE = ("ior", "level", "tint", "coat", "coat_roughness", "sheen", "sheen_roughness", "sheen_tint", "film", "film_ior", "anisotropic",
           "anisotropic_rotation")                  # no texture of these: a mean
-FLAT = .002                                        # scatter of a normal's two parts, as a map has them: half a step of 8 bits
+FLAT = .004                                        # scatter of a normal's two parts, as a map has them: a step of 8 bits, half a degree
 
 
 def linked(look):
@@ -201,7 +201,7 @@ class Maker:
         if mean:
             self.shot.notes.lost(Damage.MATERIAL, self.name, f"{what} by nodes: its mean is exported")
             return covered(pixels).mean(axis=0)[None, None]
-        self.baked.append(f"{what} ({size} pixels)")
+        self.baked.append(what)
         return pixels
 
     def mean(self, key, value):
@@ -311,7 +311,7 @@ class Maker:
             return
         pixels = self.bake("bumps", value, kind="normal")
         if float(covered(pixels)[:, :2].std()) < FLAT:
-            self.baked[-1] = "bumps (flat to a quarter of a degree, left out)"
+            self.baked[-1] = "bumps (flat to half a degree, left out)"
             return
         result["normalTexture"] = self.info(self.document.texture(png(pixels[..., :3]), 33071, name=f"{self.name} bumps"))
 
