@@ -132,9 +132,6 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
 /// Height of a representative's picture over that of the camera: a quarter more on each side. The camera's direction
 /// differs from the lattice direction by at most half a step, a sixth of the angle of view.
 constexpr double kWider = 1.5;
-/// Step of a lens shift, in heights of the camera's picture. Half of it and half a step of the direction are less than
-/// the quarter that kWider adds on each side.
-constexpr double kShiftStep = 1.0 / 8;
 /// Offset of the lattice's planes in steps, so that coordinates which people type (0, 0.5, 1.6) are not close to a
 /// plane.
 constexpr double kShift = 1.0 / 3;
@@ -187,9 +184,12 @@ CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double dist
   PlacedCamera around = camera;
   (perspective ? around.camera.yfov_rad : around.camera.ymag_m) = perspective ? 2 * std::atan(height) : height;
   const double own = perspective ? half_height / distance : half_height;
+  // Steps of the lens shift, in heights of the camera's picture: half of one and half a step of the direction are less
+  // than what kWider adds on a side.
+  const double shift_step = (kWider - 1) / 4;
   for (std::size_t i = 0; i < 2; ++i) {
-    cell.key[9 + i] = std::round(camera.camera.lens_shift[i] / kShiftStep);
-    around.camera.lens_shift[i] = cell.key[9 + i] * kShiftStep * own / height;
+    cell.key[9 + i] = std::round(camera.camera.lens_shift[i] / shift_step);
+    around.camera.lens_shift[i] = cell.key[9 + i] * shift_step * own / height;
   }
   std::array<double, 3> angles = angles_of(camera.scene_from_camera);
   cell.key[0] = level;
