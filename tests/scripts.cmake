@@ -46,7 +46,9 @@ endforeach()
 add_test(NAME pipelines.looks COMMAND sh tests/pipelines/looks.sh $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.looks PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.from_blender COMMAND sh tests/pipelines/from_blender.sh $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.from_blender PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
+add_test(NAME pipelines.from_blender_module COMMAND sh tests/pipelines/from_blender.sh $<TARGET_FILE_DIR:scene-plan> build/peers/bpy/bin/python
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})   # tests/pipelines/get_bpy.sh installs it
+set_tests_properties(pipelines.from_blender pipelines.from_blender_module PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 # Make against a new OUT: a random walk over what a user can change, names, ranges, two makes at once.
 add_test(NAME pipelines.known_walks COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --known WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.random_walk COMMAND python3 -B tests/pipelines/random_walk.py $<TARGET_FILE_DIR:scene-plan> --steps 40

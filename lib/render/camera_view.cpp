@@ -10,10 +10,13 @@ CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int 
       height_(height) {
   half_height_ = orthographic() ? camera.camera.ymag_m : std::tan(camera.camera.yfov_rad / 2);
   half_width_ = half_height_ * width / height;
+  centre_x_ = 2 * half_height_ * camera.camera.lens_shift[0];
+  centre_y_ = 2 * half_height_ * camera.camera.lens_shift[1];
 }
 
 Ray CameraView::ray(float x, float y) const {
-  const double px = (2.0 * double(x) / width_ - 1) * half_width_, py = (1 - 2.0 * double(y) / height_) * half_height_;
+  const double px = centre_x_ + (2.0 * double(x) / width_ - 1) * half_width_;
+  const double py = centre_y_ + (1 - 2.0 * double(y) / height_) * half_height_;
   const Affine& from = camera_.scene_from_camera;
   if (orthographic()) return {Vec3(from.point({px, py, 0})), Vec3(normalize(from.direction({0, 0, -1}))), 0, INFINITY};
   return {Vec3(from.translation), Vec3(normalize(from.direction({px, py, -1}))), 0, INFINITY};
@@ -27,7 +30,8 @@ std::optional<std::array<double, 2>> CameraView::project(Vec3 point) const {
     x /= -p.z;
     y /= -p.z;
   }
-  return std::array{(x / half_width_ + 1) * width_ / 2, (1 - y / half_height_) * height_ / 2};
+  return std::array{((x - centre_x_) / half_width_ + 1) * width_ / 2,
+                    (1 - (y - centre_y_) / half_height_) * height_ / 2};
 }
 
 double CameraView::depth(Vec3 point) const { return -camera_from_scene_.point(Vec3d(point)).z; }
@@ -44,8 +48,8 @@ std::array<double, 16> CameraView::world_to_ndc() const {
   // Perspective: w = z, so NDC depth is 1 (there are no clipping planes). Orthographic: w = 1, so NDC depth is z.
   for (std::size_t row = 0; row < 4; ++row) {
     const double x = c[row * 4], y = c[row * 4 + 1], z = c[row * 4 + 2], w = orthographic() ? c[row * 4 + 3] : z;
-    ndc[row * 4] = (x / half_width_ + w) / 2;
-    ndc[row * 4 + 1] = (w - y / half_height_) / 2;
+    ndc[row * 4] = ((x - centre_x_ * w) / half_width_ + w) / 2;
+    ndc[row * 4 + 1] = (w - (y - centre_y_ * w) / half_height_) / 2;
     ndc[row * 4 + 2] = z;
     ndc[row * 4 + 3] = w;
   }

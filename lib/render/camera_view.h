@@ -14,7 +14,7 @@ namespace tempolux {
 
 /// A camera with a picture size in pixels, at least 1 x 1. Pixel (0, 0) is the top left one. Raster coordinates grow
 /// right and down; the centre of pixel (x, y) is at (x + .5, y + .5). The vertical field of view is the camera's; the
-/// horizontal one follows from the picture's aspect.
+/// horizontal one follows from the picture's aspect. A lens shift moves the picture off the view axis.
 class CameraView {
  public:
   /// `origin`: world-space position of the scene space's origin [m] (SceneFrame::origin).
@@ -56,7 +56,9 @@ class CameraView {
   Affine camera_from_scene_;
   Vec3d origin_;
   int width_, height_;
-  double half_width_, half_height_;  ///< of the picture: at distance 1 (perspective), or in m (orthographic)
+  // Of the picture: at distance 1 (perspective), or in m (orthographic).
+  double half_width_, half_height_;
+  double centre_x_, centre_y_;  ///< of the picture, from the view axis: to the right, up
 };
 
 /// Rays of a camera and what they meet first.

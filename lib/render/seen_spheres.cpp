@@ -165,8 +165,9 @@ bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
 
 /// A cell of the lattice of cameras.
 struct CameraCell {
-  /// Level; indices of position and of direction; height of the picture; bits of the octants that have a camera.
-  std::array<double, 9> key{};
+  /// Level; indices of position and of direction; height of the picture; bits of the octants that have a camera; lens
+  /// shift.
+  std::array<double, 11> key{};
   std::vector<PlacedCamera> cameras;
 };
 
@@ -182,6 +183,14 @@ CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double dist
                step = 2.0 / 3 * std::atan(half_height / distance);
   PlacedCamera around = camera;
   (perspective ? around.camera.yfov_rad : around.camera.ymag_m) = perspective ? 2 * std::atan(height) : height;
+  const double own = perspective ? half_height / distance : half_height;
+  // Steps of the lens shift, in heights of the camera's picture: half of one and half a step of the direction are less
+  // than what kWider adds on a side.
+  const double shift_step = (kWider - 1) / 4;
+  for (std::size_t i = 0; i < 2; ++i) {
+    cell.key[9 + i] = std::round(camera.camera.lens_shift[i] / shift_step);
+    around.camera.lens_shift[i] = cell.key[9 + i] * shift_step * own / height;
+  }
   std::array<double, 3> angles = angles_of(camera.scene_from_camera);
   cell.key[0] = level;
   cell.key[7] = narrow;

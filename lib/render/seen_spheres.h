@@ -21,7 +21,7 @@ struct WeighedPlace {
 /// Places that look_around() has found.
 struct SeenAround {
   std::vector<WeighedPlace> places;
-  std::set<std::array<double, 9>> looked;  ///< cells of the lattice of cameras whose places were added
+  std::set<std::array<double, 11>> looked;  ///< cells of the lattice of cameras whose places were added
 };
 
 /// Adds places that stand-in cameras see in place of the given camera. A lattice divides the positions and directions

@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -25,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
+constexpr double kMaxShift = 1000;  ///< heights of the picture
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
 // Extensions that this program reads. Properties of them that it does not render cause warnings (gltf_material.cpp).
@@ -128,6 +130,21 @@ void keep_node_extras(const Json& document, Gated& gated) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (const auto extras = nodes[i].find("extras"); extras != nodes[i].end())
       gated.node_extras.emplace(i, extras->dump());
+}
+
+/// Keeps the `lens_shift` of cameras' `extras`.
+void keep_lens_shifts(const Json& document, const std::string& path, Gated& gated) {
+  const Json& cameras = array_of(document, "cameras");
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const auto extras = cameras[i].find("extras");
+    if (extras == cameras[i].end() || !extras->is_object() || !extras->contains("lens_shift")) continue;
+    const Json& shift = (*extras)["lens_shift"];
+    const auto fits = [](const Json& value) { return value.is_number() && std::abs(value.get<double>()) <= kMaxShift; };
+    if (!shift.is_array() || shift.size() != 2 || !fits(shift[0]) || !fits(shift[1]))
+      fail(path, "cameras[" + std::to_string(i) + "].extras.lens_shift",
+           "must be two numbers from -1000 to 1000, in heights of the picture");
+    gated.lens_shifts[i] = {shift[0].get<double>(), shift[1].get<double>()};
+  }
 }
 
 /// Moves channels of KHR_animation_pointer to `gated`, since tinygltf drops them silently.
@@ -305,6 +322,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   check_types(document, path);
   check_version(document, path);
   keep_node_extras(document, gated);
+  keep_lens_shifts(document, path, gated);
   check_extensions(document, path, gated);
   keep_pointer_channels(document, gated);
   if (document.contains("buffers"))

@@ -3,9 +3,11 @@
 // tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path that a URI names, and
 // treats values of the wrong type as missing. So the gate parses the JSON first, with limits, and checks it. Then the
 // gate rewrites the JSON: it removes images, extras and unknown extensions, unpacks packed geometry, and replaces the
-// URI of every buffer by the name of an approved range of bytes. Images and extras of nodes are kept in Gated.
+// URI of every buffer by the name of an approved range of bytes. Images, extras of nodes and lens shifts are kept in
+// Gated.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -51,7 +53,8 @@ struct Gated {
   std::uint64_t byte_count = 0;       ///< size of the JSON and of all buffers
   std::vector<std::string> warnings;  ///< features of the file that this program ignores, one line each
   std::vector<PointerChannel> pointers;
-  std::map<std::size_t, std::string> node_extras;  ///< by index of the node: its `extras` as JSON text
+  std::map<std::size_t, std::string> node_extras;            ///< by index of the node: its `extras` as JSON text
+  std::map<std::size_t, std::array<double, 2>> lens_shifts;  ///< by index of the camera: its extras' `lens_shift`
 };
 
 /// The name a buffer has in Gated::json.

@@ -202,6 +202,8 @@ Camera read_camera(Import& import, std::size_t index) {
   } else {
     import.fail(place + ".type", "\"" + source.type + "\" is not perspective or orthographic");
   }
+  if (const auto shift = import.gated->lens_shifts.find(index); shift != import.gated->lens_shifts.end())
+    camera.lens_shift = shift->second;
   return camera;
 }
 

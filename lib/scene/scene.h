@@ -139,6 +139,8 @@ struct Camera {
   Kind kind = Kind::perspective;
   double yfov_rad = 0.8;  ///< full vertical angle, perspective
   double ymag_m = 1;      ///< half height of the view, orthographic
+  /// Where the picture's centre lies off the view axis, in heights of the picture: x to the right, y up.
+  std::array<double, 2> lens_shift{};
 };
 
 /// Largest inner cone of a spot, as a share of the outer cone. Blender writes inner = outer for a spot without a soft

@@ -180,6 +180,10 @@ std::string camera_hash(const PlacedCamera& placed) {
   hasher.add(std::uint32_t(placed.camera.kind));
   hasher.add(placed.camera.kind == Camera::Kind::perspective ? placed.camera.yfov_rad : placed.camera.ymag_m);
   hasher.add(placed.scene_from_camera);
+  if (const auto [right, up] = placed.camera.lens_shift; right != 0 || up != 0) {
+    hasher.add(right);
+    hasher.add(up);
+  }
   return hasher.hex();
 }
 

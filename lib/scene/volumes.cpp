@@ -16,6 +16,9 @@ using Json = nlohmann::json;
 
 constexpr double kSmallest = 1e-12;  ///< least side of a medium's box, m: the inverse of a cell must fit into float32
 
+/// From axes with +z up to glTF's.
+constexpr Affine kYUp{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}, Vec3d{}};
+
 /// Reads and checks the values of one node's extras.
 class Extras {
  public:
@@ -109,7 +112,7 @@ std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const VdbVolume volume = series.read({files[i], sources[i].grid}, max_memory);
     if (volume.voxels->empty()) continue;  // the sequence has not begun at this frame
-    Affine scene_from_index = volume.world_from_index;
+    Affine scene_from_index = sources[i].z_up ? kYUp * volume.world_from_index : volume.world_from_index;
     scene_from_index.translation -= origin;
     try {
       media.emplace_back(volume.voxels, scene_from_index, sources[i].options);

@@ -21,6 +21,7 @@ struct VolumeSource {
   std::string grid;     ///< name; "": the grid `density`, or else the file's only grid of densities
   MediumOptions options;
   std::optional<std::pair<int, int>> frames;  ///< first and last frame with a file; other frames use the closest one
+  bool z_up = false;  ///< the file's +z is up and its +y away from the viewer, as in Blender; else +y is up
 };
 
 /// The media that nodes of the scene name in their extras, as a JSON object of

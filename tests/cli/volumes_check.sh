@@ -71,6 +71,16 @@ for name, want in zip("RGB", wanted):
 END
 }
 
+# A cube of soot above the middle: in a file whose +z is up, and in one whose +y is.
+make-vdb up_y.vdb 16 16 16 .05 -.375 .025 -.375 < ones; make-vdb up_z.vdb 16 16 16 .05 -.375 -.375 .025 < ones
+dark="--sigma-t 9 --albedo 0 --size 16x16 --spp 64 --integrator path -q"
+frame-render "$furnace" --volume up_y.vdb $dark -o up_y.exr && frame-render "$furnace" --volume up_z.vdb --volume-up z $dark -o up_z.exr &&
+  frame-render "$furnace" --volume up_z.vdb $dark -o wrong.exr || bad 'axes of smoke'
+red() { tempolux-info --json "$1" | "$python" -c 'import json, sys; print(next(c["mean"] for c in json.load(sys.stdin)["channels"] if c["channel"] == "R"))'; }
+"$python" -c 'import sys; y, z, wrong = map(float, sys.argv[1:]); sys.exit(not (abs(z / y - 1) < .02 < abs(wrong / y - 1)))' \
+  "$(red up_y.exr)" "$(red up_z.exr)" "$(red wrong.exr)" || bad "axes of smoke: $(red up_y.exr) $(red up_z.exr) $(red wrong.exr)"
+expect 2 'name one' frame-render "$furnace" --volume-up z $tiny
+
 # A furnace: in a closed room of one radiance all around, smoke that absorbs nothing changes nothing, by paths, and by photons and slices.
 # Noise: .3 % of the mean of a path traced picture, .6 % of a composed one, whose photons are few in the part of the room that is seen.
 medium="--volume smoke.vdb --sigma-t 6 --albedo 1"

@@ -34,7 +34,8 @@ for frame, x in ((3, -1), (6, 1)):
 
 def material(name, kind, **values):
     made = bpy.data.materials.new(name)
-    made.use_nodes = True
+    if made.node_tree is None:
+        made.use_nodes = True
     tree = made.node_tree
     tree.nodes.remove(tree.nodes["Principled BSDF"])
     shader = tree.nodes.new(kind)
@@ -48,7 +49,8 @@ def material(name, kind, **values):
 matte, _ = material("Matte", "ShaderNodeBsdfDiffuse", Color=(.2, .4, .6, 1))
 chrome, _ = material("Chrome", "ShaderNodeBsdfGlossy", Color=(.9, .8, .7, 1), Roughness=.1)
 solid, _ = material("Solid", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0, IOR=1.6)
-sheet, _ = material("Sheet", "ShaderNodeBsdfPrincipled", Transmission=1)
+sheet, shader = material("Sheet", "ShaderNodeBsdfPrincipled")
+shader.inputs["Transmission Weight" if "Transmission Weight" in shader.inputs else "Transmission"].default_value = 1
 noisy, shader = material("Noisy", "ShaderNodeBsdfPrincipled", **{"Base Color": (.3, .3, .3, 1)})
 noisy.node_tree.links.new(noisy.node_tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], shader.inputs["Base Color"])
 for k, kind in enumerate((matte, chrome, solid, noisy)):
@@ -76,7 +78,48 @@ for name, mute in (("Cube Matte", False), ("Cube Chrome", True)):
     track.strips.new("Slide", 3, item.animation_data.action)
     track.mute, item.animation_data.action = mute, None
 scene.world = bpy.data.worlds.new("World")
-scene.world.use_nodes = True
+if scene.world.node_tree is None:
+    scene.world.use_nodes = True
 scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.5, 0.6, 0.8, 1)
 scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 2
+# A shifted lens; an object that appears at frame 5; a wave, which only a modifier moves; a domain of smoke; a material whose group has no output;
+# a lamp three stops brighter and one that changes, where this Blender has them; a level of subdivision for the render alone.
+eye.data.shift_x, eye.data.shift_y = .2, .1
+bpy.ops.mesh.primitive_cube_add(size=.1, location=(0, 2, 1))
+late = bpy.context.object
+late.name = "Late"
+for frame, hide in ((3, True), (5, False)):
+    late.hide_render = hide
+    late.keyframe_insert("hide_render", frame=frame)
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=1, location=(2, 0, 0))
+bpy.context.object.name = "Wave"
+bpy.context.object.modifiers.new("Wave", "WAVE")
+bpy.ops.mesh.primitive_cube_add(size=.1, location=(1, 2, 1))
+bpy.context.object.name = "Finer"
+finer = bpy.context.object.modifiers.new("Subdivision", "SUBSURF")
+finer.levels, finer.render_levels = 0, 2
+smoke, shader = material("Smoke", "ShaderNodeVolumePrincipled")
+smoke.node_tree.links.clear()
+smoke.node_tree.links.new(shader.outputs[0], smoke.node_tree.nodes["Material Output"].inputs["Volume"])
+odd, shader = material("Odd", "ShaderNodeBsdfPrincipled")
+group = odd.node_tree.nodes.new("ShaderNodeGroup")
+group.node_tree = bpy.data.node_groups.new("Empty", "ShaderNodeTree")
+if hasattr(group.node_tree, "interface"):
+    group.node_tree.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+else:
+    group.node_tree.outputs.new("NodeSocketShader", "Shader")
+odd.node_tree.links.new(group.outputs[0], odd.node_tree.nodes["Material Output"].inputs["Surface"])
+for name, kind, x in (("Domain", smoke, 3), ("Odd", odd, 4)):
+    bpy.ops.mesh.primitive_cube_add(size=.5, location=(x, 2, 1))
+    bpy.context.object.name = name
+    bpy.context.object.data.materials.append(kind)
+lamp = bpy.data.lights.new("Flicker", "POINT")
+lamp.shadow_soft_size = 0
+if hasattr(lamp, "exposure"):
+    lamp.exposure = 3
+for frame, energy in ((3, 1), (6, 4)):
+    lamp.energy = energy
+    lamp.keyframe_insert("energy", frame=frame)
+scene.collection.objects.link(bpy.data.objects.new("Flicker", lamp))
+scene.frame_set(3)
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[sys.argv.index("--") + 1])

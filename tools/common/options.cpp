@@ -156,6 +156,9 @@ void Tool::volume_options() {
                   volume.frames = std::pair{least, most};
                 })
       ->type_name("FRAMES");
+  app.add_option("--volume-up", volume.up, "axis of the files that points up: y, or z as Blender writes them [y]")
+      ->type_name("AXIS")
+      ->check(CLI::IsMember({"y", "z"}));
   app.add_option("--sigma-t", volume.sigma_t, "extinction of density 1, 1/m [1]")
       ->type_name("X")
       ->allow_extra_args(false)

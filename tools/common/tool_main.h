@@ -64,6 +64,7 @@ struct VolumeOptions {
   std::vector<std::array<float, 3>> albedo;
   std::vector<float> phase_g;
   std::optional<std::pair<int, int>> frames;  ///< frames that have files
+  std::string up = "y";                       ///< axis of the files that points up: y or z
   std::string majorants;                      ///< file from scene-plan; "": each frame has its own majorants
 };
 

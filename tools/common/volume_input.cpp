@@ -53,6 +53,7 @@ std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
     if (const auto* g = value_for(options.phase_g, i, n, "--phase-g")) source.options.g = *g;
     if (max_component(source.options.albedo) > 1) throw InputError("--albedo: a share of light is at most 1");
     if (options.frames) source.frames = *options.frames;
+    source.z_up = options.up == "z";
     sources.push_back(std::move(source));
   }
   return sources;
@@ -65,9 +66,10 @@ VolumeInput::VolumeInput(Tool& tool, const Scene& scene) : tool_(tool) {
   const bool none = options.files.size() == 1 && options.files.front() == "none";
   if (options.files.empty()) sources_ = volumes_of(scene);
   else if (!none) sources_ = sources_of(options);
-  if ((options.files.empty() || none) &&
-      (!options.sigma_t.empty() || !options.albedo.empty() || !options.phase_g.empty() || options.frames))
-    throw InputError("--volume-frames, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
+  if ((options.files.empty() || none) && (!options.sigma_t.empty() || !options.albedo.empty() ||
+                                          !options.phase_g.empty() || options.frames || options.up != "y"))
+    throw InputError(
+        "--volume-frames, --volume-up, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
 }
 
 int VolumeInput::last_frame() const {

@@ -294,5 +294,32 @@ TEST(CameraView, NdcAttributeAgreesWithProjection) {
   EXPECT_NEAR(h[3], c.view.depth(Vec3(p)), 1e-6);
 }
 
+/// A shift of a quarter of the picture's height to the right and half of it down: the picture's centre sees there.
+TEST(CameraView, LensShiftMovesThePicture) {
+  for (const Camera::Kind kind : {Camera::Kind::perspective, Camera::Kind::orthographic}) {
+    PlacedCamera placed;
+    placed.camera.kind = kind;
+    placed.camera.yfov_rad = 2 * std::atan(0.4);
+    placed.camera.ymag_m = 0.4;
+    placed.camera.lens_shift = {0.25, -0.5};
+    const CameraView view(placed, {}, 64, 36);
+    const Vec3 seen{0.2f * 3, -0.4f * 3, -3}, level{0.2f, -0.4f, -3};
+    const auto raster = view.project(view.orthographic() ? level : seen);
+    EXPECT_NEAR((*raster)[0], 32, 1e-5);
+    EXPECT_NEAR((*raster)[1], 18, 1e-5);
+    const Ray ray = view.ray(10, 30);
+    const auto back = view.project(ray.origin + ray.direction * 5);
+    EXPECT_NEAR((*back)[0], 10, 1e-4);
+    EXPECT_NEAR((*back)[1], 30, 1e-4);
+    const auto m = view.world_to_ndc();
+    const Vec3d p{0.3, 0.8, -2.5};
+    double h[4];
+    for (std::size_t k = 0; k < 4; ++k) h[k] = p.x * m[k] + p.y * m[4 + k] + p.z * m[8 + k] + m[12 + k];
+    const auto at = view.project(Vec3(p));
+    EXPECT_NEAR(h[0] / h[3] * 64, (*at)[0], 1e-4);
+    EXPECT_NEAR(h[1] / h[3] * 36, (*at)[1], 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace tempolux

@@ -143,6 +143,20 @@ TEST(SceneAtFrame, CamerasAreRigidWhateverTheirScale) {
   EXPECT_EQ(m.translation, (Vec3d{1, 2, 3}));
 }
 
+TEST(SceneAtFrame, LensShiftComesFromTheCamerasExtras) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  const int node = maker.add_camera();
+  maker.json["cameras"][0]["extras"] = {{"lens_shift", {0.25, -0.5}}, {"other", "text"}};
+  EXPECT_EQ(first_frame(maker.load()).camera(node).camera.lens_shift, (std::array{0.25, -0.5}));
+  for (const Json& wrong : {Json(1), Json({0.1}), Json({"a", 0}), Json({0, 1e4}), Json({0, 0, 0})}) {
+    maker.json["cameras"][0]["extras"]["lens_shift"] = wrong;
+    EXPECT_THROW(maker.load(), InputError) << wrong;
+  }
+  maker.json["cameras"][0]["extras"] = "not an object";
+  EXPECT_EQ(first_frame(maker.load()).camera(node).camera.lens_shift, (std::array{0.0, 0.0}));
+}
+
 TEST(SceneAtFrame, OrthographicCamerasKeepTheirHeight) {
   GltfMaker maker;
   maker.add_node({{"mesh", maker.add_triangle()}});

@@ -108,6 +108,9 @@ TEST(SceneHash, TheCameraChangesOnlyItsOwn) {
   EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kCamera]["translation"] = {0, 0, 6}; }), Names{"camera"});
   EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["perspective"]["yfov"] = 0.9; }), Names{"camera"});
   EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["perspective"]["znear"] = 0.2; }), Names{});
+  EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["extras"]["lens_shift"] = {0.1, 0}; }), Names{"camera"});
+  EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["extras"]["lens_shift"] = {0, 0.1}; }), Names{"camera"});
+  EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["extras"]["lens_shift"] = {0, 0}; }), Names{});
   GltfMaker walking = room();
   walking.animate(kCamera, "translation", {0, 1}, {0, 0, 5, 0, 0, 9});
   EXPECT_EQ(changed(hashes(room()), hashes(walking)), Names{"camera"});

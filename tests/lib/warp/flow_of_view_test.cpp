@@ -14,17 +14,20 @@ struct Pinhole {
   Vec3d eye;
   double turn, yfov;
   int width, height;
+  std::array<double, 2> shift{};  // in heights of the picture
 
   double scale() const { return height / (2 * std::tan(yfov / 2)); }  // pixels per unit at distance 1
   Vec3d ray(double x, double y) const {
-    const double px = (x - width / 2.0) / scale(), py = (height / 2.0 - y) / scale();
+    const double px = (x - width / 2.0 + height * shift[0]) / scale(),
+                 py = (height / 2.0 - y + height * shift[1]) / scale();
     return {px * std::cos(turn) - std::sin(turn), py, -px * std::sin(turn) - std::cos(turn)};
   }
   RasterPoint project(Vec3d p) const {
     const Vec3d d = p - eye;
     const double right = d.x * std::cos(turn) - d.z * std::sin(turn),
                  ahead = -d.x * std::sin(turn) - d.z * std::cos(turn);
-    return {width / 2.0 + scale() * right / ahead, height / 2.0 - scale() * d.y / ahead};
+    return {width / 2.0 + scale() * right / ahead - height * shift[0],
+            height / 2.0 - scale() * d.y / ahead + height * shift[1]};
   }
 };
 
@@ -32,11 +35,15 @@ constexpr double kBack = -1.4;  // z of the back wall, of objects 3 in the room
 
 /// A plane seen by two cameras is mapped by a homography: here by following each pixel's ray to the wall z = -1.4 and
 /// projecting the point. Flow starts from depth in float32, 6e-8 of 3 m, which moves a point by 1e-6 pixels at most.
-TEST(FlowOfView, OfAPlaneIsItsHomography) {
+void expect_homography(const Pinhole& a, const Pinhole& b) {
   const Cornell room;
-  const int width = 320, height = 240;
-  const Pinhole a{{0.1, 1.2, 1.8}, 0.05, 0.7, width, height}, b{{-0.15, 1.1, 1.5}, -0.1, 0.7, width, height};
-  const View here(room, camera_at(a.eye, a.turn), width, height), there(room, camera_at(b.eye, b.turn), width, height);
+  const int width = a.width, height = a.height;
+  const auto placed = [](const Pinhole& pinhole) {
+    PlacedCamera camera = camera_at(pinhole.eye, pinhole.turn, pinhole.yfov);
+    camera.camera.lens_shift = pinhole.shift;
+    return camera;
+  };
+  const View here(room, placed(a), width, height), there(room, placed(b), width, height);
   const NeighbourView other{&room.frame, &there.seen.camera()};
   const PixelFlow flow = flow_of_view(here.seen, other, other, 24);
   double squares = 0;
@@ -53,6 +60,15 @@ TEST(FlowOfView, OfAPlaneIsItsHomography) {
   }
   ASSERT_GT(count, 5000);
   EXPECT_LT(std::sqrt(squares / count), 1e-4);
+}
+
+TEST(FlowOfView, OfAPlaneIsItsHomography) {
+  expect_homography({{0.1, 1.2, 1.8}, 0.05, 0.7, 320, 240}, {{-0.15, 1.1, 1.5}, -0.1, 0.7, 320, 240});
+}
+
+TEST(FlowOfView, OfAPlaneThroughShiftedLensesIsItsHomography) {
+  expect_homography({{0.1, 1.2, 1.8}, 0.05, 0.7, 320, 240, {0.1, -0.05}},
+                    {{-0.15, 1.1, 1.5}, -0.1, 0.7, 320, 240, {-0.05, 0.1}});
 }
 
 /// A point is followed to the next frame and back by the flow there, bilinear. It returns to its start where one
