@@ -54,7 +54,7 @@ def inner_means(ours, theirs, width):
     return means
 
 
-def walls(bench, _):
+def walls(bench):
     """The room of spheres, matte, exported by tempolux_export.py: mean light of what is matte, Cycles of the .blend over path tracing of the export."""
     program, folder, size = blender(), bench.out / "tmp", "160x90"
     if bench.tiny:
