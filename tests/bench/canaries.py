@@ -33,7 +33,7 @@ MADE = {
     "split": {"SCENE": S3, "FRAMES": "0", "INDIRECT": "records", "SPLIT": "on", **BARE},
     "filter": {"SCENE": S2, "FRAMES": "9-11", "INDIRECT": "paths", **SMALL, "FILTER": "5"},
     "preview": {"SCENE": S2, "FRAMES": "0-2", "METHOD": "preview", "SIZE": "32x18", "PHOTONS": "4k"},
-    "smoke": {"SCENE": S1, "FRAMES": "0-2", "INDIRECT": "records", "VOLUME": "smoke_####.vdb", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8",
+    "smoke": {"SCENE": S1, "FRAMES": "0-2", "INDIRECT": "records", "VOLUME": "smoke_####.vdb", "VOLUME_OPTIONS": "--sigma-t 6 --albedo .8 --volume-frames 0-2",
               "UPDATE": "20%", **SMALL},
 }
 # By the tools: words of each command; a word that ends in .exr or .photons without a folder is a file of the canary's own.

@@ -1,4 +1,4 @@
-"""A room from Blender rendered by Cycles and by us, where Blender is installed: `make -f Makefile.example bench PEERS=1`."""
+"""A room from Blender rendered by Cycles and by us, where Blender is installed: `make -f Makefile.example evidence PARTS=walls`."""
 import math
 import os
 import shutil

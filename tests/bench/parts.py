@@ -147,5 +147,6 @@ PARTS = [
     Part("start", "speed", "start of every tool", "-", 10, ("help",), of_required("start")),
     Part("reading", "speed", "a .photons file against its bytes", "-", 20, ("photons",), of_required("reading")),
     Part("demo", "speed", "the demo", "evening", 800, ("still", "filter"), of_required("demo")),
-    Part("ablation", "speed", "what each idea of the samplers is worth", "17 scenes", 9000, ("still", "sky"), ablation),
+    Part("walls", "speed", "a room from Blender beside Cycles of Debian", "spheres", 120, ("paths",), of_required("walls")),
+    Part("ideas", "speed", "what each idea of the samplers is worth", "17 scenes", 9000, ("still", "sky"), ablation),
 ]

@@ -105,7 +105,7 @@ def main():
     flows = options.flow and [[exr.read(options.flow / f"{f:04d}.exr").channels[f"forward.{c}"] for c in "uv"] for f in frames]
     found = steadiness(*([pixels.planes(i) for i in run] for run in images), images[0][0].width, images[0][0].height, flows,
                        options.border - frames[0] if options.border is not None else None)
-    print(json.dumps(found) if options.json else "\n".join(f"{name}: {cell}" for name, cell in zip(HEADER, cells(found))))
+    print(json.dumps(found) if options.json else "\n".join(f"{name}: {cell}" for name, cell in zip(HEADER, cells(found)) if cell != "-"))
 
 
 if __name__ == "__main__":

@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import serve  # before others: it takes standard output
 import bpy
-import serve
 
 
 def load(job):

@@ -11,8 +11,8 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import serve  # before others: it takes standard output
 import pyluxcore
-import serve
 
 pyluxcore.Init()
 state = {}

@@ -4,6 +4,10 @@ import os
 import sys
 
 
+answers = os.fdopen(os.dup(1), "w")
+os.dup2(2, 1)                          # what renderers say, also when they are imported, goes elsewhere
+
+
 def spent():
     times = os.times()
     return times.user + times.system
@@ -11,8 +15,6 @@ def spent():
 
 def jobs(first, other):
     """Calls first(job) for the job with "scene" and other(job) for the rest; answers each by a line {"cpu_s": ...}. The first holds the start, too."""
-    answers = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)                      # what the renderer says goes elsewhere
     began = 0.0
     for line in sys.stdin:
         job = json.loads(line)
