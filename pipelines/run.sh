@@ -111,5 +111,10 @@ elif [ -z "$quiet" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
 [ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
-[ "$goal" != report ] || echo "look at $OUT/report/index.html"
+if [ "$goal" = report ]; then
+  echo "look at $OUT/report/index.html"
+  # Curves and steadiness need the scripts of the sources.
+  own=$TOP/tests/bench/own_scene.py
+  [ ! -f "$own" ] || ! command -v python3 > /dev/null || python3 -B "$own" || exit
+fi
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }
