@@ -7,12 +7,16 @@ by its frames; start and import of other renderers are left out. One part of the
 import math
 import re
 import statistics
+import sys
+from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import cases
+import exr
 import pipeline
 import pixels
 from measure import Missing, figure, quantity
-from peer_renderers import Peer, denoised, flip, for_denoising, planes_of
+from peer_renderers import Peer, denoised, flip, for_denoising, planes_of, write_pfm
 from plot import chart
 from references import Curve, Reference
 from seen import Seen
@@ -149,7 +153,6 @@ class Curves:
                     planes, cpu = frame(16, 900 + i, False, self.stem)
                     n = max(64, min(4096, int(self.reference_cpu / 2 / max(cpu, 0.01) * 16)))
                     planes, _ = frame(n, 900 + i, False, self.stem)
-                    from peer_renderers import write_pfm
                     write_pfm(file, self.width, self.height, planes)
             return [planes_of(file) for file in files]
 
@@ -180,6 +183,38 @@ class Curves:
                 for setting, found in points.items()}
         self.shown[label] = mean
         self.rows += [[label, setting, quantity(cpu), f"{error:.2f} ± {plus:.2f}", seeds] for setting, (cpu, error, plus, seeds) in mean.items()]
+
+
+def reference(bench, name):
+    """Is the reference of a scene complete? Its layers against photons alone, in the picture and in 4 x 4 tiles, and its halves."""
+    case = next((c for c in cases.of_curves(bench) if c.name == name), None)
+    if case is None:
+        raise Missing(f"scene {name} is not here (../shared/scenes is absent)")
+    samples, light = (64, "4M") if bench.small else (512, "20M")
+
+    def render(*light_paths):
+        out = bench.out / "tmp" / "complete.exr"
+        stats = bench.tool("frame-render", case.file, *case.options(), *YARDSTICK, "--size", "160x90", "--spp", samples, "--halves", *light_paths, "--audit", 1,
+                           "--channels", "RGBA", "layers", "--compression", "none", "-o", out)
+        halves = [exr.read(out.with_name(f"complete_{h}.exr")) for h in "ab"]
+        return {"said": {k: v for k, v in stats["results"].items() if k.startswith("audit.")}, "cpu": stats["cpu_s"],
+                "halves": 2 ** 0.5 * Seen(*(pixels.planes(h) for h in halves)).half_error()}
+    alone, whole = bench.step("paths", render), bench.step("paths and light", lambda: render("--light-paths", light))
+    rows, worst, tiles = [], 0.0, 0
+    for layer in ("direct", "caustic", "indirect"):
+        cells = []
+        for found in (alone, whole):
+            value, error = (found["said"].get(f"audit.{layer}{end}") for end in ("", "_error"))
+            cells.append("-" if value is None else f"{100 * value:+.2f} ± {100 * error:.2f}")
+        if value is not None:
+            worst = max(worst, abs(value) / error)
+        tiles += f"audit.{layer}.worst_tile" in whole["said"]
+        rows.append([layer, *cells, "beyond" if f"audit.{layer}.worst_tile" in whole["said"] else "within"])
+    return figure(f"{name}: a reference that lacks nothing", "each layer within 3 errors of photons alone, also by tile; halves differ by less than 4 codes",
+                  ["layer", "paths over photons - 1, % of the picture", "paths and light, the same", "4 x 4 tiles: 3 errors"], rows,
+                  worst <= 3 and tiles == 0 and whole["halves"] < 4,
+                  [f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. Layer specular still lacks what mirrors, glass and gloss show of this light."],
+                  f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes", 3 / max(worst, 0.1))
 
 
 def spread(values):
