@@ -53,6 +53,12 @@ class Curves:
         self.width, self.height = map(int, size.split("x"))
         self.stem = str(bench.out / "tmp" / f"curve-{case.name}")
 
+    def judged(self, seen, halves, planes, first):
+        """(seen error, FLIP): FLIP of the first seed alone, None without it."""
+        reference = [[(p + q) / 2 for p, q in zip(*pair)] for pair in zip(*halves)]
+        found = flip(self.bench, reference, [planes], seen.exposure, self.width, self.height) if first else []
+        return seen.error(planes), found[0] if found else None
+
     # ---- ours
 
     def first_of_range(self):
@@ -75,42 +81,44 @@ class Curves:
         return [pixels.planes(half) for half in reference.halves]
 
     def ours(self):
-        points = {}
-        halves = None
+        points, halves, seen = {}, None, None
+
+        def judge(planes, first):
+            nonlocal halves, seen
+            if halves is None:
+                halves = self.reference(0.5)
+                seen = Seen(*halves)
+            return self.judged(seen, halves, planes, first)
         for label, variables in SETTINGS:
             seeds = range(1, 9 if label in ("draft", "final") else 3) if not self.bench.small else (1, 2)
             def make():
-                nonlocal halves
                 found = []
                 for seed in seeds:
                     image, cpu = self.chain(variables, seed)
-                    halves = halves or self.reference(0.5)
-                    found.append((cpu, Seen(*halves).error([list(image.channels[c]) for c in "RGB"])))
+                    found.append((cpu, *judge([list(image.channels[c]) for c in "RGB"], seed == 1)))
                 return found
             points[label] = self.bench.step(f"ours {label}", make)
         self.add("ours", points)
 
         def unfiltered(label, produce):
             def make():
-                nonlocal halves
-                halves = halves or self.reference(0.5)
                 found = []
                 for seed in (1, 2):
                     image, cpu = produce(seed)
                     for_denoising(self.stem, image)
                     planes, more = denoised(self.bench, self.stem)
                     raw = [list(image.channels[c]) for c in "RGB"]
-                    found.append((cpu + more, Seen(*halves).error(planes), cpu, Seen(*halves).error(raw)))
+                    found.append([(cpu + more, *judge(planes, seed == 1)), (cpu, *judge(raw, seed == 1))])
                 return found
             return self.bench.step(label, make)
         try:
             found = unfiltered("ours, OIDN", lambda seed: self.chain({"FILTER": "none"}, seed))
-            self.add("ours, final unfiltered + OIDN", {"final": [f[:2] for f in found]})
+            self.add("ours, final unfiltered + OIDN", {"final": [f[0] for f in found]})
             paths = {n: unfiltered(f"paths {n}", lambda seed: self.paths(n, seed)) for n in PATHS}
-            self.add("our paths + OIDN", {n: [f[:2] for f in found] for n, found in paths.items()})
-            self.add("our paths", {n: [f[2:] for f in found] for n, found in paths.items()})
+            self.add("our paths + OIDN", {n: [f[0] for f in found] for n, found in paths.items()})
+            self.add("our paths", {n: [f[1] for f in found] for n, found in paths.items()})
         except Missing as reason:
-            self.rows.append(["Open Image Denoise", str(reason), "", "", ""])
+            self.rows.append(["Open Image Denoise", str(reason), "", "", "", ""])
 
     def paths(self, samples, seed):
         image, fixed, each = self.side.paths(samples, seed, AUXILIARY)
@@ -121,7 +129,7 @@ class Curves:
     def peer(self, label, name, clean, samples):
         key = f"{label}: "
         scene = {"scene": str(self.case.file), "size": self.size, "light_units": "spec" if "spec" in self.case.shared else "raw", "camera": self.case.camera,
-                 "world": str(self.case.environment) if self.case.environment else None, "sky": self.sky()}
+                 "world": str(self.case.environment) if self.case.environment else None, "sky": self.sky(), "smoke": self.smoke()}
         opened = {}
 
         def open_peer():
@@ -157,16 +165,17 @@ class Curves:
             return [planes_of(file) for file in files]
 
         def make(n):
-            seen = Seen(*halves())
+            two = halves()
+            seen = Seen(*two)
             found = []
             for seed in (1, 2):
                 planes, cpu = frame(n, seed, clean, self.stem)
-                found.append((cpu, seen.error(planes), seen.halves_differ()))
+                found.append((cpu, *self.judged(seen, two, planes, seed == 1), seen.halves_differ()))
             return found
         try:
             points = {n: self.bench.step(key + str(n), lambda n=n: make(n)) for n in samples}
-            converged = all(f[2] < 2 * f[1] for found in points.values() for f in found)
-            self.add(label + ("" if converged else " (reference not converged)"), {n: [f[:2] for f in found] for n, found in points.items()})
+            converged = all(f[3] < 2 * f[1] for found in points.values() for f in found)
+            self.add(label + ("" if converged else " (reference not converged)"), points)
         finally:
             if "it" in opened:
                 opened["it"].close()
@@ -176,13 +185,20 @@ class Curves:
         found = re.search(r"--environment ([\d.]+),([\d.]+),([\d.]+)", text)
         return [float(v) for v in found.groups()] if found else None
 
+    def smoke(self):
+        """The file of the frame and how thick it is; None without."""
+        words = dict(zip(self.case.shared[::2], self.case.shared[1::2]))
+        if "--volume" not in words:
+            return None
+        return {"file": str(words["--volume"]).replace("####", f"{self.case.frame:04d}"), "sigma_t": float(words["--sigma-t"]), "albedo": [float(v) for v in words["--albedo"].split(",")]}
+
     # ---- both
 
     def add(self, label, points):
         mean = {setting: (statistics.mean(p[0] for p in found), math.sqrt(statistics.mean(p[1] ** 2 for p in found)), spread([p[1] for p in found]), len(found))
                 for setting, found in points.items()}
         self.shown[label] = mean
-        self.rows += [[label, setting, quantity(cpu), f"{error:.2f} ± {plus:.2f}", seeds] for setting, (cpu, error, plus, seeds) in mean.items()]
+        self.rows += [[label, setting, quantity(cpu), f"{error:.2f} ± {plus:.2f}", quantity(points[setting][0][2]), seeds] for setting, (cpu, error, plus, seeds) in mean.items()]
 
 
 def reference(bench, name):
@@ -249,5 +265,5 @@ def measure(bench, name):
     picture.write_text(chart(f"{name}, {size}: seen error against CPU seconds of a frame", "CPU s a frame", "codes",
                              [(label, [(c, e) for c, e, *_ in points.values()]) for label, points in curves.shown.items()], log=True))
     notes = [f"![curves]({picture.name})", f"Frame {case.frame}, {size}, out of a range of {RANGE}; `~`: beyond the measured curve.", *notes]
-    return figure(f"{name}: final beside Cycles 5 with OIDN", "less CPU at equal seen error", ["side", "setting", "CPU s a frame", "seen error, codes", "seeds"], curves.rows,
+    return figure(f"{name}: final beside Cycles 5 with OIDN", "less CPU at equal seen error", ["side", "setting", "CPU s a frame", "seen error, codes", "FLIP", "seeds"], curves.rows,
                   None if ratio is None else ratio > 1, notes, said, ratio, **more)

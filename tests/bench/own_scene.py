@@ -90,13 +90,13 @@ def main():
             image, cpu = own.chain(variables, seed)
             planes = [list(image.channels[c]) for c in "RGB"]
             halves = own.reference(0.5)
-            found.append((cpu, Seen(*halves).error(planes)))
+            found.append((cpu, Seen(*halves).error(planes), None))
         points[label] = found
         if label == "final":
             shown, stages = planes, pipeline.cpu_of(own.side.folder)
             said = {k: v for s in pipeline.stats_of(own.side.folder, ("frames",)) for k, v in s["results"].items()}
     own.add("this chain", points)
-    paths = {n: [(image_cpu[1], Seen(*halves).error(pixels.planes(image_cpu[0]))) for seed in (1, 2) for image_cpu in (own.paths(n, seed),)] for n in (4, 16, 64)}
+    paths = {n: [(image_cpu[1], Seen(*halves).error(pixels.planes(image_cpu[0])), None) for seed in (1, 2) for image_cpu in (own.paths(n, seed),)] for n in (4, 16, 64)}
     own.add("path tracing", paths)
     seen = Seen(*halves)
     cpu, error, plus, _ = own.shown["this chain"]["final"]
@@ -115,7 +115,7 @@ def main():
              f"{'' if inside else 'about '}{quantity(needed)} CPU s for this error.{converged}</p>",
              f"<h2>Final, and the reference</h2><div class=both><img src='{picture(bench, reference, seen.exposure, own.width, own.height)}' alt=reference>"
              f"<img id=o class=over src='{picture(bench, shown, seen.exposure, own.width, own.height)}' alt=final></div><input id=s type=range min=0 max=100 value=50 aria-label='left: final, right: reference'>",
-             "<h2>Curves</h2>", svg, of_markdown(table(["side", "setting", "CPU s a frame", "seen error, codes", "seeds"], own.rows)),
+             "<h2>Curves</h2>", svg, of_markdown(table(["side", "setting", "CPU s a frame", "seen error, codes", "seeds"], [row[:4] + row[5:] for row in own.rows])),
              "<h2>The frame's own account</h2>", of_markdown(account),
              "<h2>Steadiness</h2>", of_markdown(table(["frames", *steady.HEADER], [[f"{frames[0]}, {frames[-1]}", *steady.cells(calm)]])),
              "<h2>Where CPU seconds go</h2>", of_markdown(table(["stage", "CPU s"], [[stage, quantity(value)] for stage, value in stages.items()])),

@@ -1,6 +1,7 @@
 """Frames of a glTF file by Cycles, in the Python of build/peers/cycles (package bpy): reads jobs from standard input, one JSON a line.
 
-    {"scene": FILE, "size": "320x180", "light_units": "spec", "world": FILE or null, "sky": [R, G, B] or null, "camera": NAME or null}    once, first
+    {"scene": FILE, "size": "320x180", "light_units": "spec", "world": FILE or null, "sky": [R, G, B] or null, "camera": NAME or null,
+     "smoke": {"file": FILE.vdb, "sigma_t": 10, "albedo": [R, G, B]} or null}    once, first
     {"frame": 10, "samples": 16, "seed": 1, "denoise": true, "defaults": false, "output": FILE.exr}
     {"export": FILE.npz, "frame": 10}           the scene as triangles, for other renderers
 
@@ -13,6 +14,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import serve  # before others: it takes standard output
 import bpy
+import mathutils
 
 
 def load(job):
@@ -44,6 +46,8 @@ def load(job):
         turn, coordinates = nodes.new("ShaderNodeMapping"), nodes.new("ShaderNodeTexCoord")
         link(coordinates.outputs["Generated"], turn.inputs["Vector"])
         link(turn.outputs["Vector"], picture.inputs["Vector"])
+    if job.get("smoke"):
+        place_smoke(**job["smoke"])
     render = scene.render
     render.engine = "CYCLES"
     render.resolution_x, render.resolution_y = map(int, job["size"].split("x"))
@@ -53,6 +57,28 @@ def load(job):
     render.use_file_extension = False
     scene.view_settings.view_transform = "Raw"
     scene.cycles.device = "CPU"
+
+
+def place_smoke(file, sigma_t, albedo):
+    """Grid `density`, placed as the glTF is; extinction of density 1 in 1/m; scattered evenly."""
+    bpy.ops.object.volume_import(filepath=file)
+    volume = bpy.context.object
+    volume.matrix_world = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))   # Blender's Z is up, glTF's Y
+    material = bpy.data.materials.new("Smoke")
+    material.use_nodes = True
+    nodes, link = material.node_tree.nodes, material.node_tree.links.new
+    nodes.clear()
+    density, scaled, both = (nodes.new(f"ShaderNode{kind}") for kind in ("Attribute", "Math", "AddShader"))
+    density.attribute_name, scaled.operation = "density", "MULTIPLY"
+    link(density.outputs["Fac"], scaled.inputs[0])
+    scaled.inputs[1].default_value = sigma_t
+    for i, kind in enumerate(("VolumeScatter", "VolumeAbsorption")):                    # colour x density, and (1 - colour) x density
+        part = nodes.new(f"ShaderNode{kind}")
+        part.inputs["Color"].default_value = [*albedo, 1]
+        link(scaled.outputs[0], part.inputs["Density"])
+        link(part.outputs[0], both.inputs[i])
+    link(both.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Volume"])
+    volume.data.materials.append(material)
 
 
 def render(job):

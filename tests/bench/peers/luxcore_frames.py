@@ -83,7 +83,7 @@ def load(job):
     camera, (width, height) = found["camera"], found["size"]
     scene.Parse(properties({"scene.camera.type": "perspective", "scene.camera.lookat.orig": camera["eye"], "scene.camera.up": camera["up"],
                             "scene.camera.lookat.target": [a + b for a, b in zip(camera["eye"], camera["towards"])],
-                            "scene.camera.fieldofview": math.degrees(2 * math.atan(math.tan(camera["across"] / 2) * min(width, height) / width)), "scene.camera.autovolume.enable": False}))
+                            "scene.camera.fieldofview": math.degrees(camera["across"]), "scene.camera.autovolume.enable": False}))
     state.update(scene=scene, width=width, height=height)
 
 
