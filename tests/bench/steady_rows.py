@@ -65,7 +65,7 @@ def measure(bench, name):
     size = "160x90" if bench.small else "320x180"
     side, (frames, border) = Side(bench, case, size, 10**5), frames_of(case)
     width, height = map(int, size.split("x"))
-    moves = bench.step("flow", lambda: flows(side, frames))
+    moves = flows(side, frames)
 
     def judged(make):
         (a, cpu), (b, _) = make(0), make(1)
@@ -80,9 +80,11 @@ def measure(bench, name):
     mine, *theirs = (row["found"]["frame to frame"][2] for row in rows.values())
     ratio = min(theirs) / max(mine, 1e-3) if theirs else None
     cell = rows["final"]["found"]
+    jump = max(cell["border over within"], default=0)
     return figure(f"{name}: steadiness", "in boxes of 15 pixels less noise from frame to frame than Cycles with OIDN; border over within at most 2",
                   ["side", "CPU s a frame", *steady.HEADER], [[side_, quantity(row["cpu"]), *steady.cells(row["found"])] for side_, row in rows.items()],
-                  None if ratio is None else ratio >= 1 and max(cell["border over within"], default=0) <= 2,
+                  None if ratio is None else ratio >= 1 and jump <= 2,
                   [f"Frames {frames[0]} to {frames[-1]}, {size}, two seeds; codes.", *notes],
-                  f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes" + (f"; Cycles over ours {quantity(ratio)}" if ratio else ""), ratio,
+                  f"from frame to frame {', '.join(f'{v:.2f}' for v in cell['frame to frame'])} codes, border over within {jump:.1f}" + (f"; Cycles over ours {quantity(ratio)}" if ratio else ""),
+                  ratio and min(ratio, 2 / max(jump, 0.1)),
                   **({"steadier": ratio} if ratio else {}))
