@@ -90,7 +90,7 @@ class Curves:
                 seen = Seen(*halves)
             return self.judged(seen, halves, planes, first)
         for label, variables in SETTINGS:
-            seeds = range(1, 9 if label in ("draft", "final") else 3) if not self.bench.small else (1, 2)
+            seeds = range(1, 9 if label in ("draft", "final") and self.size == "320x180" else 3)
             def make():
                 found = []
                 for seed in seeds:
@@ -237,11 +237,11 @@ def spread(values):
     return statistics.stdev(values) / math.sqrt(len(values)) if len(values) > 1 else 0.0
 
 
-def measure(bench, name):
+def measure(bench, name, size="320x180"):
     case = next((c for c in cases.of_curves(bench) if c.name == name), None)
     if case is None:
         raise Missing(f"scene {name} is not here (../shared/scenes is absent)")
-    size = "160x90" if bench.small else "320x180"
+    size, label = "160x90" if bench.small else size, name if size == "320x180" else f"{name}-{size}"
     curves = Curves(bench, case, size, 60 if bench.small else 900)
     curves.ours()
     notes = []
@@ -261,9 +261,9 @@ def measure(bench, name):
         ratio = needed / cpu
         more = {"equal_error": ratio}
         said += f"; Cycles + OIDN needs {'' if inside else '~'}{quantity(needed)}: {quantity(ratio)}x"
-    picture = bench.results / f"curve-{name}.svg"
+    picture = bench.results / f"curve-{label}.svg"
     picture.write_text(chart(f"{name}, {size}: seen error against CPU seconds of a frame", "CPU s a frame", "codes",
                              [(label, [(c, e) for c, e, *_ in points.values()]) for label, points in curves.shown.items()], log=True))
     notes = [f"![curves]({picture.name})", f"Frame {case.frame}, {size}, out of a range of {RANGE}; `~`: beyond the measured curve.", *notes]
-    return figure(f"{name}: final beside Cycles 5 with OIDN", "less CPU at equal seen error", ["side", "setting", "CPU s a frame", "seen error, codes", "FLIP", "seeds"], curves.rows,
+    return figure(f"{label}: final beside Cycles 5 with OIDN", "less CPU at equal seen error", ["side", "setting", "CPU s a frame", "seen error, codes", "FLIP", "seeds"], curves.rows,
                   None if ratio is None else ratio > 1, notes, said, ratio, **more)

@@ -135,6 +135,8 @@ PARTS = [
     Part("paper-figures", "papers", "A: all figures of gathering over time", "S2", 300, ("temporal",), figures_of_paper),
     *(Part(f"curve-{name}", "curves", f"{name}: error against run time beside other renderers", name, 1500, ("still", "paths"),
            lambda bench, name=name: curves.measure(bench, name)) for name in cases.CURVES),
+    *(Part(f"curve-{name}-1280x720", "curves", f"{name} at 1280x720 beside other renderers", name, 9000, ("still", "paths"),
+           lambda bench, name=name: curves.measure(bench, name, "1280x720")) for name in ("S2", "demo")),
     *(Part(f"reference-{name}", "curves", f"{name}: a reference that lacks nothing", name, 300, ("paths", "photons"), lambda bench, name=name: curves.reference(bench, name))
       for name in ("furnished_day", "S8")),
     Part("scenes", "curves", "the preset beside our path tracer, scene by scene", "17 scenes", 1500, ("still", "sky", "paths"), scenes),
