@@ -72,10 +72,11 @@ def ablation(bench):
     """Ideas of the samplers left out in turn; the page is ablation.md, which also has what was tried by hand."""
     page = bench.results / "ablation.md"
 
-    def run():
-        return bench.run([sys.executable, "-B", bench.project / "tests" / "bench" / "ablation.py", "--out", bench.out,
-                          *(["--scenes", "^S2$", "--seeds", "1"] if bench.small else [])]).stdout
-    text = bench.step("ablation", run)
+    def run(*words):
+        return bench.run([sys.executable, "-B", bench.project / "tests" / "bench" / "ablation.py", "--out", bench.out, "--seeds", "1" if bench.small else "1,2", *words]).stdout
+    bench.step("programs", lambda: run("--build-only"))
+    for name in ("S2",) if bench.small else cases.QUICK:
+        text = bench.step(name, lambda: run("--built", "--scenes", f"^{name}$"))
     header, rows = paper_rows.tables(text)[-1]
     idle = [row[0] for row in rows if row[-1].startswith("no")]
     return figure("What each idea of the samplers is worth", "each idea pays 1.15 in the median of its scenes or 2 in a class of them", header, rows, not idle,
