@@ -88,7 +88,7 @@ def planned(bench, variables):
     with tempfile.TemporaryDirectory() as out:
         pipeline.run_make(bench.project, bench.bin, out, "plan", **wish)
         words = re.findall(r"^\S+: words := .*$", (Path(out) / "plan.mk").read_text(), re.M)
-    return digest("\n".join(sorted(re.sub(r"-[0-9a-f]{10}\b", "", line) for line in words)))
+    return digest("\n".join(sorted(re.sub(r"-[0-9a-f]{10}(?![0-9a-f])", "", line) for line in words)))
 
 
 def inputs(bench, name, folder):
