@@ -133,7 +133,7 @@ def filter_(bench):
                 reference = Reference(bench, case, size, YARDSTICK)
                 for seed in (1, 2):
                     image, spent, *_ = side.chain(seed, variables={"FILTER": window, "PIXELS": f"--spp {samples} --pixel-error 0"})
-                    reference.until(lambda a, b: Seen(pixels.planes(a), pixels.planes(b)).halves_differ() < 0.7, 120)
+                    reference.until(lambda a, b: Seen(pixels.planes(a), pixels.planes(b)).halves_differ() < 0.7, 40)
                     errors.append(Seen(*(pixels.planes(h) for h in reference.halves)).error(pixels.planes(image)))
                     cpu.append(spent)
                 return statistics.mean(errors), abs(errors[0] - errors[1]) / 2, statistics.mean(cpu)
