@@ -16,15 +16,13 @@ build_all: configured ; @$(in_top) cmake --build --preset release
 check: build_all # all tests; skipped tests are counted and named
 	@$(in_top) ctest --preset release -j 2; code=$$?; \
 	sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
-# Measurements that take longer. They use the programs of this tree and write to OUT.
-bench: build_all # figures of single parts, into RESULTS.md
-	$(in_top) python3 -B tests/bench/bench.py --out "$$OUT/bench" $(if $(PEERS),--peers)
-report-papers: build # figures of the papers with our numbers
-	$(in_top) python3 -B tests/bench/papers.py build/release/bin "$$OUT/papers"
-ablation: configured # the gain of each idea of the samplers
-	$(in_top) python3 -B tests/bench/ablation.py --out "$$OUT/bench" --page docs/results/ablation.md
-stress: build # extreme cases; STRESS=--long for some hours more
-	$(in_top) python3 -B tests/stress/stress.py --bin build/release/bin $(STRESS)
+# Measurements. They use the programs of this tree and write to OUT. tests/bench/evidence.py has the words of PARTS.
+evidence: PACKAGES += valgrind
+evidence: configured # the figures of RESULTS.md, by canaries what is stale of them; HOURS=1: as many as fit
+	@$(in_top) cmake --build --preset release --target tools bench_programs
+	$(in_top) python3 -B tests/bench/evidence.py --out "$$OUT/bench" --parts='$(PARTS)' --hours='$(or $(HOURS),0)'
+peers: # other renderers, from PyPI into build/peers: nothing of the product needs them
+	$(in_top) sh tests/bench/peers/install.sh build/peers
 asan: deps
 	$(in_top) cmake --preset asan && cmake --build --preset asan && ctest --preset asan
 tsan: deps # a short chain under ThreadSanitizer

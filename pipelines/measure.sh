@@ -3,7 +3,8 @@
 # scene-plan; it has make's variables.
 #
 # In each segment the frame of FRAMES that is closest to the middle is rendered twice with independent random numbers.
-# AQM estimates the share of the pixels in which a viewer sees the noise of one rendering (aqm-compare --either).
+# AQM estimates the share of the pixels in which a viewer sees the noise of one rendering (aqm-compare --either), and
+# steady.py how much of the noise changes from frame to frame.
 # With METHOD=preview it chooses the number of photons: a frame of n photons is compared with one of 2 n. The difference
 # is noise, and blur that more photons remove. n starts at 3125 and is doubled until the share is at most AQM, or until
 # two doublings have not reduced it. OUT/measured.json has all results; scene-plan --measured chooses by them.
@@ -33,6 +34,14 @@ tell() {   # tell FRAME PHOTONS PERCENT: prints a result and adds it to the list
   tried="$tried${tried:+, }{\"photons\": ${2:-0}, \"aqm\": $(awk "BEGIN { print $3 / 100 }")}"
 }
 
+# Where the sources lie: how much of the noise changes from this frame to the next one of the shot, in boxes of 1, 5 and
+# 15 pixels (tests/bench/steady.py).
+steady() {   # steady FRAME
+  script=$TOP/tests/bench/steady.py
+  [ -f "$script" ] && command -v python3 > /dev/null && render 1 $(($1 + 1)) '' && render 2 $(($1 + 1)) '' || return 0
+  python3 -B "$script" "$runs/1/frames" "$runs/2/frames" "$1-$(($1 + 1))" | sed "s/^/frame $1, codes: /" >&2
+}
+
 goes_on() {   # goes_on PERCENT: true if it is above AQM and one of the last two doublings has reduced it
   if awk "BEGIN { exit !($1 < $best) }"; then best=$1 worse=0; else worse=$((worse + 1)); fi
   [ $worse -lt 2 ] && [ "$n" -le $most ] && awk "BEGIN { exit !($1 > ${AQM%\%}) }"
@@ -57,6 +66,7 @@ segment() {   # segment FIRST LAST: adds its line to the table
     render 1 "$frame" "$PHOTONS" && render 2 "$frame" "$PHOTONS"
     compare "$frame" --either
     tell "$frame" '' "$percent"
+    steady "$frame"
   fi
   picture=$(sed -n "s/^ *\"$(printf %04d "$frame")\": \"\([^\"]*\)\",*\$/\1/p" "$runs/1/plan.json")
   list="$list${list:+,

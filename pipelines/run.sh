@@ -127,5 +127,10 @@ raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do grep -s "^passing :=.* $fil
 # shellcheck disable=SC2086
 [ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
 [ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
-[ "$goal" != report ] || echo "look at $OUT/report/index.html"
+if [ "$goal" = report ]; then
+  echo "look at $OUT/report/index.html"
+  # Curves and steadiness need the scripts of the sources.
+  own=$TOP/tests/bench/own_scene.py
+  [ ! -f "$own" ] || ! command -v python3 > /dev/null || python3 -B "$own" || exit
+fi
 [ -z "$film" ] || { cd "$OUT" && ending sh "$PIPELINES/film.sh"; }

@@ -68,7 +68,8 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     const Rgb scattered = flux * medium.albedo;
     const float survival =
         std::min(kLargestSurvivalInMedia, max_component(scattered) / std::max(max_component(flux), 1e-37f));
-    const bool survives = random.get1(bounce, Purpose::roulette) < survival;
+    const bool wanted = !options_.first_event_smooth || path.diffuse_seen || path.specular_seen;
+    const bool survives = wanted && random.get1(bounce, Purpose::roulette) < survival;
     const Rgb left = scattered * (survives ? 1 / survival : 0);
     path.balance->absorbed += Rgbd(path.flux) - Rgbd(left);
     path.flux = left;

@@ -499,7 +499,9 @@ bool PhotonTracer::scatter_at(Path& path, const Meeting& at, const Draw& draw, P
   const Rgb reflected = flux * next.weight;
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
-  const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
+  const bool first_event = !path.diffuse_seen && !path.specular_seen && !next.straight;
+  const bool wanted = !options_.first_event_smooth || !first_event || next.delta;
+  const bool survives = wanted && cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
   // `survival` leaves out the factor `aimed`: it depends on the surface alone, so aimed photons have less flux.
   path.flux = reflected * (survives ? aimed / survival : 0);
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);

@@ -31,6 +31,9 @@ struct PhotonOptions {
   /// (docs/methods/volume_photons.md).
   bool store_volume = false;
   float volume_share = 0.4f;
+  /// True for paths alone whose first event is at a mirror or smooth glass: from lights without extent these are the
+  /// paths that camera paths do not find. Light goes straight through panes, which is no event.
+  bool first_event_smooth = false;
   std::uint32_t pilots = 0;  ///< the first paths of each group, this many, are pilots: hashes record what they meet
 
   /// Sets which kinds are stored from a list such as "direct,caustic,indirect,volume". Throws InputError if the list

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What each idea of the samplers is worth: the chain with the idea left out beside the whole chain, CPU time x squared error.
 
-    make -f Makefile.example ablation                                           all ideas on a dozen scenes at 160x90, into docs/results/ablation.md
+    make -f Makefile.example evidence PARTS=ideas                               all ideas on a dozen scenes at 160x90
     python3 tests/bench/ablation.py --ideas 'gradients|radii' --scenes 'S2|S4'  some of them, printed
     python3 tests/bench/ablation.py --check                                     does each idea still stand in the source as ablation_ideas.py has it?
 
@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import cases
 import pixels
 from ablation_ideas import IDEAS
-from measure import Bench, machine, percent, quantity, walk_speed
+from measure import Bench, machine, walk_speed
 from references import Reference
 from shipped import YARDSTICK, Side, Unfinished, frames_without_camera
 
@@ -190,23 +190,6 @@ def table(rows):
     return "\n".join(["| " + " | ".join(HEADER) + " |", "|" + "---|" * len(HEADER), *lines]) + "\n"
 
 
-def page(kept, command):
-    rows = kept["rows"]
-    whole = "\n".join(f"| {row['scene']} | {row['kind']} | {', '.join(s for s in row['stages'] if row['stages'][s] > 0)} | {len(row['of'][WHOLE])} | "
-                      f"{quantity(statistics.mean(r['cpu'] for r in row['of'][WHOLE].values()))} | "
-                      f"{percent(max(0, statistics.mean(r['mse'] for r in row['of'][WHOLE].values())) ** 0.5 / row['mean'], 1)}{'' if row['reference_sufficient'] else '?'} |"
-                      for row in rows)
-    doc = __doc__.strip().partition("gain = ")
-    return (f"# What each idea of the samplers is worth\n\n`{command}` · {kept['machine']} · bare walk {quantity(kept['walk'])} (normal 5.0)\n\n"
-            f"Each idea is left out of the chain by itself; {doc[1]}{doc[2]}\n\n{table(rows)}\n"
-            f"CPU and MSE: without / with the idea, medians of the scenes where its stage runs. The last but one column: by how much a picture's mean changes.\n\n"
-            f"| scene, {rows[0]['size']} | class | stages | seeds | CPU s, whole chain | RMSE / mean |\n|---|---|---|---|---|---|\n{whole}\n\n"
-            "`?`: the reference's own noise is more than a tenth of the squared error. One seed of one scene tells a gain to 10 or 20 %: CPU time on a busy machine, the few\n"
-            "pixels that hold most of the error. Where records tell the indirect light their error is a tenth of the picture's by design (docs/pixels.md), so that ideas of records\n"
-            "show here as far as they cost time or are wrong: what keeps light from leaking or from being missed is judged by tests whose answers are known\n"
-            "(tests/lib/gather) and stays whatever its line says.\n")
-
-
 def main():
     project = Path(__file__).resolve().parents[2]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -221,7 +204,6 @@ def main():
     parser.add_argument("--check", action="store_true", help="only: do the changes still fit the source?")
     parser.add_argument("--built", action="store_true", help="programs of an earlier run, as they are")
     parser.add_argument("--build-only", action="store_true", help="only: make the programs")
-    parser.add_argument("--page", type=Path, help="file that the table is written to")
     args = parser.parse_args()
     if args.check:
         check(project)
@@ -250,8 +232,6 @@ def main():
         file.write_text(json.dumps({"machine": machine(bench), "walk": walk_speed(bench), "rows": list(rows.values())}, indent=1))
     kept = json.loads(file.read_text())
     print(table(kept["rows"]))
-    if args.page:
-        args.page.write_text(page(kept, "make -f Makefile.example ablation"))
 
 
 if __name__ == "__main__":

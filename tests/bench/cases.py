@@ -51,6 +51,21 @@ def ours(bench):
     yield Case("PC", bench.project / "pipelines" / "scenes" / "cornell_classic.gltf", 0, "closed")
 
 
+# Of the curves: a name and what of all_cases it is, or a file with frame and options.
+CURVES = ("S2", "S4", "S5", "S8", "demo", "furnished_day", "evening_shot", "living_room", "house-sun", "smoke")
+
+
+def of_curves(bench):
+    """The ten scenes with curves beside other renderers, as far as they are here."""
+    made = bench.shared and bench.shared / "made"
+    yield Case("demo", bench.project / "pipelines" / "scenes" / "evening.glb", 24, "closed")
+    if made:
+        yield Case("furnished_day", made / "furnished_day.glb", 12, "window", environment=made / "furnished_day_world.exr")
+        yield Case("smoke", made / "S6_smoke.glb", 12, "closed", shared=("--volume", made / "S6_smoke_vdb" / "smoke_####.vdb", "--sigma-t", "10", "--albedo", ".85,.85,.88"))
+    for case in all_cases(bench, lambda name: name in CURVES, False):
+        yield dataclasses.replace(case, frame=24) if case.name == "S2" else case
+
+
 def scripted(folder, wanted):
     for name, (file, camera, shared) in open_scenes.make(folder, wanted).items():
         kind = "closed" if name in ("partition", "leaves", "lamps") else "window" if "inside" in name else "open"

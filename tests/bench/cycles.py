@@ -1,4 +1,4 @@
-"""A room from Blender rendered by Cycles and by us, where Blender is installed: `make -f Makefile.example bench PEERS=1`."""
+"""A room from Blender rendered by Cycles and by us, where Blender is installed: `make -f Makefile.example evidence PARTS=walls`."""
 import math
 import os
 import shutil
@@ -54,7 +54,7 @@ def inner_means(ours, theirs, width):
     return means
 
 
-def walls(bench, _):
+def walls(bench):
     """The room of spheres, matte, exported by tempolux_export.py: mean light of what is matte, Cycles of the .blend over path tracing of the export."""
     program, folder, size = blender(), bench.out / "tmp", "160x90"
     if bench.tiny:

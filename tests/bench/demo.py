@@ -8,7 +8,7 @@ from measure import figure
 FRAMES = 48
 
 
-def demo(bench, _):
+def demo(bench):
     """What the demo costs."""
     frames, count, size = ("0-1", 2, "48x28") if bench.tiny else (f"0-{FRAMES - 1}", FRAMES, None)
     rows, seconds = [], {}

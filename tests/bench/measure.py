@@ -1,6 +1,7 @@
 """What all measurements share: running tools, their statistics, medians, the machine."""
 import hashlib
 import json
+import math
 import os
 import shlex
 import subprocess
@@ -15,6 +16,50 @@ class Missing(Exception):
     """A measurement lacks a program or file; it is left out and the page says so."""
 
 
+class OutOfTime(Exception):
+    """The next step would begin after the time that was given."""
+
+
+def load(file):
+    """The JSON of a file; None if there is none."""
+    return json.loads(file.read_text()) if file.exists() else None
+
+
+def save(file, value):
+    """Whole or not at all, whatever happens meanwhile."""
+    part = file.with_name(f"{file.name}.{os.getpid()}")
+    part.write_text(json.dumps(value, indent=1) + "\n")
+    os.replace(part, file)
+
+
+class Steps:
+    """Results of a part's steps, kept in a file until the part is finished: a run that was stopped goes on after the last of them. Those of
+    other programs are forgotten."""
+
+    def __init__(self, file, programs, deadline=math.inf):
+        self.file, self.deadline = file, deadline
+        self.file.parent.mkdir(parents=True, exist_ok=True)
+        self.kept = load(file) or {}
+        if self.kept.get("programs") != programs:
+            self.kept = {"programs": programs, "cpu_s": 0.0, "found": {}}
+        self.spent_before = self.kept["cpu_s"]
+
+    def __call__(self, name, make):
+        if name not in self.kept["found"]:
+            if time.monotonic() > self.deadline:
+                raise OutOfTime
+            before = os.times()
+            made = make()
+            after = os.times()
+            self.kept["found"][name] = made
+            self.kept["cpu_s"] += sum(getattr(after, k) - getattr(before, k) for k in ("user", "system", "children_user", "children_system"))
+            save(self.file, self.kept)
+        return self.kept["found"][name]
+
+    def forget(self):
+        self.file.unlink(missing_ok=True)
+
+
 class Bench:
     """Where things are, how much is to be measured, and what has been run."""
 
@@ -24,11 +69,13 @@ class Bench:
         self.reference_samples = 16 if tiny else reference_samples
         self.size = "48x28" if tiny else "320x180"
         self.rounds = 1 if tiny else 5
+        self.small, self.results = tiny, out      # short settings of long parts; where pages and pictures go
         self.walk = None      # walk_speed() at the beginning of the part that is being measured
         shared = project / ".." / "shared" / "scenes"
         self.shared = shared if shared.is_dir() else None
         memory = Path("/dev/shm")
         self.memory = memory if os.access(memory, os.W_OK) else out
+        self.step = lambda name, make: make()     # evidence.py keeps what steps find
         for folder in (out, out / "frames", out / "reference", out / "tmp"):
             folder.mkdir(parents=True, exist_ok=True)
 
@@ -36,6 +83,14 @@ class Bench:
         """CPU seconds as a processor would take whose bare walk makes NORMAL_WALK million photons a second; those measured, where
         its speed is not known. Processors of one name differ by 1.8."""
         return cpu_s * (self.walk or NORMAL_WALK) / NORMAL_WALK
+
+    def programs_digest(self):
+        """Of the tools and their modules."""
+        result = hashlib.sha256()
+        for folder in (self.bin, self.bin.parent / "modules"):
+            for file in sorted(p for p in folder.glob("*") if p.is_file()):
+                result.update(file.read_bytes())
+        return result.hexdigest()[:16]
 
     # ---- scenes
 
@@ -71,10 +126,10 @@ class Bench:
             raise Missing(f"{name} has not been built")
         return json.loads(self.run([self.programs / name, *arguments]).stdout)
 
-    def run(self, command):
+    def run(self, command, variables=None, codes=(0,)):
         command = [str(part) for part in command]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode != 0:
+        done = subprocess.run(command, capture_output=True, text=True, env=os.environ | (variables or {}))
+        if done.returncode not in codes:
             raise RuntimeError(f"exit {done.returncode}: {shlex.join(command)}\n{done.stderr}")
         return done
 
@@ -111,9 +166,11 @@ class Bench:
         return json.loads(Path(output).read_text())
 
 
-def figure(title, asked, header, rows, met, notes=(), measured=""):
-    """What a function of required.py returns. `measured`: the value that was asked for, in a few words."""
-    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes), "measured": measured}
+def figure(title, asked, header, rows, met, notes=(), measured="", worth=None, paper="", **more):
+    """A row of RESULTS.md. `measured`: the value that was asked for, in a few words; `worth`: what was reached over what was asked, at least 1 if
+    met; `paper`: the paper's figure and against what it stands."""
+    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes), "measured": measured, "worth": worth,
+            "paper": paper, **more}
 
 
 def median(values):
@@ -150,8 +207,11 @@ def wait_for_quiet(seconds):
 
 
 def commit_of(project):
-    commit = subprocess.run(["git", "-C", str(project), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    return commit.stdout.strip() or "unknown"
+    """With a plus where the sources differ from it."""
+    def git(*words):
+        return subprocess.run(["git", "-C", str(project), *words], capture_output=True, text=True).stdout.strip()
+    changed = git("status", "--porcelain", "-uno", "--", "lib", "tools", "formats", "modules", "pipelines", "CMakeLists.txt", "cmake")
+    return (git("rev-parse", "--short", "HEAD") or "unknown") + ("+" if changed else "")
 
 
 def machine(bench):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The figures of the paper on final gathering over time (Tawara et al. 2004), with our numbers: `make report-papers`.
+"""The figures of the paper on final gathering over time (Tawara et al. 2004), with our numbers: `make evidence PARTS=paper-figures`.
 
     python3 tests/bench/papers.py BIN OUT [--scene S2.glb] [--frames 24] [--size 160x90] [--rays 4000]
 

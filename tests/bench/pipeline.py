@@ -82,6 +82,13 @@ def stats_files(out, stages=tuple(STAGES)):
     return [file for file in files if file.exists()]
 
 
+def stats_in(out, folder):
+    """Statistics of the processes of the current plan whose files are in this folder of OUT."""
+    stems = [Path(out) / name.split(".")[0] for name in made_files(out) if name.split("/")[0] == folder]
+    files = [stem.with_name(stem.name + end) for stem in stems for end in (".json", ".warp.json")]
+    return [json.loads(file.read_text()) for file in files if file.exists()]
+
+
 def stats_of(out, stages=tuple(STAGES)):
     """Their content."""
     return [json.loads(file.read_text()) for file in stats_files(out, stages)]

@@ -1,7 +1,7 @@
 // tests/bench/replace_photons.cpp -- what it costs to replace photons in the sums of a volume, by how many the volume
 // holds.
 //
-//     replace_photons [--replaced 30000]
+//     replace_photons [--replaced 30000] [--short]      short: totals of 300k and 1M alone, three rounds
 //
 // CPU seconds of one thread for taking so many photons away and adding as many, sides alternating, median of 9; totals
 // of 300k to 30M photons spread over 2 million cells. It should not depend on the total.
@@ -41,9 +41,11 @@ Deposit deposit(std::uint64_t i) {
 int main(int argc, char** argv) {
   const std::size_t replaced =
       argc > 2 && std::strcmp(argv[1], "--replaced") == 0 ? std::size_t(std::atoll(argv[2])) : 30000;
+  const bool is_short = argc > 3 && std::strcmp(argv[3], "--short") == 0;
   MajorantGrid majorants({{0, 0, 0}, {1, 1, 1}}, {16, 16, 16});
   for (float& value : majorants.values()) value = 1;
-  const std::vector<std::uint64_t> totals{300'000, 1'000'000, 3'000'000, 30'000'000};
+  std::vector<std::uint64_t> totals{300'000, 1'000'000, 3'000'000, 30'000'000};
+  if (is_short) totals.resize(2);
   std::vector<FluenceSums> volumes;
   for (const std::uint64_t total : totals) {
     FluenceSums& sums = volumes.emplace_back(majorants, 1.0 / 128, 1.0);
@@ -58,7 +60,7 @@ int main(int argc, char** argv) {
     fresh.push_back(deposit((std::uint64_t(1) << 40) + i));
   }
   std::vector<std::vector<double>> seconds(totals.size());
-  for (int round = 0; round < 9; ++round)
+  for (int round = 0; round < (is_short ? 3 : 9); ++round)
     for (std::size_t v = 0; v < volumes.size(); ++v) {
       const double start = cpu_seconds();
       for (const Deposit& d : old) volumes[v].add(d.at, d.worth, -1);

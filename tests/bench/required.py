@@ -3,8 +3,10 @@
 Ratios are of CPU seconds within one run, the sides alternating, medians of the rounds. Each function returns
 {"title", "asked", "header", "rows", "met", "notes"}; "met" is None where it cannot be judged.
 """
+import json
 import math
 import os
+from pathlib import Path
 
 from cycles import walls
 from demo import demo
@@ -12,9 +14,9 @@ from two_threads import threads
 from measure import Missing, big, figure, median, percent, quantity, timed, wait_for_quiet
 
 
-def path_tracer(bench, peers):
+def path_tracer(bench):
     """CPU seconds times squared error of our path tracer, over Cycles' of the same samples."""
-    rows, notes, judged = [], [], []
+    rows, notes, judged, peers = [], [], [], json.loads(Path(__file__).with_name("peers.json").read_text())["peers"]
     samples, rounds = (4, 1) if bench.tiny else (64, 5)
     for name in ["S2"] if bench.tiny else ["S2", "S3", "S4"]:
         try:
@@ -47,7 +49,7 @@ def path_tracer(bench, peers):
                   notes + ["MSE: mean over the seeds; CPU: median. Cycles' rows were measured on another day."])
 
 
-def photon_rate(bench, _):
+def photon_rate(bench):
     """photon-trace against the bare walk; what recording and the file cost of it."""
     scene, frame = bench.scene("S2")
     photons = 20000 if bench.tiny else 4 * 10**6
@@ -86,7 +88,7 @@ def photon_rate(bench, _):
                   None if bench.tiny else ratio >= 0.5 and same, notes)
 
 
-def nearest(bench, _):
+def nearest(bench):
     """Exact k-nearest against nanoflann, by tests/bench/nearest."""
     found = bench.program("nearest", *(["20000", "2000", "1"] if bench.tiny else ["1000000", "100000", "5"]))
     rows = []
@@ -103,7 +105,7 @@ def nearest(bench, _):
                   "thread, CPU time; the better of two leaf sizes of nanoflann."])
 
 
-def start(bench, _):
+def start(bench):
     """--help of every tool, and what it links."""
     rows, met = [], True
     quiet = bench.tiny or wait_for_quiet(60)
@@ -120,7 +122,7 @@ def start(bench, _):
                   ["Medians of 20; judged by elapsed time."] + ([] if quiet else ["Others were using the processors."]))
 
 
-def reading(bench, _):
+def reading(bench):
     """Reading and writing a .photons file, by tests/bench/photons_io."""
     found = bench.program("photons_io", "--photons", 20000 if bench.tiny else 4000000, "--file",
                           bench.memory / f"tempolux-bench-{os.getpid()}.photons")
@@ -134,4 +136,3 @@ def reading(bench, _):
 
 FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "nearest": nearest, "threads": threads, "start": start,
            "reading": reading, "demo": demo, "walls": walls}
-PEERS = ("walls",)     # parts that want another renderer

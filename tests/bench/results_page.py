@@ -1,14 +1,10 @@
-"""RESULTS.md, one page, and docs/results, a file for each part: from what the measurements left in the output folder, and where that
-has nothing or something older, from those files as they were. Nothing is typed by hand."""
-import json
+"""RESULTS.md, one page, worst first, and docs/results/NAME.md with all numbers of a part: both from the JSON of the parts."""
 import re
 
-from judged_code import MOST_CHANGES, changes_since
-
+SECTIONS = {"papers": "The systems of the two papers", "curves": "Error against run time", "steady": "Steadiness",
+            "stiff": "Stiff and extreme cases", "leaving": "Leaving out", "speed": "Speed and growth"}
 LINES = 200            # of RESULTS.md at most
-VERDICTS = {"not judged here": None, "met": True, "**missed**": False}
-HEAD = re.compile(r"# (?P<title>.*)\n\n`.* --only \S+` · (?P<machine>.*) · load [^·\n]*(?: · (?P<date>\S+ \S+))?\n\n"
-                  r"Asked: (?P<asked>.*)\. (?P<said>.*)\.(?: Measured: (?P<measured>.*)\.)?\n")
+ORDER = {False: 0, None: 1, True: 2}
 
 
 def table(header, rows):
@@ -17,120 +13,113 @@ def table(header, rows):
 
 
 def verdict(met):
-    return "not judged here" if met is None else "met" if met else "**missed**"
+    return "not judged" if met is None else "met" if met else "**missed**"
 
 
-# ---- a part's own file
-
-def section(name, found, command):
-    """Text of docs/results/NAME.md; HEAD reads its beginning."""
-    if "text" in found:
-        return found["text"]
-    text = f"# {found['title']}\n\n`{command} --only {name}` · {found['machine']} · load {found['load']} · {found.get('date', '- -')}\n\n"
-    measured = f" Measured: {found['measured']}." if found.get("measured") else ""
-    text += f"Asked: {found['asked']}. {verdict(found['met']).capitalize()}.{measured}\n\n" + table(found["header"], found["rows"])
-    for note in found["notes"]:
-        text += f"\n{note}\n"
-    return text + "\n"
+def told(row):
+    return (table(row["header"], row["rows"]) + "".join(note + "\n" for note in row["notes"])
+            + f"asked: {row['asked']}: {verdict(row['met'])}: {measured(row)} ({row['cpu_s']:.0f} CPU s)")
 
 
-def kept(file):
-    """What an earlier run wrote of a part; None if nothing."""
-    if not file.exists():
-        return None
-    text = file.read_text()
-    head = HEAD.match(text)
-    if not head:
-        raise SystemExit(f"{file}: its head is not as section() writes it; measure the part again, or remove the file")
-    said = head["said"].lower() if head["said"].lower() in VERDICTS else head["said"]
-    return {**head.groupdict(), "met": VERDICTS[said], "text": text, "measured": head["measured"] or ""}
-
-
-def latest(bench, docs, name):
-    """The newer of the last measurement here and what the page's file has, good or bad."""
-    file, before = bench.out / f"{name}.json", kept(docs / "results" / f"{name}.md")
-    here = json.loads(file.read_text()) if file.exists() else None
-    if not here or not before:
-        return here or before
-    return before if (before["date"] or "") > here.get("date", "") else here
-
-
-# ---- the README
-
-DEMO_MARKS = "<!-- written by tests/bench/bench.py, --only demo -->\n", "<!-- end of demo -->\n"
-
-
-def readme(text, results):
-    """The README's text with the cost of its demo; as it is if either lacks it."""
-    begin, end = (text.find(mark) for mark in DEMO_MARKS)
-    page = (results / "demo.md").read_text() if (results / "demo.md").exists() else ""
-    found = {quality: re.search(rf"^\| {quality} \| (\S+) \| (\S+) \| (\S+) \|", page, re.M) for quality in ("final", "draft")}
-    if begin < 0 or end < 0 or not all(found.values()):
-        return text
-    frame, whole, disk = found["final"].groups()
-    return (text[:begin] + DEMO_MARKS[0] + f"They cost {float(whole) / 60:.1f} CPU minutes in all, {frame} CPU seconds a frame (`QUALITY=draft`: "
-            f"{found['draft'].group(1)}), and {disk} GB of disk.\n" + text[end:])
-
-
-# ---- the page
-
-def said(bench, name, found):
-    """(verdict, commit of the measurement and its age). A verdict on code that has changed too often since is expired."""
-    commit = found["machine"].rsplit(" ", 1)[-1]
-    newer = changes_since(bench.project, commit, name)
-    if newer is None:
-        return verdict(found["met"]), f"{commit}, age unknown"
-    text = verdict(found["met"])
-    if newer > MOST_CHANGES and found["met"] is not None:
-        text = f"expired ({text})"
-    return text, f"{commit}, {newer} changes ago" if newer else commit
-
-
-def measured(found):
+def measured(row):
     """What was measured, as it says itself or as the first row of its table does: its name and its last two columns."""
-    if found.get("measured"):
-        return found["measured"]
-    lines = [line[2:-2].split(" | ") for line in re.findall(r"^\|.*\|$", section("", found, ""), re.M)]
-    if len(lines) < 3:
-        return ""
-    header, _, row = lines[:3]
-    return f"{row[0]}: " + ", ".join(f"{name} {cell}" for name, cell in list(zip(header, row))[1:][-2:])
+    if row.get("measured") or not row["rows"]:
+        return row.get("measured", "")
+    first = row["rows"][0]
+    return f"{first[0]}: " + ", ".join(f"{name} {cell}" for name, cell in list(zip(row["header"], first))[1:][-2:])
 
 
-def summary(bench, found, left_out, link):
-    """A row for each part whose verdict still holds."""
-    rows = []
-    for name, f in found.items():
-        judged, when = said(bench, name, f) if f else ("expired", "")
-        if not judged.startswith("expired"):
-            rows.append([f"[{f['title']}]({link}/{name}.md)", f["asked"], measured(f), judged,
-                         "; not again: ".join(filter(None, (when, left_out.get(name))))])
-    return "## Required figures\n\n" + table(["what", "asked", "measured", "verdict", "at commit"], rows) + "\n"
+def when(row):
+    """Commit of the measurement, and whether it still holds."""
+    text = row["commit"] + (f", accepted at {row['accepted']}" if row.get("accepted") else "")
+    return text + (f"; stale since {row['stale']['since']}" if row.get("stale") else "")
 
 
-def write(bench, page, docs, figures, command, left_out):
-    """The page and all files beside it. `left_out`: why a part was not measured this time."""
-    results = docs / "results"
-    results.mkdir(parents=True, exist_ok=True)
-    found = {name: latest(bench, docs, name) for name in figures}
-    for name, f in found.items():
-        if f:
-            (results / f"{name}.md").write_text(section(name, f, command).rstrip("\n") + "\n")
-    link = results.relative_to(page.parent) if results.is_relative_to(page.parent) else results
-    quick = results / "every-scene-quick.md"  # everyscene.py --quick --report writes it
-    beside = f"Seen error beside path tracing, scene by scene: [{quick.name}]({link}/{quick.name}).\n" if quick.is_file() else ""
+def worst_first(row):
+    """Missed before not judged before met; then by what was reached over what was asked."""
+    return ORDER[row["met"]], row.get("worth") if row.get("worth") is not None else 1
+
+
+def page_of(row):
+    """docs/results/NAME.md"""
+    text = (f"# {row['title']}\n\n`{row['command']}` · {row['machine']} · load {row['load']} · {row['date']}\n\n"
+            f"Asked: {row['asked']}. {verdict(row['met'])}: {measured(row)}.\n\n")
+    if row.get("paper"):
+        text += f"The paper: {row['paper']}.\n\n"
+    if row.get("stale"):
+        text += f"Stale since {row['stale']['since']}: {'; '.join(row['stale']['what'])}.\n\n"
+    return text + table(row["header"], row["rows"]) + "".join(f"\n{note}\n" for note in row["notes"])
+
+
+def section(name, rows, parts, link, left_out):
+    """A table of the page; parts that were never measured stand in it, too."""
+    found = sorted((row for row in rows.values() if row["section"] == name), key=worst_first)
+    lines = [[f"[{row['title']}]({link}/{row['name']}.md)", row.get("paper", ""), row["asked"], measured(row), verdict(row["met"]), when(row)] for row in found]
+    lines += [[part.judges, "", "", f"not measured yet: `PARTS={part.name}`" + (f"; {left_out[part.name]}" if part.name in left_out else ""), "-", ""]
+              for part in parts.values() if part.section == name and part.name not in rows]
+    if not any(line[1] for line in lines):
+        lines = [line[:1] + line[2:] for line in lines]
+        return f"## {SECTIONS[name]}\n\n" + table(["what", "asked", "measured", "verdict", "at commit"], lines) + "\n"
+    return f"## {SECTIONS[name]}\n\n" + table(["what", "the paper", "asked", "measured", "verdict", "at commit"], lines) + "\n"
+
+
+def head(rows, parts, heads):
+    stale = sum(bool(row.get("stale")) for row in rows.values())
+    counts = {word: sum(row["met"] is met for row in rows.values()) for word, met in (("missed", False), ("not judged", None), ("met", True))}
+    text = (f"{len(rows)} of {len(parts)} rows are measured: " + ", ".join(f"{n} {word}" for word, n in counts.items())
+            + f"; {stale} of them are stale.\n")
+    return text + "".join(f"{line}\n" for line in heads)
+
+
+def medians(rows):
+    """Sentences of the head that parts of a kind make together."""
+    said = []
+    for key, words in (("equal_error", "CPU of Cycles 5 with OIDN over ours at equal seen error"), ("steadier", "Cycles' noise from frame to frame over ours")):
+        values = sorted(row[key] for row in rows.values() if row.get(key))
+        if values:
+            middle = len(values) // 2
+            median = values[middle] if len(values) % 2 else (values[middle - 1] + values[middle]) / 2
+            said.append(f"{words}: median {median:.2g} of {len(values)} scenes, {values[0]:.2g} to {values[-1]:.2g}.")
+    return said
+
+
+def write(rows, parts, page, folder, left_out):
+    for name, row in rows.items():
+        (folder / f"{name}.md").write_text(page_of(row).rstrip("\n") + "\n")
+    link = folder.relative_to(page.parent) if folder.is_relative_to(page.parent) else folder
     text = f"""# Results
 
-`{command}` writes this page; `--only NAME` measures one part again. Each row is the last measurement of a part; its
-page in {link} has all numbers. A row goes after {MOST_CHANGES} changes of the code that it judges.
-{beside}
+{head(rows, parts, medians(rows))}
+`make -f Makefile.example evidence` writes this page; `PARTS=NAME` measures a row again. A row is current while its canary, a small chain
+that is run by continuous integration, makes the same data with as many instructions; else it is marked as stale and stays. Missed rows
+stand first. Each row's page in {link} has all numbers, its command and its machine.
+
 CPU seconds are user and system time of all threads and processes. Processors differ in speed, so limits in seconds are for normalised
 CPU seconds: measured ones times the rate of the bare walk (Embree alone on S2, tests/bench/bare_walk, million photons per CPU second of
-one thread, measured in the same run) divided by 5.
+one thread, measured in the same run) divided by 5. Seen error: root mean square of 8-bit codes (tests/bench/seen.py).
 
 """
-    text += summary(bench, found, left_out, link)
+    text += "".join(section(name, rows, parts, link, left_out) for name in SECTIONS if any(part.section == name for part in parts.values()))
     text = text.rstrip("\n") + "\n"
     if text.count("\n") > LINES:
         raise SystemExit(f"{page}: {text.count(chr(10))} lines, more than {LINES}: shorten what results_page.py puts there")
     page.write_text(text)
+    read_me = page.with_name("README.md")
+    if read_me.exists() and "demo" in rows:
+        read_me.write_text(readme(read_me.read_text(), rows["demo"]))
+
+
+# ---- the README
+
+DEMO_MARKS = "<!-- written by tests/bench/evidence.py, PARTS=demo -->\n", "<!-- end of demo -->\n"
+
+
+def readme(text, row):
+    """The README's text with the cost of its demo; as it is if either lacks it."""
+    begin, end = (text.find(mark) for mark in DEMO_MARKS)
+    found = {quality: cells for quality, *cells in row["rows"]}
+    if begin < 0 or end < 0 or not {"final", "draft"} <= set(found):
+        return text
+    frame, whole, disk = found["final"]
+    return (text[:begin] + DEMO_MARKS[0] + f"They cost {float(whole) / 60:.1f} CPU minutes in all, {frame} CPU seconds a frame (`QUALITY=draft`: "
+            f"{found['draft'][0]}), and {disk} GB of disk.\n" + text[end:])

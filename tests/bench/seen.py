@@ -26,8 +26,8 @@ def code(value):
     return CURVE[i] + (place - i) * (CURVE[i + 1] - CURVE[i])
 
 
-def blurred(values, width, height):
-    """Means over the 5x5 around each pixel, over what there is of it at the border."""
+def blurred(values, width, height, reach=2):
+    """Means over the box around each pixel, `reach` pixels to each side (5x5), over what there is of it at the border."""
     def along(values, step, count, rest, stride):
         out = [0.0] * len(values)
         for line in range(rest):
@@ -36,7 +36,7 @@ def blurred(values, width, height):
             for p in at:
                 sums.append(sums[-1] + values[p])
             for i, p in enumerate(at):
-                a, b = max(0, i - 2), min(count, i + 3)
+                a, b = max(0, i - reach), min(count, i + reach + 1)
                 out[p] = (sums[b] - sums[a]) / (b - a)
         return out
     return along(along(values, 1, width, height, width), width, height, width, 1)

@@ -51,27 +51,31 @@ class Side:
             raise Unfinished(lines[0] if lines else f"a process took more than {self.patience} CPU s")
         return after.children_user - before.children_user + after.children_system - before.children_system
 
-    def chain(self, seed, quality="final", channels=CHANNELS, keep=None, variables=None):
-        """(picture, CPU seconds, those of each stage, what frame-render and the filter say of the frame); `keep`: a file that the frame is moved to, None:
-        then the picture is read and the frame removed. `variables`: further ones of Makefile.example."""
+    def wish(self, frames, channels=CHANNELS, quality="final", variables=None):
+        """Variables of Makefile.example for the scene."""
         case = self.case
+        return {"SCENE": case.file.resolve(), "FRAMES": frames, "SIZE": self.size, "CAMERA": case.camera, "CHANNELS": ",".join(channels),
+                "TIME": " ".join(map(str, case.shared)), "QUALITY": quality, "ENVIRONMENT": case.environment and case.environment.resolve(), **(variables or {})}
+
+    def chain(self, seed, quality="final", channels=CHANNELS, keep=None, variables=None, leave=False):
+        """(picture, CPU seconds, those of each stage, what frame-render and the filter say of the frame); `keep`: a file that the frame is moved to, None:
+        then the picture is read. `variables`: further ones of Makefile.example; `leave`: the run stays in self.folder."""
         shutil.rmtree(self.folder, ignore_errors=True)
-        frame = pipeline.frame_of(self.folder, case.frame)
-        cpu = self.spend(pipeline.command(
-            self.bench.project, self.bench.bin, self.folder, f"frames/{frame.name}", SCENE=case.file.resolve(), FRAMES=case.frame, SIZE=self.size,
-            CAMERA=case.camera, CHANNELS=",".join(channels), TIME=" ".join(map(str, case.shared)), QUALITY=quality,
-            RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}", ENVIRONMENT=case.environment and case.environment.resolve(), **(variables or {})))
+        frame = pipeline.frame_of(self.folder, self.case.frame)
+        cpu = self.spend(pipeline.command(self.bench.project, self.bench.bin, self.folder, f"frames/{frame.name}", RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}",
+                                          **self.wish(self.case.frame, channels, quality, variables)))
         stages = pipeline.cpu_of(self.folder)
         said = {name: value for stats in pipeline.stats_of(self.folder, ("frames",)) if stats["tool"] in ("frame-render", "st-filter") for name, value in stats["results"].items()}
         image = shutil.move(frame, keep) if keep else exr.read(frame)
-        shutil.rmtree(self.folder)
+        if not leave:
+            shutil.rmtree(self.folder)
         return image, cpu, stages, said
 
-    def paths(self, spp, seed):
+    def paths(self, spp, seed, channels=CHANNELS):
         """(picture, CPU seconds that do not depend on the samples, those of a sample per pixel)"""
         image, stats = self.bench.out / "tmp" / f"path-{os.getpid()}.exr", self.bench.out / "tmp" / f"path-{os.getpid()}.json"
         cpu = self.spend([self.bench.bin / "frame-render", self.case.file, *self.case.options(), *YARDSTICK, "--size", self.size,
-                          "--spp", spp, "--seed", seed, "--channels", *CHANNELS, "--compression", "none", "-q", "-o", image, "--stats", stats])
+                          "--spp", spp, "--seed", seed, "--channels", *channels, "--compression", "none", "-q", "-o", image, "--stats", stats])
         render = sum(p["cpu_s"] for p in json.loads(stats.read_text())["phases"] if p["name"] == "render")
         return exr.read(image), cpu - render, render / spp
 

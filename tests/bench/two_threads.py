@@ -26,7 +26,7 @@ def compared(bench, tools, rounds):
     return rows, met
 
 
-def threads(bench, _):
+def threads(bench):
     """Wall time of the parallel phases with one thread and with two."""
     scene, frame = bench.scene("S2")
     base = f"{bench.memory}/tempolux-bench-{os.getpid()}"

@@ -80,6 +80,7 @@ def main():
     families = list(dict.fromkeys(family for family, *_ in CASES))
     parser.add_argument("--bin", default="build/release/bin", help="folder of the tools [%(default)s]")
     parser.add_argument("--family", action="append", choices=families, help="only this one; may be repeated")
+    parser.add_argument("--list", action="store_true", help="names of the families, nothing more")
     parser.add_argument("--case", default="", help="only cases with this in their name")
     parser.add_argument("--short", action="store_true", help="fewer samples, wider tolerances, below 90 s")
     parser.add_argument("--long", action="store_true", help="also what takes gigabytes or many minutes")
@@ -87,6 +88,9 @@ def main():
     parser.add_argument("--json", help="write the rows as JSON")
     parser.add_argument("--markdown", help="write the rows as a Markdown table")
     options = parser.parse_args()
+    if options.list:
+        print(*families, sep="\n")
+        return 0
     if not pathlib.Path(options.bin, "photon-trace").exists():
         parser.error(f"--bin {options.bin}: no photon-trace in it")
     level = LONG if options.long else SHORT if options.short else FULL

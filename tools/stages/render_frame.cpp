@@ -58,6 +58,7 @@ struct Shot {
   const CameraView& view;
   const FrameOptions& options;
   const RenderedFrame& rendered;
+  std::uint64_t light_paths = 0;  ///< of add_light_without_paths
 
   mutable std::optional<double> hidden = {};  ///< the result of hidden_light(), once it is known
 
@@ -78,7 +79,7 @@ struct Shot {
 void warn_of_missing_light(Tool& tool, const Shot& shot) {
   const SceneFrame& frame = shot.scene.frame();
   const KnownLight* const known = shot.options.known;
-  if (!may_hide_light(frame) || (known && known->has_caustic())) return;
+  if (!may_hide_light(frame) || (known && known->has_caustic()) || shot.light_paths > 0) return;
   const auto shines =
       std::ranges::find_if(frame.lights, [](const PlacedLight& l) { return max_component(l.light.intensity) > 0; });
   std::string share;
@@ -156,6 +157,25 @@ FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
   return frame;
 }
 
+/// --light-paths: adds the light that no camera path finds to the picture, or to both halves and their mean.
+void add_light_without_paths(Tool& tool, const RenderOptions& options, const Shot& shot, RenderedFrame& rendered) {
+  if (options.light_paths == 0 || !may_hide_light(shot.scene.frame())) return;
+  tool.stats().phase("light paths", true);
+  const Lights lights = shot.aimed(Lights::Which::punctual);
+  const auto add = [&](std::uint64_t paths, std::uint64_t number, LayerImage& picture) {
+    const std::uint64_t seed = mix64(shot.options.seed ^ (0x6c69676874ull << 8 | number));
+    add_hidden_light(shot.scene, lights, shot.view, paths, seed, picture);
+  };
+  if (rendered.half[0].pixels.empty()) return add(options.light_paths, 0, rendered.mean);
+  for (const std::size_t h : {0u, 1u}) {
+    const std::vector<Layers> before = rendered.half[h].pixels;
+    add(options.light_paths / 2, h, rendered.half[h]);
+    for (std::size_t p = 0; p < before.size(); ++p)
+      for (std::size_t l = 0; l < kLayerCount; ++l)
+        rendered.mean.pixels[p].value[l] += (rendered.half[h].pixels[p].value[l] - before[p].value[l]) * 0.5f;
+  }
+}
+
 void render(Tool& tool, SceneInput& input, const RenderOptions& options, int number, StaticTree& tree) {
   FrameOutputs outputs(frame_name(options.output, number), options.frame.halves);
   tool.stats().phase("evaluate");
@@ -184,9 +204,10 @@ void render(Tool& tool, SceneInput& input, const RenderOptions& options, int num
   Image image{options.width, options.height, {}, {}, {}, {}};
   std::vector<std::uint8_t> edges = add_coverage_channel(scene, view, options.channels, image);
   if (asked(options.channels, "halves")) frame_options.edges = std::move(edges);
-  const RenderedFrame rendered = render_frame(scene, view, frame_options);
+  RenderedFrame rendered = render_frame(scene, view, frame_options);
 
-  const Shot shot{scene, input.emission(frame.frame), view, frame_options, rendered};
+  const Shot shot{scene, input.emission(frame.frame), view, frame_options, rendered, options.light_paths};
+  add_light_without_paths(tool, options, shot, rendered);
   if (number == tool.common().frames.front()) warn_of_missing_light(tool, shot);
   bool unbiased = false;
   const std::vector<AuditEntry> audited = audit(tool, options, shot, unbiased);
@@ -261,6 +282,10 @@ void check(const Tool& tool, RenderOptions& options) {
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
+  if (options.light_paths > 0 && options.integrator != "path")
+    throw InputError("--light-paths: only for --integrator path; photons find this light");
+  if (options.light_paths > 0 && !options.base.empty())
+    throw InputError("--light-paths: adds light to all pixels, also to those of --base; leave out one");
   options.light.photons_alone = options.integrator == "photons";
   options.light.influence.high *= options.light.influence.low / InfluenceThresholds{}.low;  // the same ratio
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");

@@ -1,0 +1,269 @@
+"""Error against run time, a scene at a time: our presets and settings, our paths, and the renderers of build/peers, each against its own
+reference in halves.
+
+A point is (CPU seconds of a frame out of a range of 24, seen error). What the range shares (light that stands, the plan) is divided
+by its frames; start and import of other renderers are left out. One part of the evidence for each scene.
+"""
+import math
+import re
+import statistics
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
+import cases
+import exr
+import pipeline
+import pixels
+from measure import Missing, figure, quantity
+from peer_renderers import Peer, denoised, flip, for_denoising, planes_of, write_pfm
+from plot import chart
+from references import Curve, Reference
+from seen import Seen
+from shipped import YARDSTICK, Side
+
+RANGE = 24
+AUXILIARY = ("RGBA", "albedo", "N")
+SETTINGS = (("draft", {"QUALITY": "draft"}), ("error .032", {"ERROR": ".032"}), ("final", {}), ("error .008", {"ERROR": ".008"}), ("error .004", {"ERROR": ".004"}))
+PATHS = (4, 16, 64, 256)
+PEERS = (("Cycles", "cycles", False, (16, 64, 256)), ("Cycles + OIDN", "cycles", True, (4, 8, 16, 32, 64)), ("LuxCore + OIDN", "luxcore", True, (4, 16, 64)),
+         ("LuxCore PhotonGI + OIDN", "luxcore", True, (16,)), ("Mitsuba + OIDN", "mitsuba", True, (4, 16, 64)))
+
+
+def shared_out(out, wish, bench):
+    """CPU seconds of a frame of a range: those of each folder of OUT by how many of its files a frame of the range needs."""
+    plan = bench.out / "tmp" / "range"
+    pipeline.run_make(bench.project, bench.bin, plan, "plan", **wish)
+    def by_folder(names):
+        counts = {}
+        for name in names:
+            counts[name.split("/")[0]] = counts.get(name.split("/")[0], 0) + 1
+        return counts
+    alone, together, total = by_folder(pipeline.made_files(out)), by_folder(pipeline.made_files(plan)), 0.0
+    for folder, count in alone.items():
+        spent = sum(stats["cpu_s"] for stats in pipeline.stats_in(out, folder))
+        total += spent / count * together.get(folder, count) / RANGE
+    return total
+
+
+class Curves:
+    def __init__(self, bench, case, size, reference_cpu):
+        self.bench, self.case, self.size, self.reference_cpu = bench, case, size, reference_cpu
+        self.side, self.rows, self.shown = Side(bench, case, size, 10**5), [], {}
+        self.width, self.height = map(int, size.split("x"))
+        self.stem = str(bench.out / "tmp" / f"curve-{case.name}")
+
+    def judged(self, seen, halves, planes, first):
+        """(seen error, FLIP): FLIP of the first seed alone, None without it."""
+        reference = [[(p + q) / 2 for p, q in zip(*pair)] for pair in zip(*halves)]
+        found = flip(self.bench, reference, [planes], seen.exposure, self.width, self.height) if first else []
+        return seen.error(planes), found[0] if found else None
+
+    # ---- ours
+
+    def first_of_range(self):
+        first = self.case.frame // RANGE * RANGE
+        return f"{first}-{first + RANGE - 1}"
+
+    def chain(self, variables, seed, channels=AUXILIARY):
+        """(picture, CPU seconds)"""
+        out = self.side.folder
+        image, whole, stages, _ = self.side.chain(seed, channels=channels, variables={k: v for k, v in variables.items() if k != "QUALITY"},
+                                                  quality=variables.get("QUALITY", "final"), leave=True)
+        wish = self.side.wish(self.first_of_range(), channels, variables.get("QUALITY", "final"), {k: v for k, v in variables.items() if k != "QUALITY"})
+        return image, shared_out(out, wish, self.bench) + (whole - sum(stages.values())) / RANGE
+
+    def reference(self, least):
+        """Halves of our own paths, with what only light paths find."""
+        options = [*YARDSTICK, "--light-paths", "20M"]
+        reference = Reference(self.bench, self.case, self.size, options)
+        reference.until(lambda a, b: Seen(pixels.planes(a), pixels.planes(b)).halves_differ() < least, self.reference_cpu)
+        return [pixels.planes(half) for half in reference.halves]
+
+    def ours(self):
+        points, halves, seen = {}, None, None
+
+        def judge(planes, first):
+            nonlocal halves, seen
+            if halves is None:
+                halves = self.reference(0.5)
+                seen = Seen(*halves)
+            return self.judged(seen, halves, planes, first)
+        for label, variables in SETTINGS:
+            seeds = range(1, 9 if label in ("draft", "final") and self.size == "320x180" else 3)
+            def make():
+                found = []
+                for seed in seeds:
+                    image, cpu = self.chain(variables, seed)
+                    found.append((cpu, *judge([list(image.channels[c]) for c in "RGB"], seed == 1)))
+                return found
+            points[label] = self.bench.step(f"ours {label}", make)
+        self.add("ours", points)
+
+        def unfiltered(label, produce):
+            def make():
+                found = []
+                for seed in (1, 2):
+                    image, cpu = produce(seed)
+                    for_denoising(self.stem, image)
+                    planes, more = denoised(self.bench, self.stem)
+                    raw = [list(image.channels[c]) for c in "RGB"]
+                    found.append([(cpu + more, *judge(planes, seed == 1)), (cpu, *judge(raw, seed == 1))])
+                return found
+            return self.bench.step(label, make)
+        try:
+            found = unfiltered("ours, OIDN", lambda seed: self.chain({"FILTER": "none"}, seed))
+            self.add("ours, final unfiltered + OIDN", {"final": [f[0] for f in found]})
+            paths = {n: unfiltered(f"paths {n}", lambda seed: self.paths(n, seed)) for n in PATHS}
+            self.add("our paths + OIDN", {n: [f[0] for f in found] for n, found in paths.items()})
+            self.add("our paths", {n: [f[1] for f in found] for n, found in paths.items()})
+        except Missing as reason:
+            self.rows.append(["Open Image Denoise", str(reason), "", "", "", ""])
+
+    def paths(self, samples, seed):
+        image, fixed, each = self.side.paths(samples, seed, AUXILIARY)
+        return image, fixed + each * samples
+
+    # ---- others
+
+    def peer(self, label, name, clean, samples):
+        key = f"{label}: "
+        scene = {"scene": str(self.case.file), "size": self.size, "light_units": "spec" if "spec" in self.case.shared else "raw", "camera": self.case.camera,
+                 "world": str(self.case.environment) if self.case.environment else None, "sky": self.sky(), "smoke": self.smoke()}
+        opened = {}
+
+        def open_peer():
+            if "it" not in opened:
+                if name != "cycles":
+                    exporter = Peer(self.bench, "cycles", scene)
+                    exported = f"{self.stem}.scene"
+                    exporter.ask({"export": exported, "frame": self.case.frame})
+                    exporter.close()
+                    scene["scene"] = exported
+                opened["it"] = Peer(self.bench, name, scene)
+            return opened["it"]
+
+        def frame(n, seed, clean, output):
+            ask = open_peer().ask
+            if name == "cycles":
+                cpu = ask({"frame": self.case.frame, "samples": n, "seed": seed, "denoise": clean, "output": f"{output}.exr"})
+                return planes_of(f"{output}.exr"), cpu
+            cpu = ask({"samples": n, "seed": seed, "photongi": "PhotonGI" in label, "output": output})
+            if not clean:
+                return planes_of(f"{output}.pfm"), cpu
+            planes, more = denoised(self.bench, output)
+            return planes, cpu + more
+
+        def halves():
+            files = [self.bench.out / "every" / "reference" / f"{self.case.name}-{self.size}-{name}_{h}.pfm" for h in "ab"]
+            if not all(file.exists() for file in files):
+                for i, file in enumerate(files):
+                    planes, cpu = frame(16, 900 + i, False, self.stem)
+                    n = max(64, min(4096, int(self.reference_cpu / 2 / max(cpu, 0.01) * 16)))
+                    planes, _ = frame(n, 900 + i, False, self.stem)
+                    write_pfm(file, self.width, self.height, planes)
+            return [planes_of(file) for file in files]
+
+        def make(n):
+            two = halves()
+            seen = Seen(*two)
+            found = []
+            for seed in (1, 2):
+                planes, cpu = frame(n, seed, clean, self.stem)
+                found.append((cpu, *self.judged(seen, two, planes, seed == 1), seen.halves_differ()))
+            return found
+        try:
+            points = {n: self.bench.step(key + str(n), lambda n=n: make(n)) for n in samples}
+            converged = all(f[3] < 2 * f[1] for found in points.values() for f in found)
+            self.add(label + ("" if converged else " (reference not converged)"), points)
+        finally:
+            if "it" in opened:
+                opened["it"].close()
+
+    def sky(self):
+        text = " ".join(map(str, self.case.shared))
+        found = re.search(r"--environment ([\d.]+),([\d.]+),([\d.]+)", text)
+        return [float(v) for v in found.groups()] if found else None
+
+    def smoke(self):
+        """The file of the frame and how thick it is; None without."""
+        words = dict(zip(self.case.shared[::2], self.case.shared[1::2]))
+        if "--volume" not in words:
+            return None
+        return {"file": str(words["--volume"]).replace("####", f"{self.case.frame:04d}"), "sigma_t": float(words["--sigma-t"]), "albedo": [float(v) for v in words["--albedo"].split(",")]}
+
+    # ---- both
+
+    def add(self, label, points):
+        mean = {setting: (statistics.mean(p[0] for p in found), math.sqrt(statistics.mean(p[1] ** 2 for p in found)), spread([p[1] for p in found]), len(found))
+                for setting, found in points.items()}
+        self.shown[label] = mean
+        self.rows += [[label, setting, quantity(cpu), f"{error:.2f} ± {plus:.2f}", quantity(points[setting][0][2]), seeds] for setting, (cpu, error, plus, seeds) in mean.items()]
+
+
+def reference(bench, name):
+    """Is the reference of a scene complete? Its layers against photons alone, in the picture and in 4 x 4 tiles, and its halves."""
+    case = next((c for c in cases.of_curves(bench) if c.name == name), None)
+    if case is None:
+        raise Missing(f"scene {name} is not here (../shared/scenes is absent)")
+    samples, light = (64, "4M") if bench.small else (512, "20M")
+
+    def render(*light_paths):
+        out = bench.out / "tmp" / "complete.exr"
+        stats = bench.tool("frame-render", case.file, *case.options(), *YARDSTICK, "--size", "160x90", "--spp", samples, "--halves", *light_paths, "--audit", 1,
+                           "--channels", "RGBA", "layers", "--compression", "none", "-o", out)
+        halves = [exr.read(out.with_name(f"complete_{h}.exr")) for h in "ab"]
+        return {"said": {k: v for k, v in stats["results"].items() if k.startswith("audit.")}, "cpu": stats["cpu_s"],
+                "halves": 2 ** 0.5 * Seen(*(pixels.planes(h) for h in halves)).half_error()}
+    alone, whole = bench.step("paths", render), bench.step("paths and light", lambda: render("--light-paths", light))
+    rows, worst, tiles = [], 0.0, 0
+    for layer in ("direct", "caustic", "indirect"):
+        cells = []
+        for found in (alone, whole):
+            value, error = (found["said"].get(f"audit.{layer}{end}") for end in ("", "_error"))
+            cells.append("-" if value is None else f"{100 * value:+.2f} ± {100 * error:.2f}")
+        if value is not None:
+            worst = max(worst, abs(value) / error)
+        tiles += f"audit.{layer}.worst_tile" in whole["said"]
+        rows.append([layer, *cells, "beyond" if f"audit.{layer}.worst_tile" in whole["said"] else "within"])
+    return figure(f"{name}: a reference that lacks nothing", "each layer within 3 errors of photons alone, also by tile; halves differ by less than 4 codes",
+                  ["layer", "paths over photons - 1, % of the picture", "paths and light, the same", "4 x 4 tiles: 3 errors"], rows,
+                  worst <= 3 and tiles == 0 and whole["halves"] < 4,
+                  [f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. Layer specular still lacks what mirrors, glass and gloss show of this light."],
+                  f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes", 3 / max(worst, 0.1))
+
+
+def spread(values):
+    return statistics.stdev(values) / math.sqrt(len(values)) if len(values) > 1 else 0.0
+
+
+def measure(bench, name, size="320x180"):
+    case = next((c for c in cases.of_curves(bench) if c.name == name), None)
+    if case is None:
+        raise Missing(f"scene {name} is not here (../shared/scenes is absent)")
+    size, label = "160x90" if bench.small else size, name if size == "320x180" else f"{name}-{size}"
+    curves = Curves(bench, case, size, 60 if bench.small else 900)
+    curves.ours()
+    notes = []
+    for label, peer, clean, samples in PEERS:
+        try:
+            if "--volume" in case.shared and peer != "cycles":
+                raise Missing("smoke is not translated for it")
+            curves.peer(label, peer, clean, samples)
+        except Missing as reason:
+            notes.append(f"{label}: skipped: {reason}")
+    cpu, error, plus, _ = curves.shown["ours"]["final"]
+    ratio, inside, more = None, True, {}
+    theirs = next((points for label, points in curves.shown.items() if label.startswith("Cycles + OIDN")), None)
+    said = f"final {quantity(cpu)} CPU s: {error:.2f} ± {plus:.2f}"
+    if theirs:
+        needed, inside = Curve([p[:2] for p in theirs.values()]).cost(error)
+        ratio = needed / cpu
+        more = {"equal_error": ratio}
+        said += f"; Cycles + OIDN needs {'' if inside else '~'}{quantity(needed)}: {quantity(ratio)}x"
+    picture = bench.results / f"curve-{label}.svg"
+    picture.write_text(chart(f"{name}, {size}: seen error against CPU seconds of a frame", "CPU s a frame", "codes",
+                             [(label, [(c, e) for c, e, *_ in points.values()]) for label, points in curves.shown.items()], log=True))
+    notes = [f"![curves]({picture.name})", f"Frame {case.frame}, {size}, out of a range of {RANGE}; `~`: beyond the measured curve.", *notes]
+    return figure(f"{label}: final beside Cycles 5 with OIDN", "less CPU at equal seen error", ["side", "setting", "CPU s a frame", "seen error, codes", "FLIP", "seeds"], curves.rows,
+                  None if ratio is None else ratio > 1, notes, said, ratio, **more)
