@@ -8,6 +8,7 @@ from . import gltf
 from .lamps import area_gain
 from .nodes import moves, unscaled, unturned
 from .notes import Damage
+from .spread import cones_for, places_on
 from .values import as_number, as_tuple, is_constant, resolve
 
 
@@ -31,7 +32,14 @@ class Lamps:
             return
         places = {frame: gltf.TO_GLTF @ place for frame, place in item.places.items()}
         self.notes.keep("lamps")
-        if first.emits():
+        if first.kind == "AREA" and first.spread < math.pi - 1e-3:
+            self.add_spots(item, states, places)
+            return
+        bare = first.kind == "POINT" and first.radius > 0 and "visible_camera" in item.flags and self.in_view(item)
+        if bare:
+            lost(Damage.DETAIL, item.label, "the camera would see the ball of this lamp, which Blender hides: it has no radius here, its shadows are "
+                                            "sharp (radius kept in extras)")
+        elif first.emits():
             self.add_emitter(item, states, places)
             return
         if first.kind == "SPOT" and first.radius > 0:
@@ -60,6 +68,30 @@ class Lamps:
             self.changes(frames, [[v["spot"]["outerConeAngle"]] for v in values], f"{at}/spot/outerConeAngle")
             self.changes(frames, [[v["spot"]["innerConeAngle"]] for v in values], f"{at}/spot/innerConeAngle")
 
+    def add_spots(self, item, states, places):
+        """An area lamp with a spread: a grid of spots, children of one node."""
+        frames = sorted(states)
+        first, document = states[frames[0]], self.document
+        lights = document.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
+        document.use("KHR_lights_punctual")
+        scale = numpy.linalg.norm(places[frames[0]][:3, :3], axis=0)
+        spots = [tuple(float(v) for v in numpy.array(p) * scale) for p in places_on(first.outline, first.lamp.shape in ("DISK", "ELLIPSE"))]
+        parent = self.node(item, {frame: unscaled(place) for frame, place in places.items()})
+        children = document.json["nodes"][parent]["children"] = []
+        for outer, inner, intensity in cones_for(first.spread / 2):
+            powers = [max(float(states[f].power.max()), 0.0) for f in frames]
+            colours = [[float(c) / p for c in states[f].power] if p > 0 else [1.0, 1.0, 1.0] for f, p in zip(frames, powers)]
+            index = len(lights)
+            lights.append({"name": item.name, "type": "spot", "color": colours[0], "intensity": powers[0] * intensity / len(spots),
+                           "spot": {"innerConeAngle": inner, "outerConeAngle": outer}})
+            at = f"/extensions/KHR_lights_punctual/lights/{index}"
+            self.changes(frames, [[p * intensity / len(spots)] for p in powers], f"{at}/intensity")
+            self.changes(frames, colours, f"{at}/color")
+            for place in spots:
+                children.append(document.append("nodes", {"name": item.name, "translation": list(place),
+                                                          "extensions": {"KHR_lights_punctual": {"light": index}}}))
+        self.notes.baked(item.label, f"its spread: {len(children)} spots in its place; its shadows have steps, mirrors do not show it")
+
     def in_view(self, item):
         """Is the middle of a thing in the picture, at some frame?"""
         for frame in self.some(item):
@@ -76,8 +108,6 @@ class Lamps:
         """A lamp with an extent: a mesh that shines from its front."""
         frames = sorted(states)
         first, lost = states[frames[0]], self.notes.lost
-        if first.kind == "AREA" and first.spread < math.pi - 1e-3:
-            lost(Damage.LIGHT, item.label, "its spread is left out: it shines to all sides")
         if "visible_camera" in item.flags and self.in_view(item):
             lost(Damage.CAMERA, item.label, "the camera sees the shape of this lamp, which Blender hides")
         if any(abs(states[f].area - first.area) > 1e-6 * first.area or abs(states[f].radius - first.radius) > 1e-6 for f in frames) \

@@ -78,7 +78,7 @@ class LampState:
     def extras(self):
         if self.kind == "SUN":
             return {"angle_rad": self.angle}
-        return {"radius_m": self.radius} if self.kind == "SPOT" else {}
+        return {"radius_m": self.radius} if self.radius > 0 else {}
 
 
 def area_gain():
