@@ -230,7 +230,7 @@ def reference(bench, name):
                   ["layer", "paths over photons - 1, % of the picture", "paths and light, the same", "4 x 4 tiles: 3 errors"], rows,
                   worst <= 3 and tiles == 0 and whole["halves"] < 4,
                   [f"Frame {case.frame}, 160x90, {samples} samples, {light} light paths: {quantity(whole['cpu'])} CPU s. Layer specular still lacks what mirrors, glass and gloss show of this light."],
-                  f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes", 3 / max(worst, 0.1))
+                  f"worst layer {worst:.1f} errors, {tiles} layers with a tile beyond 3; halves {whole['halves']:.1f} codes", min(3 / max(worst, 0.1), 4 / whole["halves"]))
 
 
 def spread(values):

@@ -161,6 +161,7 @@ FrameOptions options_of(Tool& tool, const RenderOptions& options, int number) {
 void add_light_without_paths(Tool& tool, const RenderOptions& options, const Shot& shot, RenderedFrame& rendered) {
   if (options.light_paths == 0 || !may_hide_light(shot.scene.frame())) return;
   tool.stats().phase("light paths", true);
+  tool.say("light paths: what mirrors, glass and gloss show of their light is still missing (layer specular)");
   const Lights lights = shot.aimed(Lights::Which::punctual);
   const auto add = [&](std::uint64_t paths, std::uint64_t number, LayerImage& picture) {
     const std::uint64_t seed = mix64(shot.options.seed ^ (0x6c69676874ull << 8 | number));

@@ -19,7 +19,7 @@ struct RenderOptions {
   double pixel_error = -1;
   bool half_float = false, keep_outliers = false;
   int width = 640, height = 360;
-  double audit = 0;                ///< share of the frame's camera rays
+  double audit = 0;               ///< share of the frame's camera rays
   std::uint64_t light_paths = 0;  ///< of add_hidden_light
 
   ExrWriteOptions exr() const { return {half_float, compression == "zip"}; }
