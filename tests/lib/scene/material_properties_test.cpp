@@ -3,6 +3,7 @@
 #include "lib/scene/material_properties.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "lib/image/texture_images.h"
@@ -17,6 +18,7 @@ namespace {
 /// Other values than those of room(), for each type of member.
 void flip(float& x) { x = x == 0.25f ? 0.5f : 0.25f; }
 void flip(double& x) { x = x == 0.25 ? 0.5 : 0.25; }
+void flip(std::array<double, 2>& x) { x[1] += 0.25; }
 void flip(bool& x) { x = !x; }
 void flip(Rgb& x) { x.g = x.g == 0.25f ? 0.5f : 0.25f; }
 void flip(Texture& x) { x.transform[2] += 0.5f; }
@@ -49,8 +51,8 @@ bool flip_member(PunctualLight& l, int n) {
   return flip_one(n, kind, intensity, inner, outer);
 }
 bool flip_member(Camera& c, int n) {
-  auto& [name, kind, yfov, ymag] = c;
-  return flip_one(n, kind, c.kind == Camera::Kind::perspective ? yfov : ymag);
+  auto& [name, kind, yfov, ymag, shift] = c;
+  return flip_one(n, kind, c.kind == Camera::Kind::perspective ? yfov : ymag, shift);
 }
 bool flip_member(MediumOptions& o, int n) {
   auto& [sigma_t, albedo, g] = o;
