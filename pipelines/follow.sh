@@ -4,6 +4,7 @@
 #     follow.sh next FILE      makes at once what now has all its inputs: filtered pictures, pictures with smoke, frames,
 #                              previews. By itself make would first render the whole range.
 #     follow.sh read RAW...    removes raw pictures that all their filtered pictures have read
+#     follow.sh was_read RAW   true if all filtered pictures that read it are there: another make may have removed it
 #
 # The environment has PLAN, MAKE_FILES: the command that makes files of the plan, and CLAIMS: a folder of this make, so
 # that two raw pictures of one window do not both filter it.
@@ -50,8 +51,15 @@ END
   for raw in $all; do case " $kept " in *" $raw "*) ;; *) rm -f "$raw";; esac; done
 }
 
+was_read() {
+  filtered=$(readers "$1" | cut -d' ' -f2)
+  for file in $filtered; do [ -e "$file" ] || return 1; done
+  [ -n "$filtered" ]
+}
+
 case $1 in
   next) next "$2";;
   read) shift; read_by_all "$@";;
-  *) echo "follow.sh: '$1' is none of next, read" >&2; exit 2;;
+  was_read) was_read "$2";;
+  *) echo "follow.sh: '$1' is none of next, read, was_read" >&2; exit 2;;
 esac

@@ -86,7 +86,11 @@ judge() {   # judge CODE INODES FILE... --
     *) why="ended with $judged";;
   esac
   [ -z "$why" ] || return 0
-  look_for "$@" || { why="ended with $judged, but $missing is not there${RUN:+; RUN has lost the command}"; return 0; }
+  if ! look_for "$@"; then
+    case $missing in raw/*) ! sh "${0%/*}/follow.sh" was_read "$missing" || return 0;; esac
+    why="ended with $judged, but $missing is not there${RUN:+; RUN has lost the command}"
+    return 0
+  fi
   shift
   ! is_cut_off "$@" || { why="ended with $judged, but $missing was cut off and is removed"; rm -f "$missing"; }
 }
