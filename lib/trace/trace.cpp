@@ -113,7 +113,7 @@ struct Tracer::Impl::Query : RTCIntersectContext {
     const SurfaceArrays& surface = scene.surfaces[hit.surface];
     SurfaceArrays::Own own;
     const SurfaceArrays::Corners at = surface.corner_positions(surface.triangles[hit.triangle], own);
-    const TriangleHit met = meet_plane(ray.origin, ray.direction, *at.a, *at.b, *at.c);
+    const TriangleHit met = meet_triangle(ray.origin, ray.direction, *at.a, *at.b, *at.c);
     hit.t = met.t;
     hit.u = met.u;
     hit.v = met.v;
@@ -144,6 +144,8 @@ struct Tracer::Impl::NearestQuery : Query {
       return take_measured(found);
     const std::uint32_t triangle = RTCHitN_primID(found->hit, 1, 0);
     const TriangleHit met = query.meet(surface, triangle);
+    if (met.outside()) [[unlikely]]
+      return take_measured(found);
     query.keep(*found, {met.t, number, triangle, met.u, met.v}, query.in_range(met.t));
   }
   [[gnu::noinline]] static void take_measured(const RTCFilterFunctionNArguments* found) {

@@ -5,7 +5,7 @@ Run at the top of the tree; BIN is the folder with the tools. Tiny scenes. make 
 
   lost         a wrapper in RUN ends with 0 without running one of the commands: make must fail and name the file, unless it shows the new
                pictures; the same command, typed again, gives the frames, previews and sheet of a clean run. With --long each single command of
-               each method, else one command of each kind
+               each method, else one command of each kind that no method before has
   cut, late    the file of a command is cut off: as above; it is seen a second later: make waits for it
   killed       one of the frame-renders is killed with -9: all other frames are shown, one is rendered the next time
   stopped      SIGINT to make's processes while raw frames wait for their filter: they are kept, and not rendered again
@@ -240,6 +240,26 @@ def disk(chain, frames):
     return f"at most {most} of {frames} raw frames at once, {behind} not shown yet"
 
 
+def tests_of(chain, seen):
+    """{name: test} of a method."""
+    frames, after = (24, 18) if chain.arguments.long else (6, 4)
+    tests = {"lost": lambda: lost(chain, seen)}
+    if chain.method == "frames":
+        tests |= {"cut": lambda: cut(chain), "late": lambda: late(chain), "killed": lambda: killed(chain, frames),
+                  "stopped": lambda: stopped(chain, frames, after)}
+    if chain.method in ("frames", "window"):
+        tests["disk"] = lambda: disk(chain, frames)
+    return tests
+
+
+def ordinary_kinds(folder, arguments):
+    """The kinds of commands that the method `frames` has, whose test loses them."""
+    chain = Chain(folder, "frames", arguments)
+    chain.prepare()
+    shutil.rmtree(chain.folder)
+    return {kind for kind, _ in chain.commands}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("bin", type=lambda p: Path(p).resolve())
@@ -247,29 +267,22 @@ def main():
     parser.add_argument("--only", default="", help=", ".join([*METHODS, "lost", "cut", "late", "killed", "stopped", "disk"]))
     parser.add_argument("--makefile", type=lambda p: Path(p).resolve(), default=Path("Makefile.example").resolve())
     arguments = parser.parse_args()
-    frames, after = (24, 18) if arguments.long else (6, 4)
-    failed, seen, tests = 0, set(), set(arguments.only.split(",")) - set(METHODS) - {""}
+    only = set(arguments.only.split(",")) - {""}
+    methods, wanted = [m for m in METHODS if m in only] or list(METHODS), only - set(METHODS)
+    if "smoke" in methods and not (arguments.bin.parent / "tests" / "make-vdb").exists():
+        print("skipped: smoke, built without volumes")
+        methods.remove("smoke")
+    failed = 0
     with tempfile.TemporaryDirectory(prefix="interrupted") as folder:
-        for method in METHODS:
-            if arguments.only and not tests and method not in arguments.only.split(","):
-                continue
-            if set(METHODS) & set(arguments.only.split(",")) and method not in arguments.only.split(","):
-                continue
-            if method == "smoke" and not (arguments.bin.parent / "tests" / "make-vdb").exists():
-                print("skipped: smoke, built without volumes")
-                continue
+        seen = set() if "frames" in methods or arguments.long else ordinary_kinds(Path(folder), arguments)
+        for method in methods:
             chain, began = Chain(Path(folder), method, arguments), time.monotonic()
-            run = {"lost": lambda: lost(chain, seen)}
-            if method == "frames":
-                run |= {"cut": lambda: cut(chain), "late": lambda: late(chain), "killed": lambda: killed(chain, frames),
-                        "stopped": lambda: stopped(chain, frames, after), "disk": lambda: disk(chain, frames)}
-            if method == "window":
-                run |= {"disk": lambda: disk(chain, frames)}
-            run = {name: test for name, test in run.items() if not tests or name in tests}
-            if {"lost", "cut", "late"} & run.keys():
+            tests = {name: test for name, test in tests_of(chain, seen).items() if not wanted or name in wanted}
+            if {"lost", "cut", "late"} & tests.keys():
                 chain.prepare()
-            for name, test in run.items():
-                print(f"{'FAILED' if chain.failed else 'ok'}: {method}, {test()}, {time.monotonic() - began:.0f} s", flush=True)
+            for test in tests.values():
+                said = test()
+                print(f"{'FAILED' if chain.failed else 'ok'}: {method}, {said}, {time.monotonic() - began:.0f} s", flush=True)
             failed += chain.failed
     return 1 if failed else 0
 

@@ -364,6 +364,18 @@ TEST(Graph, ARawPictureThatTwoCommandsReadIsRemovedByNeither) {
   EXPECT_EQ(text.substr(list, text.find('\n', list) - list).find("raw/0004"), std::string::npos);
 }
 
+/// Frames 0 to 3 of eight, with windows of three: picture 3 is also in the window of frame 4, which is not asked for.
+TEST(Graph, ARawPictureIsRemovedIfAllFramesWhoseWindowsHoldItAreAskedFor) {
+  Scene scene = still_room();
+  slide(scene, kCamera, {0, 1, 2, 3, 4, 5, 6, 7});
+  Wish wish;
+  wish.filter = 3;
+  const Plan plan = plan_of(scene, {0, 1, 2, 3}, 8, helper_frames({0, 1, 2, 3}, wish));
+  const Graph graph = make_graph(plan, with_preset(wish), [](const std::string& tool) { return tool; }, {});
+  for (const char* name : {"raw/0000", "raw/0001", "raw/0002"}) EXPECT_TRUE(file_of(graph, name).passing) << name;
+  for (const char* name : {"raw/0003", "raw/0004"}) EXPECT_FALSE(file_of(graph, name).passing) << name;
+}
+
 /// The words of a filtered frame's raw picture are frame-render's own: the frame, its light, the preset's samples and
 /// error, and the channels from which st-filter makes those of the wish.
 TEST(Graph, ARawPictureHasTheWordsOfItsPresetAndItsFilter) {

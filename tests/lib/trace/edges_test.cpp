@@ -34,6 +34,18 @@ TEST(MeetPlane, KnownValues) {
   EXPECT_FALSE(std::isfinite(meet_plane({1, 1, 0}, {1, 0, 0}, a, b, c).t));  // parallel to the plane
 }
 
+/// A ray that passes the edge at x = 0 by .1 in the plane x + z = 2, which it meets at (-.1, .5, 2.1): its hit is the
+/// place (0, .5, 2) of the edge, and the nearest point of the ray is at z = 2.
+TEST(MeetTriangle, ARayBesideTheEdgeMeetsTheEdge) {
+  const Vec3 a{0, 0, 2}, b{2, 0, 0}, c{0, 2, 2}, origin{-0.1f, 0.5f, 0}, up{0, 0, 1};
+  EXPECT_NEAR(meet_plane(origin, up, a, b, c).t, 2.1f, 1e-6f);
+  EXPECT_TRUE(meet_plane(origin, up, a, b, c).outside());
+  const TriangleHit hit = meet_triangle(origin, up, a, b, c);
+  EXPECT_EQ(hit.t, 2);
+  EXPECT_EQ(hit.u, 0);
+  EXPECT_NEAR(hit.v, 0.25f, 1e-6f);
+}
+
 /// Pairs of triangles that share an edge, with one on each side of it as the ray sees it; the ray is aimed at a point
 /// on the edge. The ray must meet one of them, and behind the met surface it must meet nothing. Each pair has a place
 /// of its own, 8 m from the next, and a ray ends before it reaches another pair.
