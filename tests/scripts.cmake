@@ -56,19 +56,15 @@ add_test(NAME pipelines.random_walk COMMAND python3 -B tests/pipelines/random_wa
 foreach(script hostile_names same_bytes two_makes)
   add_test(NAME pipelines.${script} COMMAND python3 -B tests/pipelines/${script}.py $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 endforeach()
-<<<<<<< HEAD
-set_tests_properties(pipelines.known_walks pipelines.random_walk pipelines.hostile_names pipelines.same_bytes pipelines.two_makes pipelines.interrupted PROPERTIES TIMEOUT 600)
 add_test(NAME pipelines.every_processor COMMAND python3 -B tests/pipelines/every_processor.py $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.every_processor PROPERTIES TIMEOUT 1200 SKIP_RETURN_CODE 77)
-=======
 set_tests_properties(pipelines.known_walks pipelines.random_walk pipelines.hostile_names pipelines.same_bytes pipelines.two_makes PROPERTIES TIMEOUT 600)
 add_test(NAME pipelines.interrupted COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan> --only frames
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.interrupted_methods COMMAND python3 -B tests/pipelines/interrupted.py $<TARGET_FILE_DIR:scene-plan>
          --only window,walkthrough,preview,smoke,temporal WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.interrupted pipelines.interrupted_methods PROPERTIES TIMEOUT 300)
->>>>>>> interrupted
 add_test(NAME pipelines.textured_room COMMAND python3 -B tests/pipelines/textured_room.py $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}
