@@ -12,6 +12,7 @@
 # it again. The exit code is the command's, or 3 if the command said 0. The environment has BIN, RUN, and WAIT: how many
 # seconds a file of another machine may need to appear here, if RUN is set.
 . "${0%/*}/ending.sh"
+wanted='' instead='' may_differ=''
 
 inodes() {   # inodes FILE... --: the inode of each file; "-": there is none
   while [ "$1" != -- ]; do
