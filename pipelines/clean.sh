@@ -6,7 +6,8 @@ done
 rmdir "$TOP/build" 2> /dev/null
 cd "$OUT" 2> /dev/null || exit 0
 [ -f plan.mk ] || exit 0
-ours='[0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|planned.json|warnings|files[.0-9]*|.*[.](csv|md|html|svg|png|gp)'
+ours='[0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|planned.json|warnings|files[.0-9]*'
+ours="$ours|.*[.](csv|md|html|svg|png|gp)"
 for folder in state shown stands photons moved refined stands_points points split counts windows stands_cache \
   cache kept lights keys walk walked raw filtered pictures smoky path error report; do
   [ -d "$folder" ] || continue

@@ -1,8 +1,8 @@
 #!/bin/sh
 # follow.sh -- passes a finished picture on. stages.mk runs it inside OUT.
 #
-#     follow.sh next FILE      makes at once what now has all its inputs: filtered pictures, pictures with smoke, frames,
-#                              previews. By itself make would first render the whole range.
+#     follow.sh next FILE      makes at once what now has all its inputs: filtered pictures, pictures with smoke,
+#                              frames, previews. By itself make would first render the whole range.
 #     follow.sh read RAW...    removes raw pictures that all their filtered pictures have read
 #     follow.sh was_read RAW   true if all filtered pictures that read it are there: another make may have removed it
 #
@@ -37,7 +37,10 @@ END
 # Prints "RAW READER" for each filtered picture that reads one of the raw pictures.
 readers() {
   awk -v names="$*" 'BEGIN { split(names, list, " "); for (i in list) raw[list[i]] }
-    /^filtered\// && $2 == "|" { for (i = 3; i <= NF; ++i) if ($i in raw) print $i, substr($1, 1, length($1) - 1) }' "$PLAN"
+    /^filtered\// && $2 == "|" {
+      sub(/:$/, "", $1)
+      for (i = 3; i <= NF; ++i) if ($i in raw) print $i, $1
+    }' "$PLAN"
 }
 
 read_by_all() {

@@ -12,6 +12,7 @@
 # it again. The exit code is the command's, or 3 if the command said 0. The environment has BIN, RUN, and WAIT: how many
 # seconds a file of another machine may need to appear here, if RUN is set.
 . "${0%/*}/ending.sh"
+wanted='' instead='' may_differ=''
 
 inodes() {   # inodes FILE... --: the inode of each file; "-": there is none
   while [ "$1" != -- ]; do
@@ -54,7 +55,8 @@ look_for() {   # look_for INODES FILE... --: sets `missing`
 
 not_made() {   # not_made FILE TOOL WHY
   [ -z "$FAILED" ] || printf '%s\t%s\t%s\n' "$@" >> "$FAILED"
-  case $3 in 'ended with '[23]) ;; *) echo "$1: not made: $2 $3" >&2;; esac   # our tools have said why they end with 2 or 3
+  case $3 in 'ended with '[23]) return;; esac   # the tool has said why
+  echo "$1: not made: $2 $3" >&2
 }
 
 # given_up FILE: true if this make has failed to make it.
@@ -87,6 +89,7 @@ judge() {   # judge CODE INODES FILE... --
   esac
   [ -z "$why" ] || return 0
   if ! look_for "$@"; then
+    [ -z "$instead" ] || [ ! -e "$instead" ] || return 0
     case $missing in raw/*) ! sh "${0%/*}/follow.sh" was_read "$missing" || return 0;; esac
     why="ended with $judged, but $missing is not there${RUN:+; RUN has lost the command}"
     return 0
@@ -96,7 +99,8 @@ judge() {   # judge CODE INODES FILE... --
 }
 
 # made FILE... -- COMMAND... Variables: `wanted`: the file that messages name where FILE is a temporary one;
-# `may_differ`: not empty if exit code 1 is an answer (aqm-compare).
+# `may_differ`: not empty if exit code 1 is an answer (aqm-compare); `instead`: a file for which FILE is made and that
+# another make may have made, and removed FILE.
 made() {
   files_wanted=0
   for word; do [ "$word" != -- ] || break; files_wanted=$((files_wanted + 1)); done

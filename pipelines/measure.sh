@@ -17,15 +17,17 @@ trap 'rm -rf "$work"' EXIT
 
 render() {   # render SEED FRAME PHOTONS
   FRAMES=$2 PHOTONS=$3 MEASURE_SEED=$1 OUT=$runs/$1 MEASURED='' \
-    ending sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 || { tail -3 "$work/log" >&2; exit 3; }
+    ending sh "$PIPELINES/run.sh" "$(printf 'frames/%04d.exr' "$2")" > "$work/log" 2>&1 ||
+    { tail -3 "$work/log" >&2; exit 3; }
 }
 
 compare() {   # compare FRAME [--either]: sets `percent` of the pixels in which a viewer sees a difference
   name=$(printf %04d "$1").exr
   shift
-  made "$runs/compared.json" -- $RUN "$BIN/aqm-compare" "$runs/1/frames/$name" "$runs/2/frames/$name" "$@" --metric aqm \
-    --json "$runs/compared.json" -q || exit 3
-  percent=$(sed -n 's/^ *"percent": *\([0-9.e+-]*\),*$/\1/p' "$runs/compared.json" | head -1)   # of the whole picture
+  compared=$runs/compared.json
+  made "$compared" -- $RUN "$BIN/aqm-compare" "$runs/1/frames/$name" "$runs/2/frames/$name" "$@" --metric aqm \
+    --json "$compared" -q || exit 3
+  percent=$(sed -n 's/^ *"percent": *\([0-9.e+-]*\),*$/\1/p' "$compared" | head -1)   # of the whole picture
 }
 
 tell() {   # tell FRAME PHOTONS PERCENT: prints a result and adds it to the list

@@ -123,7 +123,7 @@ elif [ -z "$quiet" ]; then
   echo "make: Nothing to be done for '$goal'; look at $OUT/sheet.png"
 fi
 # Raw frames that a killed make had filtered and not removed yet.
-raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do grep -s "^passing :=.* $file" "$plan" > /dev/null && echo "$file"; done)
+raw=$(set +f; cd "$OUT" && for file in raw/*.exr; do ! grep -q "^passing :=.* $file" "$plan" || echo "$file"; done)
 # shellcheck disable=SC2086
 [ -z "$raw" ] || (cd "$OUT" && PLAN=$plan sh "$PIPELINES/follow.sh" read $raw)
 [ ! -s "$aside/commands" ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)

@@ -33,8 +33,8 @@ follow = $(if $(dry),,$(if $(filter demo,$(MAKECMDGOALS)),+@exec env $(make_file
 .SUFFIXES:
 .PHONY: demo report
 demo: $(frames) $(previews) sheet.png $(log)
-# A finished file is never removed when make fails or is stopped. Raw frames that were read are not made again. (An empty
-# list would mean all files.)
+# A finished file is never removed when make fails or is stopped. Raw frames that were read are not made again. (An
+# empty list would mean all files.)
 .SECONDARY: raw/none $(passing)
 .PRECIOUS: $(foreach f,pictures raw filtered smoky keys walked,$f/%.exr)
 

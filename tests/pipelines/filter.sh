@@ -2,8 +2,8 @@
 # FILTER=3 on the Cornell box whose block moves: sh tests/pipelines/filter.sh BIN
 # Run at the top of the tree; BIN is the folder with the tools. Each frame is filtered from the pictures around it,
 # asked for or not, and from fewer at the animation's ends. A raw picture is removed when all frames whose windows hold
-# it are filtered; if some of them are not asked for, it stays. A second run makes nothing. Another order gives the same frames. A filtered picture that was deleted is made
-# again from its raw pictures alone.
+# it are filtered; if some of them are not asked for, it stays. A second run makes nothing. Another order gives the same
+# frames. A filtered picture that was deleted is made again from its raw pictures alone.
 bin=$1 failed=0
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
