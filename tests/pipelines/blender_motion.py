@@ -1,7 +1,7 @@
 """Ten frames of what moves in Blender: a cloth that falls on a ball, a wave modifier, a box that appears at frame 6, instances of geometry
 nodes, a camera with a shift, a cut to a second camera by a marker at frame 8. Ours above, Cycles below.
 
-    build/peers/bpy/bin/python tests/bench/blender_motion.py BIN_DIR OUT
+    build/peers/bpy/bin/python tests/pipelines/blender_motion.py BIN_DIR OUT
 
 Written: OUT/sheet.png, the ten frames of both at one exposure; printed: how far the pictures are apart, ours over Cycles by frame, and how far
 the outlines of what is coloured are apart: the share of coloured pixels that have another colour in the other picture.
