@@ -1,8 +1,8 @@
 """One lamp above a floor, or one material on a ball, by Cycles of this Blender and, exported, by our path tracer: ratios of the means.
 
-    build/peers/bpy/bin/python tests/pipelines/blender_isolated.py BIN_DIR [lamps] [balls]
+    build/peers/bpy/bin/python tests/pipelines/blender_isolated.py BIN_DIR [lamps] [balls] [part of a case's name]...
 
-Cycles with caustics, no clamping, no denoising. Blender 4.2 or later.
+A ball is seen as a whole, its outermost .06 aside. Cycles with caustics, no clamping, no denoising. Blender 4.2 or later.
 """
 import math
 import pathlib
@@ -41,7 +41,22 @@ BALLS = {
     "Metallic .5": (PRINCIPLED, {"Metallic": .5, "Roughness": .4, "Base Color": (.9, .3, .1, 1)}),
     "Glass": ("ShaderNodeBsdfGlass", {"Roughness": 0}), "Glass, roughness .3": ("ShaderNodeBsdfGlass", {"Roughness": .3}),
     "Principled glass, roughness .25": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25}),
+    "Principled glass, tinted, roughness .25": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "Base Color": (.75, .9, 1, 1)}),
+    "frosted shell": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "Base Color": (.75, .9, 1, 1), "shell": .1}),
+    "Metallic .3, red": (PRINCIPLED, {"Metallic": .3, "Roughness": .5, "Base Color": (.6, .03, .02, 1)}),
+    "Metallic .5, white": (PRINCIPLED, {"Metallic": .5, "Roughness": .3}),
+    "green Diffuse, .25 of Glossy": ("MIX", {"factor": .25, "matte": (.05, .4, .1, 1), "gloss": (.8, .8, .8, 1), "roughness": .12}),
+    "red Diffuse, .6 of golden Glossy": ("MIX", {"factor": .6, "matte": (.6, .1, .1, 1), "gloss": (1, .7, .3, 1), "roughness": .4}),
+    "black, roughness .3": (PRINCIPLED, {"Base Color": (.02, .02, .02, 1), "Roughness": .3}),
+    "Coat": (PRINCIPLED, {"Coat Weight": 1, "Base Color": (.6, .03, .02, 1)}), "Sheen": (PRINCIPLED, {"Sheen Weight": 1, "Sheen Roughness": .4, "Base Color": (.08, .14, .3, 1), "Roughness": .8}),
+    "Subsurface": (PRINCIPLED, {"Subsurface Weight": 1, "Subsurface Scale": .5}), "Anisotropic .8": (PRINCIPLED, {"Metallic": 1, "Anisotropic": .8, "Roughness": .35}),
+    "thin film on glass": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": 0, "IOR": 1.33, "Thin Film Thickness": 420, "Thin Film IOR": 1.5}),
     "Translucent": ("ShaderNodeBsdfTranslucent", {}),
+    "Principled glass, roughness .25, even light": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "even": 1}),
+    "frosted shell, even light": (PRINCIPLED, {"Transmission Weight": 1, "Roughness": .25, "shell": .1, "even": 1}),
+    "black, roughness .3, even light": (PRINCIPLED, {"Base Color": (0, 0, 0, 1), "Roughness": .3, "even": 1}),
+    "black, smooth, even light": (PRINCIPLED, {"Base Color": (0, 0, 0, 1), "Roughness": 0, "even": 1}),
+    "Diffuse, .5 of Translucent": ("SHADE", {"matte": (.9, .82, .65, 1), "through": (.9, .75, .5, 1)}),
 }
 
 
@@ -66,11 +81,33 @@ def dressed(thing, kind, values):
         made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    shader, output = tree.nodes.new(kind), tree.nodes.new("ShaderNodeOutputMaterial")
+    thing.data.materials.append(made)
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    if kind in ("MIX", "SHADE"):
+        mixed(tree, output, values)
+        return
+    shader = tree.nodes.new(kind)
     tree.links.new(shader.outputs[0], output.inputs[0])
     for name, value in values.items():
-        shader.inputs[name].default_value = value
-    thing.data.materials.append(made)
+        if name == "even":
+            continue
+        if name == "shell":
+            thing.modifiers.new("Shell", "SOLIDIFY").thickness = value
+        else:
+            shader.inputs[name].default_value = value
+
+
+def mixed(tree, output, values):
+    """Diffuse and Glossy, or Diffuse and Translucent."""
+    mix, matte, other = (tree.nodes.new(f"ShaderNode{word}") for word in (
+        "MixShader", "BsdfDiffuse", "BsdfAnisotropic" if "gloss" in values else "BsdfTranslucent"))
+    mix.inputs[0].default_value = values.get("factor", .5)
+    matte.inputs[0].default_value, other.inputs[0].default_value = values["matte"], values.get("gloss") or values["through"]
+    if "gloss" in values:
+        other.inputs["Roughness"].default_value = values["roughness"]
+    for k, node in enumerate((matte, other)):
+        tree.links.new(node.outputs[0], mix.inputs[k + 1])
+    tree.links.new(mix.outputs[0], output.inputs[0])
 
 
 def lamp_scene(kind, values):
@@ -100,10 +137,10 @@ def ball_scene(kind, values):
         scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs[0].default_value = (.2, .2, .2, 1)
     lamp = bpy.data.lights.new("Lamp", "AREA")
-    lamp.energy, lamp.size = 400, 3
+    lamp.energy, lamp.size = 0 if "even" in values else 400, 3
     put(scene, lamp, (2, -4, 4), (.84, 0, .45))
     lens = bpy.data.cameras.new("Camera")
-    lens.type, lens.ortho_scale = "ORTHO", 1.4
+    lens.type, lens.ortho_scale = "ORTHO", 2
     scene.camera = put(scene, lens, (0, -5, 0), (math.pi / 2, 0, 0))
     return scene, 16, ".2,.2,.2"
 
@@ -114,6 +151,7 @@ def compare(name, scene, bounces, sky, binaries, folder):
     scene.render.engine = "CYCLES"
     cycles, settings = scene.cycles, scene.render.image_settings
     cycles.samples, cycles.use_denoising, cycles.max_bounces, cycles.blur_glossy, cycles.sample_clamp_indirect = 128, False, bounces, 0, 0
+    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
     cycles.caustics_reflective = cycles.caustics_refractive = True
     settings.file_format, settings.color_depth, settings.exr_codec, settings.color_mode = "OPEN_EXR", "32", "ZIP", "RGB"
     scene.render.filepath = str(theirs)
@@ -122,15 +160,19 @@ def compare(name, scene, bounces, sky, binaries, folder):
     subprocess.run([binaries / "frame-render", glb, "--frame", "1", "--size", f"{size}x{size}", "--integrator", "path", "--environment", sky,
                     "--spp", "256", "-o", ours], check=True, capture_output=True)
     a, b = exr.read(ours), exr.read(theirs)
-    ratios = [a.mean(c) / b.mean(c) for c in "RGB"]
-    print(f"RATIO {name:34} " + " ".join(f"{r:.3f}" for r in ratios), flush=True)
+    inside = [y * size + x for y in range(size) for x in range(size) if math.hypot(x + .5 - size / 2, y + .5 - size / 2) < .47 * size]
+    means = [[math.fsum(image.channels[c][i] for i in inside) / len(inside) for c in "RGB"] for image in (a, b)]
+    print(f"RATIO {name:44} " + " ".join(f"{x / y:.3f}" for x, y in zip(*means)) + f"   green: ours {means[0][1]:.4f}, Cycles {means[1][1]:.4f}",
+          flush=True)
 
 
 def main():
     binaries, *words = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         for word, cases, make in (("lamps", LAMPS, lamp_scene), ("balls", BALLS, ball_scene)):
-            for name, (kind, values) in cases.items() if not words or word in words else ():
+            for name, (kind, values) in cases.items():
+                if words and word not in words and not any(w in name for w in words):
+                    continue
                 try:
                     made = make(kind, values)
                 except (AttributeError, KeyError):

@@ -57,6 +57,9 @@ def set_emission(result, emission):
 
 def reflection(look, mean):
     """(ior, specularFactor, specularColorFactor): what a dielectric reflects from in front is F0 of the IOR times twice the level."""
+    if "reflects" in look:
+        front, along = look["reflects"]
+        return 1.5, min(1.0, along), [25 * c / along for c in rec709(front)] if along > 0 else [1.0, 1.0, 1.0]
     ior, level, tint = max(1.0, mean("ior")), max(0.0, mean("level")), rec709(as_tuple(mean("tint", colour=True)))
     f0 = .04 if look.get("old_specular") and as_number_or(look["transmission"], 1) == 0 else ((ior - 1) / (ior + 1)) ** 2
     f0 *= 2 * level

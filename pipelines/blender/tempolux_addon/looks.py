@@ -67,14 +67,36 @@ def principled(node, stack):
     elif is_constant(look["base"]) and is_constant(look["transmission"]):
         # Since 4.0 glass takes the root of the colour at each of its two surfaces.
         look["base"] = tuple(max(c, 0.0) ** (1 - as_number(look["transmission"]) / 2) for c in as_tuple(look["base"]))
-    if is_constant(look["metallic"]) and .05 < look["metallic"] < .95:
-        look.lose("a Metallic between 0 and 1 is darker here")
+    if not is_constant(look["metallic"]) or 0 < look["metallic"] < 1:
+        half_metal(look)
     if pick(node.inputs, "Coat Tint") is not None and look["coat"] != 0 and resolve(pick(node.inputs, "Coat Tint"), stack) != WHITE:
         look.lose("the tint of its coat is left out")
     rough = pick(node.inputs, "Diffuse Roughness")
     if rough is not None and resolve(rough, stack) != 0:
         look.lose("Diffuse Roughness is left out")
     return look
+
+
+def half_metal(look):
+    """Cycles mixes a matte and a metal surface. Here one reflection has their mean above the matte part, which is brighter to make up for what
+    the reflection takes from it."""
+    known = all(is_constant(look[key]) for key in ("metallic", "base", "ior", "level", "tint", "transmission"))
+    if not known or as_number(look["transmission"]) > 0:
+        if not is_constant(look["metallic"]) or .05 < look["metallic"] < .95:
+            look.lose("a Metallic between 0 and 1 is darker here")
+        return
+    share, base, ior = as_number(look["metallic"]), as_tuple(look["base"]), as_number(look["ior"])
+    front = 2 * as_number(look["level"]) * (.04 if look.get("old_specular") else ((ior - 1) / (ior + 1)) ** 2)
+    reflected = tuple((1 - share) * min(1.0, front * t) + share * c for t, c in zip(as_tuple(look["tint"]), base))
+    top = min(max(max(reflected), 1e-6), .99)
+    kept = (1 - share) * (1 - over_all_angles(min(front, .99))) / (1 - over_all_angles(top))
+    look.update(metallic=0.0, base=tuple(min(1.0, kept * c) for c in base), level=.5, tint=tuple(c / top for c in reflected),
+                ior=(1 + top ** .5) / (1 - top ** .5), old_specular=False)
+
+
+def over_all_angles(front):
+    """What Schlick's reflection returns of light from all sides, if it is this from in front."""
+    return (20 * front + 1) / 21
 
 
 def conductor(node, stack):
@@ -105,7 +127,7 @@ def diffuse(node, stack):
 
 
 def glossy(node, stack):
-    return Look(metallic=1.0, normal=bent_normal(node, stack), **inputs(
+    return Look(metallic=1.0, normal=bent_normal(node, stack), one_for_all_angles=True, **inputs(
         node, stack, base="Color", roughness="Roughness", anisotropic=("Anisotropy",), anisotropic_rotation="Rotation"))
 
 
@@ -193,9 +215,12 @@ def coated(matte_look, mirror, reflectance):
     return look
 
 
-def evenly(share):
-    """The share from in front whose mean over a ball, by Schlick's rise along the surface, is this one."""
-    return max(0.0, (share - 1 / 21) * 21 / 20)
+def glazed(matte_look, mirror, share):
+    """Matte below a mirror that takes the same share at all angles, or rises to it along the surface."""
+    look = coated(matte_look, mirror, times(mirror["base"], share))
+    front = as_tuple(times(mirror["base"], share))
+    look["reflects"] = front, max(front) if mirror.get("one_for_all_angles") else share
+    return look
 
 
 def mix(factor, a, b):
@@ -223,9 +248,8 @@ def mix(factor, a, b):
     if is_constant(factor):
         for low, mirror, share in ((a, b, as_number(factor)), (b, a, 1 - as_number(factor))):
             if is_matte(low) and is_mirror(mirror) and low["base"] != mirror["base"] and share < 1:
-                look = coated(low, mirror, times(mirror["base"], evenly(share)))
+                look = glazed(low, mirror, share)
                 look.losses = low.losses + mirror.losses
-                look.lose("a mixture of matte and gloss is glossier seen along the surface")
                 return look
     return blended(factor, a, b)
 
@@ -239,7 +263,7 @@ def blended(factor, a, b):
     look.losses = a.losses + b.losses
     weight_a, weight_b = weight_of(a), weight_of(b)
     for key in set(a) | set(b):
-        if key in ("normal", "displacement", "emission", "strength", "through", "old_specular"):
+        if key in ("normal", "displacement", "emission", "strength", "through", "old_specular", "reflects", "one_for_all_angles"):
             continue
         if key in ("base", "roughness", "ior", "level", "tint") and weight_a == 0:
             look[key] = b[key]

@@ -8,7 +8,7 @@ import numpy
 from . import gltf
 from .nodes import distinct
 from .notes import Damage
-from .shapes import follow, reduce
+from .shapes import follow, reduce, split_creases
 from .smoke import pattern_of
 from .values import as_number, as_tuple, is_constant, times
 
@@ -141,6 +141,9 @@ class Meshes:
         shape = order[0]
         morph = reduce([s.points for s in order]) if len(order) > 1 else None
         solid = self.thickness(shape)
+        if solid > 0:
+            order = [split_creases(s) for s in order]
+            shape = order[0]
         primitives = []
         for slot in numpy.unique(shape.slots):
             material = shape.materials[slot]

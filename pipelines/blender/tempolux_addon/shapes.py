@@ -1,4 +1,5 @@
 """Evaluated meshes as arrays, and a deforming mesh as few morph targets."""
+import copy
 import hashlib
 
 import numpy
@@ -71,6 +72,36 @@ def loop_normals(mesh):
     owner[numpy.repeat(starts - numpy.concatenate([[0], numpy.cumsum(counts)[:-1]]), counts) + numpy.arange(counts.sum())] = \
         numpy.repeat(numpy.arange(len(counts)), counts)
     return normals if (numpy.abs(normals - faces[owner]) > 1e-3).any() else None
+
+
+CREASE = .866            # cosine of 30 degrees
+
+
+def split_creases(shape):
+    """The shape, with other normals where they lean away from their triangle by more than 30 degrees: the mean of the triangles at the vertex
+    that lean away by less. Light that is bent by normals far from the surface leaves a solid of glass at its wrong side, and is lost."""
+    if shape.normals is None:
+        return shape
+    triangles = shape.vertex[shape.corners]
+    a, b, c = (shape.points[triangles[:, k]].astype("f8") for k in range(3))
+    areas = numpy.cross(b - a, c - a)
+    flat = areas / numpy.maximum(numpy.linalg.norm(areas, axis=1, keepdims=True), 1e-30)
+    loops, owner = shape.corners.reshape(-1), numpy.repeat(numpy.arange(len(triangles)), 3)
+    leaning = numpy.flatnonzero(numpy.einsum("ij,ij->i", shape.normals[loops].astype("f8"), flat[owner]) < CREASE)
+    if not len(leaning):
+        return shape
+    order = numpy.argsort(shape.vertex[loops], kind="stable")
+    starts = numpy.searchsorted(shape.vertex[loops][order], numpy.arange(len(shape.points) + 1))
+    result = copy.copy(shape)
+    result.normals = shape.normals.copy()
+    for k in leaning:
+        vertex = shape.vertex[loops[k]]
+        around = owner[order[starts[vertex]:starts[vertex + 1]]]
+        near = areas[around][flat[around] @ flat[owner[k]] > CREASE].sum(axis=0)
+        length = numpy.linalg.norm(near)
+        if length > 0:
+            result.normals[loops[k]] = near / length
+    return result
 
 
 def read_colours(mesh):
