@@ -2,6 +2,7 @@
 // surface twice.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -90,17 +91,26 @@ TEST(Tracer, RaysThroughSharedEdgesAreNeitherLostNorCountedTwice) {
   EXPECT_EQ(unequal, 0);
 }
 
-/// Distance of the nearest hit by a loop over all triangles, whose borders are moved outwards by `more` of the
-/// barycentric coordinates, over the cosine between ray and normal.
-double nearest(const std::vector<Vec3>& p, const Ray& ray, double more) {
-  double t = INFINITY;
+/// Bounds of the distance of the nearest hit, by a loop over all triangles.
+struct Bounds {
+  double low = INFINITY, high = INFINITY;
+};
+/// low is that of triangles whose borders lie farther out by `more` of the barycentric coordinates, over the cosine
+/// between ray and normal; high is that of triangles that are smaller by as much. A ray that passes the triangle itself
+/// meets the nearest place of its border, which may come as much earlier on the ray as it lies in the plane.
+Bounds nearest(const std::vector<Vec3>& p, const Ray& ray, double more) {
+  Bounds t;
   for (std::size_t i = 0; i + 2 < p.size(); i += 3) {
     const Vec3d a(p[i]), e1 = Vec3d(p[i + 1]) - a, e2 = Vec3d(p[i + 2]) - a, d(ray.direction),
                          s = Vec3d(ray.origin) - a;
-    const double det = dot(e1, cross(d, e2)), u = dot(s, cross(d, e2)) / det, v = dot(d, cross(s, e1)) / det,
+    const double det = dot(e1, cross(d, e2));
+    if (det == 0) continue;
+    const double u = dot(s, cross(d, e2)) / det, v = dot(d, cross(s, e1)) / det, inside = std::min({u, v, 1 - u - v}),
                  distance = dot(e2, cross(s, e1)) / det,
-                 border = more * length(cross(e1, e2)) * length(d) / std::abs(det);
-    if (det != 0 && u >= -border && v >= -border && u + v <= 1 + border && distance > 0) t = std::min(t, distance);
+                 border = more * length(cross(e1, e2)) * length(d) / std::abs(det),
+                 earlier = inside < 0 ? border * (length(e1) + length(e2)) / length(d) : 0;
+    if (inside >= -border && distance > -earlier) t.low = std::min(t.low, distance - earlier);
+    if (inside >= border && distance > 0) t.high = std::min(t.high, distance);
   }
   return t;
 }
@@ -140,7 +150,7 @@ TEST(Tracer, HitsAgreeWithALoopInDoublePrecision) {
   tracer.intersect(rays, hits);
   int found = 0, wrong = 0, differing = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const double low = nearest(loop, rays[i], 1e-5), high = nearest(loop, rays[i], -1e-5);
+    const auto [low, high] = nearest(loop, rays[i], 1e-5);
     Hit alone;
     const bool met = tracer.intersect(rays[i], alone);
     const double t = met ? double(alone.t) : double(INFINITY);
