@@ -84,7 +84,7 @@ def mean(values, where):
 
 
 def rows(ours, theirs, names):
-    """(group, name, pixels, ratios ours / Cycles by channel), where Cycles has light."""
+    """(group, name, pixels, means of ours and of Cycles by channel, share of our brightest pixel), where Cycles has light."""
     width, height = SIZE
     rgb, index = channels(theirs, "Combined"), channels(theirs, "IndexOB") or channels(theirs, "Object Index")
     index = next(iter(index.values()))
@@ -101,7 +101,7 @@ def rows(ours, theirs, names):
             if len(where) < 12:
                 continue
             a, b = ([mean(c[k], where) for k in "RGB"] for c in (ours.channels, rgb))
-            yield group, name, len(where), a, b
+            yield group, name, len(where), a, b, max(max(ours.channels[k][i] for i in where) / max(len(where) * m, 1e-9) for k, m in zip("RGB", a))
 
 
 def main():
@@ -135,21 +135,22 @@ def report(out, numbers, names):
     for number in numbers:
         ours, theirs = (exr.read(out / name) for name in (f"ours/frames/{number:04d}.exr", f"{number}_cycles.exr"))
         preview(out, number, ours, theirs)
-        for group, name, pixels, a, b in rows(ours, theirs, names):
-            worst.setdefault((group, name), []).append((number, pixels, a, b))
+        for group, name, pixels, a, b, brightest in rows(ours, theirs, names):
+            worst.setdefault((group, name), []).append((number, pixels, a, b, brightest))
     for group in ("object", "tile"):
         print(f"{group}: ours / Cycles by channel, in frames {', '.join(map(str, numbers))}")
         lines = []
         for (kind, name), found in worst.items():
             if kind == group:
-                ratios = [[x / y if y > 1e-4 else float("nan") for x, y in zip(a, b)] for _, _, a, b in found]
+                ratios = [[x / y if y > 1e-4 else float("nan") for x, y in zip(a, b)] for _, _, a, b, _ in found]
                 far = max(abs(r - 1) for row in ratios for r in row if r == r) if any(r == r for row in ratios for r in row) else 0
-                lines.append((far, name, found[0][1], ratios))
+                lines.append((far, name, found[0][1], ratios, [(n, s) for n, pixels, _, _, s in found if s > max(.2, 4 / pixels)]))
         lines.sort(reverse=True, key=lambda l: l[0])
         inside = sum(l[0] <= .1 for l in lines)
         print(f"  within 10 %: {inside} of {len(lines)}; within 3 %: {sum(l[0] <= .03 for l in lines)}")
-        for far, name, pixels, ratios in lines:
-            print(f"  {str(name):34} {pixels:6}  " + "   ".join(" ".join(f"{r:5.2f}" for r in row) for row in ratios))
+        for far, name, pixels, ratios, single in lines:
+            print(f"  {str(name):34} {pixels:6}  " + "   ".join(" ".join(f"{r:5.2f}" for r in row) for row in ratios)
+                  + "".join(f"   one pixel is {s:.0%} of frame {n}" for n, s in single))
 
 
 if __name__ == "__main__":
