@@ -9,12 +9,14 @@ cd "$OUT" 2> /dev/null || exit 0
 ours='[0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|planned.json|warnings|files[.0-9]*'
 ours="$ours|.*[.](csv|md|html|svg|png|gp)"
 for folder in state shown stands photons moved refined stands_points points split counts windows stands_cache \
-  cache kept lights keys walk walked raw filtered pictures smoky path error report; do
+  cache kept keys walk walked raw filtered pictures smoky path error report; do
   [ -d "$folder" ] || continue
   find "$folder" -maxdepth 1 -type f -regextype egrep -regex "[a-z_]+/($ours)" -delete
   rm -f "$folder/.lock" "$folder/.makes" "$folder"/.*.tmp.*
   rmdir "$folder" 2> /dev/null
 done
+rm -rf report/files   # what `make report` measures
+rmdir report 2> /dev/null
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null
 rm -f plan.mk plan.json sheet.png walk.log film.mp4 compare.html
 rmdir frames "$OUT" 2> /dev/null

@@ -11,7 +11,7 @@ from pathlib import Path
 # Folders of OUT by the part of the work that tables show.
 STAGES = {"photons": ("photons", "stands", "moved", "refined"), "points": ("points", "stands_points", "split"),
           "cache": ("cache", "stands_cache", "kept"),
-          "frames": ("lights", "keys", "walk", "walked", "raw", "filtered", "pictures", "smoky")}
+          "frames": ("keys", "walk", "walked", "raw", "filtered", "pictures", "smoky")}
 
 
 # ---- running it
