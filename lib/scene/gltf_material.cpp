@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_model.h"
 #include "lib/scene/material_properties.h"
 

@@ -5,6 +5,7 @@
 
 #include "formats/container.h"
 #include "formats/error.h"
+#include "lib/core/json.h"
 #include "lib/core/json_file.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/exr_end.h"
